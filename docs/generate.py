@@ -45,19 +45,19 @@ DOCUMENTS = {
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages, schemas and pictures that are made."""
-    made: dict[str, str | bytes] = {page: _included(document, page) for page, document in DOCUMENTS.items()}
-    made |= {
+    pages: dict[str, str | bytes] = {page: _included(document, page) for page, document in DOCUMENTS.items()}
+    pages |= {
         "reference/study.md": _study(),
         "reference/files.md": _other_files(),
         "reference/commands.md": _commands(),
         "reference/python.md": _python(),
     }
     for name, sections in FILES.items():
-        made[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
+        pages[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
     pictures = {f"pictures/{script.stem}.svg": _picture(script) for script in sorted((HERE / "gallery").glob("*.py"))}
-    made |= pictures
-    made["verification.pdf"] = _verification(pictures)
-    for path, content in made.items():
+    pages |= pictures
+    pages["verification.pdf"] = _verification(pictures)
+    for path, content in pages.items():
         files.append(File.generated(config, path, content=content))
     for image in sorted((HERE / "images").iterdir()):
         files.append(File.generated(config, f"images/{image.name}", abs_src_path=str(image)))
@@ -110,11 +110,11 @@ def _included(document: str, page: str) -> str:
 def _on_site(link: str, document: str, page: str) -> str:
     """Return a link of a document as it is from its page on the site; unchanged if its target is not there."""
     target = os.path.normpath(Path(document).parent / link)
-    on_site = {there: here for here, there in DOCUMENTS.items()}
+    on_site = {source: local for local, source in DOCUMENTS.items()}
     place = on_site.get(target)
-    for folder, there in (("docs/images/", "images/"), ("docs/pages/", "")):
+    for folder, source in (("docs/images/", "images/"), ("docs/pages/", "")):
         if target.startswith(folder):
-            place = there + target.removeprefix(folder)
+            place = source + target.removeprefix(folder)
     return os.path.relpath(place, Path(page).parent) if place else link
 
 
@@ -178,8 +178,8 @@ def _sections(sections: Iterable[Section]) -> Iterator[str]:
 
 def _only(key: Key) -> str:
     """Return the values of other keys with which a key applies, to stand before its meaning."""
-    others = [" or ".join(f"`{other} = {shown(value)}`" for value in values) for other, values in key.only.items()]
-    return f"With {', '.join(others)}: " if others else ""
+    conditions = [" or ".join(f"`{name} = {shown(value)}`" for value in values) for name, values in key.only.items()]
+    return f"With {', '.join(conditions)}: " if conditions else ""
 
 
 def _value(key: Key) -> str:
@@ -245,9 +245,9 @@ def _python() -> str:
         "",
     ]
     for name in rockbatch.__all__:
-        thing = getattr(rockbatch, name)
+        documented = getattr(rockbatch, name)
         # rb.report is its package, which can be called
-        home = thing.__name__ if isinstance(thing, ModuleType) else thing.__module__
+        home = documented.__name__ if isinstance(documented, ModuleType) else documented.__module__
         parts += [f"::: {home}.{name}", ""]
     return "\n".join(parts)
 
@@ -288,14 +288,14 @@ def _errors() -> Iterator[str]:
 def _outcomes() -> Iterator[str]:
     """Yield a table of how hard cases ended, and of the remarks on them, from benchmarks/outcomes.csv."""
     rows = _csv("outcomes.csv")
-    ways = ("ok", "overturned", "flight", "failed")
-    yield from (f"| kind of case | cases | {' | '.join(ways)} | remarks |", "| --- |" + " --- |" * (len(ways) + 2))
+    ends = ("ok", "overturned", "flight", "failed")
+    yield from (f"| kind of case | cases | {' | '.join(ends)} | remarks |", "| --- |" + " --- |" * (len(ends) + 2))
     for stratum in [*dict.fromkeys(row["stratum"] for row in rows), ""]:
-        own = [row for row in rows if stratum in ("", row["stratum"])]
-        counts = " | ".join(str(sum(row["status"] == way for row in own)) for way in ways)
-        remarks = [row["verdict"] for row in own if row["verdict"]]
+        of_stratum = [row for row in rows if stratum in ("", row["stratum"])]
+        counts = " | ".join(str(sum(row["status"] == status for row in of_stratum)) for status in ends)
+        remarks = [row["verdict"] for row in of_stratum if row["verdict"]]
         counted = ", ".join(f"{remarks.count(remark)} {remark}" for remark in dict.fromkeys(remarks))
-        yield f"| {stratum or 'all'} | {len(own)} | {counts} | {counted} |"
+        yield f"| {stratum or 'all'} | {len(of_stratum)} | {counts} | {counted} |"
 
 
 def _counted(text: str) -> str:

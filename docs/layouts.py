@@ -32,9 +32,9 @@ def page() -> str:
     outcomes = [(layout.format, layout.what, *_outcome(layout)) for layout in LAYOUTS]
     lines = [_HEAD + "| format | layouts | read | asked for | refused |", "| --- | --: | --: | --: | --: |"]
     for form in dict.fromkeys(row[0] for row in outcomes):
-        own = [row[2] for row in outcomes if row[0] == form]
-        counts = [own.count(outcome) for outcome in ("read", "asked for", "refused")]
-        lines.append(f"| {form} | {len(own)} | {' | '.join(map(str, counts))} |")
+        of_format = [row[2] for row in outcomes if row[0] == form]
+        counts = [of_format.count(outcome) for outcome in ("read", "asked for", "refused")]
+        lines.append(f"| {form} | {len(of_format)} | {' | '.join(map(str, counts))} |")
     lines += ["", "| format | layout | outcome | why |", "| --- | --- | --- | --- |"]
     lines += [f"| {' | '.join(row)} |" for row in outcomes]
     return "\n".join([*lines, ""])
@@ -49,8 +49,8 @@ def _outcome(layout) -> tuple[str, str]:
     if motions.motions and not reasons:
         return "read", ""
     reason = reasons[0].split("; if it is right")[0]
-    asked = any(word in reasons[0] for word in ("state", "write confirm"))
-    return ("asked for" if asked else "refused"), reason.replace("|", "\\|")
+    needs_statement = any(word in reasons[0] for word in ("state", "write confirm"))
+    return ("asked for" if needs_statement else "refused"), reason.replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -95,8 +95,8 @@ def _figure(image: Element) -> str:
 def _table(table: Element) -> str:
     rows = [[_inline(cell, within_table=True) for cell in row] for row in table.iter("tr")]
     widths = ", ".join(_widths([["".join(cell.itertext()) for cell in row] for row in table.iter("tr")]))
-    heads, *others = (", ".join(f"[{cell}]" for cell in row) for row in rows)
-    lines = ", ".join(others)
+    heads, *body = (", ".join(f"[{cell}]" for cell in row) for row in rows)
+    lines = ", ".join(body)
     return (
         f"\n#table(columns: ({widths},), table.hline(), table.header({heads}), table.hline(stroke: 0.5pt), "
         f"{lines}, table.hline())\n"

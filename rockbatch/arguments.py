@@ -36,10 +36,10 @@ def checked(door: Door) -> Door:
         def take(name: str, value: Any) -> Any:
             if name not in kinds:
                 return value
-            taken = _first_taken(value, kinds[name])
-            if taken is _REFUSED:
+            converted = _first_taken(value, kinds[name])
+            if converted is _REFUSED:
                 wrong.append(f"{name} = {_shown(value)}: {_message(value, kinds[name])}")
-            return taken
+            return converted
 
         args = (*map(take, parameters, args), *args[len(parameters) :])
         kwargs = {name: take(name, value) for name, value in kwargs.items()}
@@ -82,7 +82,7 @@ def _is_known(kind: Any) -> bool:
 
 def _first_taken(value: Any, alternatives: tuple[Any, ...]) -> Any:
     """Return ``value`` as the first of the types that it can be taken for, or _REFUSED."""
-    return next((taken for kind in alternatives if (taken := _take(value, kind)) is not _REFUSED), _REFUSED)
+    return next((converted for kind in alternatives if (converted := _take(value, kind)) is not _REFUSED), _REFUSED)
 
 
 def _take(value: Any, kind: Any) -> Any:
@@ -111,8 +111,8 @@ def _has_nul(value: object) -> bool:
 def _members(values: Any, inner: tuple[Any, ...]) -> Any:
     if len(inner) == 2 and inner[1] is not ...:
         return tuple(values)
-    taken = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)
-    return _REFUSED if any(member is _REFUSED for member in taken) else taken
+    converted = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)
+    return _REFUSED if any(member is _REFUSED for member in converted) else converted
 
 
 def _shown(value: Any) -> str:
@@ -123,8 +123,8 @@ def _shown(value: Any) -> str:
 def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
     if _has_nul(value):
         return "has a NUL character"
-    *others, last = dict.fromkeys(map(_words, alternatives))
-    must = f"must be {', '.join(others) + ' or ' if others else ''}{last}"
+    *first_ones, last = dict.fromkeys(map(_words, alternatives))
+    must = f"must be {', '.join(first_ones) + ' or ' if first_ones else ''}{last}"
     return f"is a class; {must}, such as {value.__name__}(…)" if isinstance(value, type) else must
 
 

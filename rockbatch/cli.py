@@ -53,8 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         options = COMMANDS[parsed.command].arguments if parsed.command else ()
         words = [word.partition("=")[0] for word in unknown if word.startswith("--")]
-        meant = [match for word in words for match in get_close_matches(word, options, 1)]
-        hint = f"; did you mean {', '.join(meant)}?" if meant else ""
+        matches = [match for word in words for match in get_close_matches(word, options, 1)]
+        hint = f"; did you mean {', '.join(matches)}?" if matches else ""
         root.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     if parsed.command is None:
         root.print_help()
@@ -76,11 +76,11 @@ def _carried_out(parsed: argparse.Namespace) -> int:
         return 2
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        say(f"rockbatch: {place}{error.strerror or error}; choose another place, or make this one usable")
+        say(f"rockbatch: {place}{error.strerror or error}; choose another folder, or make this one writable")
         return 2
     except MemoryError as error:
         say(
-            f"rockbatch: {str(error) or 'no memory is left: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
+            f"rockbatch: {str(error) or 'out of memory: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
         )
         return 2
     except KeyboardInterrupt:

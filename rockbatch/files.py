@@ -100,11 +100,11 @@ def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
     Raises ``InputError`` for a pipe, a device, or a file into which something is written meanwhile.
     """
     with io.BufferedReader(opened_input(path)) as file:
-        before = os.fstat(file.fileno())
-        if not stat.S_ISREG(before.st_mode):
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
             raise InputError("not a regular file")
-        yield file, before.st_size
-        if state_of(os.fstat(file.fileno())) != state_of(before):
+        yield file, status.st_size
+        if state_of(os.fstat(file.fileno())) != state_of(status):
             raise InputError(CHANGED)
 
 
@@ -116,9 +116,9 @@ def state_of(status: os.stat_result) -> tuple[int, ...]:
     return status.st_ino, status.st_dev, status.st_size, status.st_mtime_ns
 
 
-def _not_plain(path: Path, what: str) -> InputError:
+def _not_plain(path: Path, kind: str) -> InputError:
     return InputError(
-        f"{path}: {what}, which is neither read nor written in a folder of results; remove it, or put a plain file there"
+        f"{path}: {kind}, which is neither read nor written in a folder of results; remove it, or put a plain file there"
     )
 
 
@@ -199,7 +199,7 @@ def write_whole(path: Path, text: str) -> None:
 
 
 @contextmanager
-def naming_full_disk(path: Path, kept: str = "what was finished before is kept") -> Iterator[None]:
+def naming_full_disk(path: Path, assurance: str = "what was finished before is kept") -> Iterator[None]:
     """Turn the operating system's error for a full disk, or a quota, into an ``InputError`` about ``path``."""
     try:
         yield
@@ -207,7 +207,7 @@ def naming_full_disk(path: Path, kept: str = "what was finished before is kept")
         if error.errno not in FULL:
             raise
         raise InputError(
-            f"{path}: cannot be written: {os.strerror(error.errno)}; {kept}: make room and give the same command again"
+            f"{path}: cannot be written: {os.strerror(error.errno)}; {assurance}: make room and give the same command again"
         ) from error
 
 

@@ -8,11 +8,11 @@ T = TypeVar("T")
 K = TypeVar("K", bound=Hashable)
 
 
-def grouped(things: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
+def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     """Return the things that share a key, in order, by their keys in the order of the first of each."""
     groups: dict[K, list[T]] = {}
-    for thing in things:
-        groups.setdefault(key(thing), []).append(thing)
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
     return groups
 
 
@@ -25,9 +25,9 @@ def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[s
     for more in longer:
         count = Counter(names)
         names = [more(i, name) if count[name] > 1 else name for i, name in enumerate(names)]
-    seen: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for i, name in enumerate(names):
-        seen[name] += 1
-        if seen[name] > 1:
-            names[i] = f"{name} ({seen[name]})"
+        counts[name] += 1
+        if counts[name] > 1:
+            names[i] = f"{name} ({counts[name]})"
     return names

@@ -35,8 +35,8 @@ class Shown(ABC):
         if table is None or table.empty:
             return shown
         more = len(table) - MOST_ROWS
-        rest = f"<p>and {more} more</p>" if more > 0 else ""
-        return shown + table.head(MOST_ROWS).to_html(index=False, na_rep="", border=0) + rest
+        remainder = f"<p>and {more} more</p>" if more > 0 else ""
+        return shown + table.head(MOST_ROWS).to_html(index=False, na_rep="", border=0) + remainder
 
 
 def several(n: int, noun: str) -> str:

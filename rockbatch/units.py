@@ -85,6 +85,6 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     if key in ("g/10", "0.1g"):
         return gravity / 10.0
     if key not in _ACCELERATION_IN_M_S2:
-        known = ", ".join(["g", "g/10", *_ACCELERATION_IN_M_S2])
-        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {known}')
+        units = ", ".join(["g", "g/10", *_ACCELERATION_IN_M_S2])
+        raise ValueError(f'unknown acceleration unit "{unit}"; write one of {units}')
     return _ACCELERATION_IN_M_S2[key]

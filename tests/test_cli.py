@@ -331,7 +331,7 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
     assert ended == code
     assert "Traceback" not in told
     assert "Exception" not in told
-    assert ("what was asked for cannot be printed (No space left on device)" in told) == (redirected == "> /dev/full")
+    assert ("the output cannot be printed (No space left on device)" in told) == (redirected == "> /dev/full")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")

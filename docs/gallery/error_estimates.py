@@ -18,9 +18,9 @@ def draw() -> Figure:
         strict=True,
     ):
         for i, (base, of_base) in enumerate(rows.groupby("base", sort=False)):
-            known = of_base.dropna(subset=[f"{quantity}_reported", f"{quantity}_true"])
-            if len(known):
-                reported, true = known[f"{quantity}_reported"], known[f"{quantity}_true"].clip(lower=1e-13)
+            complete = of_base.dropna(subset=[f"{quantity}_reported", f"{quantity}_true"])
+            if len(complete):
+                reported, true = complete[f"{quantity}_reported"], complete[f"{quantity}_true"].clip(lower=1e-13)
                 axes.loglog(reported, true, "osD^v"[i], color=f"C{i}", label=base, mfc="none", ms=4, mew=0.7)
         axes.axline((1e-12, 1e-12), (1e-4, 1e-4), color="k", lw=0.8)
         axes.set(title=title, xlabel="reported error", xlim=(5e-13, 2e-4), ylim=(5e-14, 2e-4))

@@ -70,10 +70,10 @@ class Accuracy(Analysis):
         try:
             info = json.loads(read_text(directory / INFO))
             records = tuple(record["record"] for record in info["records"])
-            same = info["study"]["sha256"] == self.accuracy["study"].iloc[0] and records == self.records
+            is_same = info["study"]["sha256"] == self.accuracy["study"].iloc[0] and records == self.records
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             return False
-        return same and is_plain(directory / PEAKS)
+        return is_same and is_plain(directory / PEAKS)
 
 
 @checked
@@ -130,18 +130,18 @@ def accuracy(
         raise InputError(f"runs = {runs}: must be at least 1")
     if not seconds > 0:
         raise InputError(f"seconds = {seconds:g}: must be above 0")
-    asked, listener = given_study(study, motions), listener_of(progress)
+    loaded, listener = given_study(study, motions), listener_of(progress)
     if out is not None:
         Accuracy.refuse_folders(Path(out))
-    suite = ground_motions(asked)
-    make_ready(asked, listener)
+    suite = ground_motions(loaded)
+    make_ready(loaded, listener)
     clock = Clock(seconds)
-    chosen = references(asked, suite, runs, listener, clock)
+    chosen = references(loaded, suite, runs, listener, clock)
     measured = Accuracy(
-        study=asked,
+        study=loaded,
         info={},
         unusable=tuple(suite.unusable),
-        accuracy=measure(asked, chosen, scipy, listener, clock),
+        accuracy=measure(loaded, chosen, scipy, listener, clock),
         records=tuple(motion.name for motion in suite.motions),
     )
     return measured if out is None else replace(measured, files=measured.save(out))

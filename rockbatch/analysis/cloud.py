@@ -266,8 +266,8 @@ def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> L
 
     for _ in range(100):
         score, hessian = _derivatives(point, x, log_d, xc, bounds)
-        step, now = np.linalg.solve(-hessian, score), value(point)
-        while value(point + step) < now and np.abs(step).max() > 1e-14 * np.abs(point).max():
+        step, current = np.linalg.solve(-hessian, score), value(point)
+        while value(point + step) < current and np.abs(step).max() > 1e-14 * np.abs(point).max():
             step = 0.5 * step
         point = point + step
         if np.abs(step).max() < 1e-12 * np.abs(point).max():

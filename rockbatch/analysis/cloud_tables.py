@@ -29,11 +29,9 @@ def cloud_table(
     """
     rows: list[dict[str, Any]] = []
     for curve in curves:
-        columns = {name: curve.case.columns.get(name) for name in varied}
-        which = {"case": curve.case.name, **columns, "limit_state": curve.limit.name}
-        own = {"measure": spec.label, "unit": spec.unit, "limit": threshold(curve.limit)}
+        constants = {"measure": spec.label, "unit": spec.unit, "limit": threshold(curve.limit)}
         rows += [
-            {"record": names[run.motion]} | which | own
+            {"record": names[run.motion]} | curve.identity(varied) | constants
             | {"intensity": run.intensity, "demand": run.demand, "status": run.status, "counts": counts(run, curve, spec)}
             for run in curve.cloud
         ]  # fmt: skip

@@ -66,7 +66,7 @@ class Clock:
     def __init__(self, seconds: float = math.inf) -> None:
         self.seconds, self.started = seconds, time.monotonic()
 
-    def left(self, share: float = 1.0) -> float:
+    def remaining(self, share: float = 1.0) -> float:
         """Return the seconds until ``share`` of the time is over."""
         return self.started + share * self.seconds - time.monotonic()
 
@@ -94,7 +94,7 @@ def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Ref
     substeps = 2 * first_substeps(pier, base, run.motion.dt)
     outcome, change = run_fixed(pier, base, run.motion, substeps, quiet_s), math.inf
     for _ in range(HALVINGS):
-        if 2 * took > clock.left():  # half the step takes twice the time
+        if 2 * took > clock.remaining():  # half the step takes twice the time
             break
         started = time.monotonic()
         substeps *= 2
@@ -124,7 +124,7 @@ def references(
     tried = 0
     with listener.progress(len(chosen)) as advance:
         for i in sorted(range(len(chosen)), key=_scattered):
-            remaining = clock.left(REFERENCES if converged else 1.0)
+            remaining = clock.remaining(REFERENCES if converged else 1.0)
             if remaining <= 0:
                 break
             refined = reference(chosen[i], study.numerics.quiet_s, remaining)
@@ -190,8 +190,8 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
 
         return simulate
 
-    own: Setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
-    settings: list[tuple[Setting, Simulate]] = [(own, lambda runs: _ends(outcomes_of(runs, numerics)))]
+    of_study: Setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
+    settings: list[tuple[Setting, Simulate]] = [(of_study, lambda runs: _ends(outcomes_of(runs, numerics)))]
     settings += [
         ({"method": method, "substeps": substeps, "tolerance": None}, fixed(substeps, locate))
         for substeps in SUBSTEPS
@@ -202,12 +202,12 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
     took = 0.0
     with listener.progress(len(settings) * len(references)) as advance:
         for place, (setting, simulate) in enumerate(settings):
-            if rows and 2 * took > clock.left():  # twice the steps take twice the time
+            if rows and 2 * took > clock.remaining():  # twice the steps take twice the time
                 listener.say(f"left out, for want of time: from {setting['substeps']} steps per sample on")
                 break
             started, share = time.monotonic(), (place + 1) / len(settings)
-            until = clock.left(REFERENCES + share * (STEPS - REFERENCES))
-            rows.append(setting | _measured(references, simulate, REPEATS, until))
+            deadline = clock.remaining(REFERENCES + share * (STEPS - REFERENCES))
+            rows.append(setting | _measured(references, simulate, REPEATS, deadline))
             took = time.monotonic() - started
             advance(len(references))
     order = ("located", "not located", "study")
@@ -235,12 +235,12 @@ def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock)
     if not chosen:
         return []
 
-    after = {id(ref.run): ref.outcome.t_end - ref.run.motion.duration for ref in chosen}
+    tails = {id(ref.run): ref.outcome.t_end - ref.run.motion.duration for ref in chosen}
 
     def solver(method: str, tolerance: float, advance: Advance = silent) -> Simulate:
         def solved(run: PlannedRun) -> tuple[str, float]:
-            pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.left()
-            outcome = solve(pier, base, run.motion, method, tolerance, after[id(run)], seconds)  # type: ignore[arg-type]
+            pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.remaining()
+            outcome = solve(pier, base, run.motion, method, tolerance, tails[id(run)], seconds)  # type: ignore[arg-type]
             advance(1)
             return outcome
 
@@ -248,17 +248,17 @@ def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock)
 
     listener.say("SciPy's solvers on the same equations (--no-scipy leaves them out)")
     rows: list[dict[str, Any]] = []
-    going = list(SCIPY)
+    methods = list(SCIPY)
     with listener.progress(len(SCIPY) * len(SCIPY_TOLERANCES) * len(chosen)) as advance:
         for tolerance in SCIPY_TOLERANCES:
-            for method in tuple(going):
+            for method in tuple(methods):
                 setting = {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
                 try:
                     if not rows:  # compiles what is called from Python
                         solver("LSODA", 1e-3)([chosen[0].run])
                     rows.append(setting | _measured(chosen, solver(method, tolerance, advance), 1))
                 except OutOfTimeError:
-                    going.remove(method)
+                    methods.remove(method)
                     listener.say(f"left out, for want of time: SciPy {method} from rtol {tolerance:.0e} on")
     return sorted(rows, key=lambda row: row["method"])
 
@@ -270,15 +270,15 @@ def _measured(
     runs = [ref.run for ref in references]
     times: list[float] = []
     clock = Clock(seconds)
-    while not times or (len(times) < repeats and clock.left() > 0):
+    while not times or (len(times) < repeats and clock.remaining() > 0):
         start = time.thread_time()
         ends = simulate(runs)
         times.append(time.thread_time() - start)
-    done = sum(math.isfinite(theta_max) for _, theta_max in ends)  # a step that would blow up is not run
-    same = [status == ref.outcome.status for ref, (status, _) in zip(references, ends, strict=True)]
+    finished = sum(math.isfinite(theta_max) for _, theta_max in ends)  # a step that would blow up is not run
+    same_status = [status == ref.outcome.status for ref, (status, _) in zip(references, ends, strict=True)]
     errors = [
         abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha
-        for ref, alike, (status, theta_max) in zip(references, same, ends, strict=True)
+        for ref, alike, (status, theta_max) in zip(references, same_status, ends, strict=True)
         if alike and status != "overturned"
     ]
     return {
@@ -286,7 +286,7 @@ def _measured(
         "error_median": float(np.median(errors)) if errors else None,
         "error_95": float(np.quantile(errors, 0.95)) if errors else None,
         "error_max": max(errors, default=None),
-        "seconds_per_run": statistics.median(times) / done if done else None,
-        "status_differs": same.count(False),
+        "seconds_per_run": statistics.median(times) / finished if finished else None,
+        "status_differs": same_status.count(False),
         "reference_change": max(ref.change for ref in references),
     }

@@ -184,8 +184,8 @@ class AnalysisFolder:
             try:
                 yield journal
             except KeyboardInterrupt:
-                kept = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
-                self.listener.say(f"interrupted: {kept}; the same command goes on from there")
+                remark = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
+                self.listener.say(f"interrupted: {remark}; the same command continues from there")
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:
@@ -241,17 +241,17 @@ def analysed(
     all that is in it. The others as for :func:`rockbatch.run`.
     """
     started = time.monotonic()
-    asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
-    spec = read(asked)
+    loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    spec = read(loaded)
     if out is not None:
         kind.refuse_folders(Path(out))
     with nullcontext(out) if out is not None else TemporaryDirectory(prefix="rockbatch-") as directory, engine:
         results = AnalysisFolder(
-            Path(directory), kind.NAME, asked, fresh=fresh, listener=listener, engine=engine, passing=out is None
+            Path(directory), kind.NAME, loaded, fresh=fresh, listener=listener, engine=engine, passing=out is None
         )
-        own = work(results, spec)
+        attributes = work(results, spec)
         files = results.end(wall_s=round(time.monotonic() - started, 3))
-        unusable, content = tuple(results.suite.unusable), results.tables(kind.TABLES) | own
+        unusable, content = tuple(results.suite.unusable), results.tables(kind.TABLES) | attributes
         return kind(study=results.study, info=results.info, unusable=unusable, files=files, **content)
 
 

@@ -98,16 +98,16 @@ class Fragility(Analysis):
 
         Raises ``InputError`` without any hazard, and for periods or a dispersion that are negative or not finite.
         """
-        own = self.spec.hazard
-        if hazard is None and own is None:
+        of_study = self.spec.hazard
+        if hazard is None and of_study is None:
             raise InputError("hazard: the study has no hazard; give a HazardCurve, or write [fragility.hazard]")
         wrong = [f"years = {t:g}: must be above 0" for t in years or () if not 0 < t < math.inf]
         if added is not None and not 0 <= added < math.inf:
             wrong.append(f"added = {added:g}: must be 0 or above")
         if wrong:
             raise InputError(*wrong)
-        periods = tuple(years) if years else own.years if own else YEARS
-        curve = hazard or (own.curve if own else None)
+        periods = tuple(years) if years else of_study.years if of_study else YEARS
+        curve = hazard or (of_study.curve if of_study else None)
         spec = replace(self.spec, hazard=Hazard(curve, periods)) if curve else self.spec
         if added is not None:
             spec = replace(spec, dispersions=(Dispersion("added", added),) if added else ())
@@ -155,46 +155,46 @@ def fragility(
 
 
 def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
-    asked = results.study = replace(results.study, output=output(spec, results.study.output))
-    listener, records = results.listener, results.read_motions(asked).motions
-    plan = level_plan(asked, spec, records)
+    study = results.study = replace(results.study, output=output(spec, results.study.output))
+    listener, records = results.listener, results.read_motions(study).motions
+    plan = level_plan(study, spec, records)
     if spec.method == "cloud":
-        spec = replace(spec, levels=tuple(sorted({x for own in plan.used for x in own})))
-    elif asked.motions.scale != (1.0,):
+        spec = replace(spec, levels=tuple(sorted({x for intensities in plan.used for x in intensities})))
+    elif study.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
     digest = digests(
         records,
-        cases=asked.cases,
-        polarity=asked.motions.simulated,
-        numerics=(asked.numerics, asked.output),
+        cases=study.cases,
+        polarity=study.motions.simulated,
+        numerics=(study.numerics, study.output),
         fragility=spec.of_runs,
     )
-    with results.journal(RUNS, columns(asked), digest) as journal:
-        runs = count(sum(map(len, plan.used)) * len(asked.cases), "run")
-        where = "as they are" if spec.method == "cloud" else f"at {len(spec.levels)} levels of {spec.label}"
-        levels = f"{count(len(records), 'record')} {where}"
+    with results.journal(RUNS, columns(study), digest) as journal:
+        runs = count(sum(map(len, plan.used)) * len(study.cases), "run")
+        scaling = "as they are" if spec.method == "cloud" else f"at {len(spec.levels)} levels of {spec.label}"
+        levels = f"{count(len(records), 'record')} {scaling}"
         search = (
             f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}"
             if spec.method == "ida"
             else ""
         )
-        listener.say(f"{levels}: {runs}{once(asked)} on {results.engine}{search}")
-        make_ready(asked, listener)
-        waves = Waves(asked, journal, results.engine, listener)
-        curves = assess(asked, spec, records, waves, plan)
+        listener.say(f"{levels}: {runs}{once(study)} on {results.engine}{search}")
+        make_ready(study, listener)
+        waves = Waves(study, journal, results.engine, listener)
+        curves = assess(study, spec, records, waves, plan)
         rates = risks(curves, spec)
-        results.info |= described(curves, spec, asked, len(records), rates)
+        results.info |= described(curves, spec, study, len(records), rates)
         results.info["stations"] = len({motion.of_station for motion in records})
         names = [motion.name for motion in records]
         results.keep_table(SCALES, scales(plan, spec, names))
         results.info["scales"] = described_scales(plan, spec, names)
-        results.keep_table(POINTS, points(curves, spec, asked.varied))
+        results.keep_table(POINTS, points(curves, spec, study.varied))
         if spec.method == "cloud":
-            results.keep_table(CLOUD, cloud_table(curves, spec, asked.varied, names))
+            results.keep_table(CLOUD, cloud_table(curves, spec, study.varied, names))
         else:
             results.drop(CLOUD)
         if spec.method == "ida":
-            results.keep_table(CAPACITIES, capacities(curves, spec, asked.varied, names, plan.unscaled))
+            results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, plan.unscaled))
         else:
             results.drop(CAPACITIES)
         _keep_risk(results, spec, curves, rates)

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -95,10 +95,10 @@ def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> 
         for used, x in zip(plan.used, unscaled, strict=True):
             used.update({x * scale: x * scale for scale in study.motions.scale})
         return plan
-    own = members(study.file(), spec.stripes, [motion.name for motion in motions])
+    scales_by_level = members(study.file(), spec.stripes, [motion.name for motion in motions])
     for i, level in enumerate(spec.levels):
-        given = own[i] if own else dict.fromkeys(range(len(motions)))
-        for m, scale in given.items():
+        scales = scales_by_level[i] if scales_by_level else dict.fromkeys(range(len(motions)))
+        for m, scale in scales.items():
             intensity = level if scale is None else scale * unscaled[m] / motions[m].factor
             factor = motions[m].factor * intensity / unscaled[m]
             within = spec.least_scale <= factor * (1 + 1e-9) and factor <= spec.most_scale * (1 + 1e-9)
@@ -232,21 +232,26 @@ class Curve:
             return False
         return _ratio(self.readings.medians) > _ratio(self.fitted.median_interval)
 
+    def identity(self, varied: Sequence[str]) -> dict[str, Any]:
+        """Return the columns that name it in tables: its case, the ``varied`` values of that, and its limit."""
+        columns = {name: self.case.columns.get(name) for name in varied}
+        return {"case": self.case.name, **columns, "limit_state": self.limit.name}
+
 
 def _ratio(bounds: tuple[float, float]) -> float:
     low, high = bounds
     return high / low if low > 0 else math.inf
 
 
-def output(spec: FragilitySpec, asked: Output) -> Output:
-    """Return the output that the limits need beyond peaks, in the way that the study has ``asked`` for."""
+def output(spec: FragilitySpec, of_study: Output) -> Output:
+    """Return the output that the limits need beyond peaks, by the settings ``of_study``."""
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
-        both_laws=asked.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
+        both_laws=of_study.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
         forces="forces" in needs,
         rocking="rocking" in needs,
-        least_normal_share=asked.least_normal_share,
+        least_normal_share=of_study.least_normal_share,
     )
 
 
@@ -284,23 +289,23 @@ def assess(
     plan = plan or level_plan(study, spec, motions)
     runs = _Runs(study, motions, plan, simulate)
     cases = [describe_case(case) for case in study.cases]
-    asked = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
-    runs.carry_out(Point(m, x, c) for m, own in enumerate(plan.used) for x in own.values() for c in range(len(cases)))
+    pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
+    runs.carry_out(Point(m, x, c) for m, used in enumerate(plan.used) for x in used.values() for c in range(len(cases)))
 
-    def states_of(wanted: Sequence[tuple[_Key, float]]) -> list[int]:
-        points = [(rule, Point(m, x, c)) for (c, rule, m), x in wanted]
+    def states_of(looked_for: Sequence[tuple[_Key, float]]) -> list[int]:
+        points = [(rule, Point(m, x, c)) for (c, rule, m), x in looked_for]
         runs.carry_out(point for _, point in points)
         return runs.states(points)
 
-    keys = [(c, rule, m) for c, rule in asked for m in range(len(motions))]
+    keys = [(c, rule, m) for c, rule in pairs for m in range(len(motions))]
     on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in plan.used[m].values()]))
     looks = {key: {level: next(on_levels) for level in plan.used[key[2]]} for key in keys}
     if spec.method == "cloud":
-        return [_of_cloud(runs, spec, c, rule) for c, rule in asked]
+        return [_of_cloud(runs, spec, c, rule) for c, rule in pairs]
     if spec.method == "ida":
         looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), states_of)
         looks = bisect(looks, spec.levels, spec.tolerance, states_of)
-    return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in asked]
+    return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in pairs]
 
 
 _Key = tuple[int, Rule, int]
@@ -316,9 +321,9 @@ class _Runs:
         self.status: dict[Point, str] = {}
         self._last: tuple[dict[Point, int], pd.DataFrame]
 
-    def carry_out(self, wanted: Iterable[Point]) -> None:
+    def carry_out(self, requested: Iterable[Point]) -> None:
         """Carry out one wave of runs."""
-        points = sorted({*wanted})  # what shares a motion stands together
+        points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
         table = self.simulate(ScaledRuns(points, self.motions, self.plan.unscaled, self.study.cases, polarity))
         self.status |= dict(zip(points, table["status"], strict=True))
@@ -333,15 +338,15 @@ class _Runs:
         places, table = self._last
         return demands(rule, table.iloc[[places[point] for point in points]], self.cases[points[0].case])
 
-    def states(self, asked: Sequence[tuple[Rule, Point]]) -> list[int]:
+    def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
         """Return the states of runs of the last wave with respect to limits."""
         places, table = self._last
         together: dict[tuple[Rule, int], list[int]] = {}
-        for number, (rule, point) in enumerate(asked):
+        for number, (rule, point) in enumerate(requested):
             together.setdefault((rule, point.case), []).append(number)
-        result = [LEFT_OUT] * len(asked)
+        result = [LEFT_OUT] * len(requested)
         for (rule, case), numbers in together.items():
-            rows = table.iloc[[places[asked[number][1]] for number in numbers]]
+            rows = table.iloc[[places[requested[number][1]] for number in numbers]]
             for number, state in zip(numbers, states(rule, rows, self.cases[case]).tolist(), strict=True):
                 result[number] = state
         return result
@@ -349,13 +354,13 @@ class _Runs:
 
 def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
     """Return the curve through the states of every motion."""
-    on_levels = np.array([[own.get(x, LEFT_OUT) for x in spec.levels] for own in looks], dtype=np.int8)
+    on_levels = np.array([[states.get(x, LEFT_OUT) for x in spec.levels] for states in looks], dtype=np.int8)
     undecided = _undecided(runs, case, looks)
     capacities: tuple[tuple[int, Capacity], ...] = ()
     if spec.method == "ida":
-        by_motion = ((m, capacity(own, spec.levels)) for m, own in enumerate(looks))
-        capacities = tuple((m, known) for m, known in by_motion if known is not None)
-        fits = _through_brackets([known for _, known in capacities], spec)
+        by_motion = ((m, capacity(states, spec.levels)) for m, states in enumerate(looks))
+        capacities = tuple((m, found_capacity) for m, found_capacity in by_motion if found_capacity is not None)
+        fits = _through_brackets([found_capacity for _, found_capacity in capacities], spec)
     else:
         fits = _through_stripes(on_levels, spec)
     stripes = _stripes(on_levels, spec.levels, runs, case)
@@ -365,26 +370,26 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
 def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
     """Return the curve through the demands of all runs."""
     points = sorted(
-        (Point(m, x, case) for m, own in enumerate(runs.plan.used) for x in own), key=lambda run: run.intensity
+        (Point(m, x, case) for m, used in enumerate(runs.plan.used) for x in used), key=lambda run: run.intensity
     )
     values, states = runs.demands(rule, points), runs.states([(rule, point) for point in points])
-    seen = tuple(
+    cloud_points = tuple(
         CloudPoint(point.motion, point.intensity, float(value), runs.status[point], state)
         for point, value, state in zip(points, values, states, strict=True)
     )
-    counting = [run for run in seen if run.state != LEFT_OUT]
+    counting = [run for run in cloud_points if run.state != LEFT_OUT]
     doubtful = [run for run in counting if _is_doubtful(run)]
     ended = Counter(run.status for run in doubtful)
-    other = len(doubtful) - ended["flight"] - ended["failed"]
-    undecided = Undecided(len(counting), ended["flight"], ended["failed"], other)
+    not_converged = len(doubtful) - ended["flight"] - ended["failed"]
+    undecided = Undecided(len(counting), ended["flight"], ended["failed"], not_converged)
     fitted = _through_cloud([run for run in counting if not _is_doubtful(run)], rule, spec)
     readings = None
     if doubtful:
         beyond = [run._replace(status="overturned", state=EXCEEDED) if _is_doubtful(run) else run for run in counting]
         within = [run._replace(demand=math.nan, state=WITHSTOOD) if _is_doubtful(run) else run for run in counting]
         readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
-    stripes = tuple(_stripe_of_one(run, runs.plan) for run in seen)
-    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, (), seen)
+    stripes = tuple(_stripe_of_one(run, runs.plan) for run in cloud_points)
+    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, (), cloud_points)
 
 
 def _is_doubtful(run: CloudPoint) -> bool:
@@ -399,22 +404,22 @@ def _stripe_of_one(run: CloudPoint, plan: LevelPlan) -> Stripe:
     return Stripe(run.intensity, *counts, *ends)._replace(scale_least=factor, scale_median=factor, scale_most=factor)
 
 
-def _through_cloud(seen: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec) -> Fitted | str:
-    x, demand = np.array([[run.intensity, run.demand] for run in seen], dtype=np.float64).reshape(-1, 2).T
-    exceeded = np.array([run.state == EXCEEDED for run in seen], dtype=np.bool_)
+def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec) -> Fitted | str:
+    x, demand = np.array([[run.intensity, run.demand] for run in points], dtype=np.float64).reshape(-1, 2).T
+    exceeded = np.array([run.state == EXCEEDED for run in points], dtype=np.bool_)
     if DEMANDS[rule.demand].event:
         return cloud.fit_event(x, exceeded, spec.confidence)
     limit = threshold(rule)
     if not limit > 0:
         return f"a limit of {limit:g} has no logarithm: a cloud needs one above 0"
-    overturned = exceeded & np.array([run.status == "overturned" for run in seen], dtype=np.bool_)
+    overturned = exceeded & np.array([run.status == "overturned" for run in points], dtype=np.bool_)
     within = ~overturned & np.isnan(demand)
     runs = cloud.Demands(x, np.where(within, 0.0, demand), overturned, within)
     return cloud.fit(runs, limit, spec.censored_below * limit, spec.confidence)
 
 
 def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
-    counted = [(m, x, state) for m, own in enumerate(looks) for x, state in own.items()]
+    counted = [(m, x, state) for m, states in enumerate(looks) for x, state in states.items()]
     status = Counter(runs.status_at(m, x, case) for m, x, state in counted if state == UNDECIDED)
     flight, failed = status.pop("flight", 0), status.pop("failed", 0)
     return Undecided(sum(state != LEFT_OUT for _, _, state in counted), flight, failed, status.total())
@@ -423,13 +428,13 @@ def _undecided(runs: _Runs, case: int, looks: Sequence[Looks]) -> Undecided:
 def _stripes(observed: npt.NDArray[np.int8], levels: Sequence[float], runs: _Runs, case: int) -> tuple[Stripe, ...]:
     stripes, plan = [], runs.plan
     for x, row in zip(levels, observed.T, strict=True):
-        used = [m for m, own in enumerate(plan.used) if x in own]
+        used = [m for m, intensities in enumerate(plan.used) if x in intensities]
         ended = Counter(runs.status_at(m, x, case) for m in used)
-        counts = [int(np.count_nonzero(which)) for which in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
+        counts = [int(np.count_nonzero(members)) for members in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
         ends = [ended[status] for status in ("overturned", "flight", "failed")]
         factors = [plan.factor(m, x) for m in used]
         least, middle, most = np.quantile(factors, [0.0, 0.5, 1.0]).tolist() if factors else 3 * [math.nan]
-        not_used = sum(x in own for own in plan.not_used)
+        not_used = sum(x in intensities for intensities in plan.not_used)
         stripe = Stripe(x, *counts, *ends)
         stripes.append(stripe._replace(not_used=not_used, scale_least=least, scale_median=middle, scale_most=most))
     return tuple(stripes)
@@ -457,9 +462,9 @@ def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fi
         informative = (low > 0) | np.isfinite(high)
         return fit(Capacities(low[informative], high[informative], np.ones(informative.sum())), spec.confidence)
 
-    fitted = through([known.decided for known in capacities])
-    if not any(known.undecided for known in capacities):
+    fitted = through([bracket.decided for bracket in capacities])
+    if not any(bracket.undecided for bracket in capacities):
         return fitted, None
     return fitted, Readings(
-        *(through([getattr(known, name) for known in capacities]) for name in ("if_exceeded", "if_withstood"))
+        *(through([getattr(bracket, name) for bracket in capacities]) for name in ("if_exceeded", "if_withstood"))
     )

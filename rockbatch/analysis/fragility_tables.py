@@ -32,12 +32,12 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
     """
     rows: list[dict[str, Any]] = []
     for curve in curves:
-        own = {"measure": spec.label, "unit": spec.unit}
+        units = {"measure": spec.label, "unit": spec.unit}
         p = _probabilities(curve, np.array(spec.levels))
         if spec.added:
             p["p_total"] = _total(curve, spec, np.array(spec.levels))
         rows += [
-            _which(curve, varied) | own | stripe._asdict() | {name: float(values[i]) for name, values in p.items()}
+            curve.identity(varied) | units | stripe._asdict() | {name: float(values[i]) for name, values in p.items()}
             for i, stripe in enumerate(curve.stripes)
         ]
     return pd.DataFrame(rows).rename(columns={"records": "n"})
@@ -76,7 +76,7 @@ def capacities(
                 "if_withstood": cap.if_withstood.low if cap.undecided else math.nan,
             }
             rows.append(
-                {"record": names[motion], **_which(curve, varied), "measure": spec.label, "unit": spec.unit}
+                {"record": names[motion], **curve.identity(varied), "measure": spec.label, "unit": spec.unit}
                 | {"found": _state(cap), **bounds}
                 | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
                 | {"undecided": cap.undecided, **otherwise, "returns": cap.returns, "widest_step": cap.widest_step}
@@ -86,11 +86,6 @@ def capacities(
 
 def _or_nothing(bound: float) -> float:
     return bound if math.isfinite(bound) else math.nan
-
-
-def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
-    columns = {name: curve.case.columns.get(name) for name in varied}
-    return {"case": curve.case.name, **columns, "limit_state": curve.limit.name}
 
 
 def _state(cap: Capacity) -> str:
@@ -127,15 +122,15 @@ def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     if spec.method != "ida":
         return ""
     hunted = {curve.case.name: step for curve in curves if (step := spec.step_on(curve.case.base)) is not None}
-    others = list(dict.fromkeys(curve.case.name for curve in curves if curve.case.name not in hunted))
+    not_hunted = list(dict.fromkeys(curve.case.name for curve in curves if curve.case.name not in hunted))
     parts = []
     if hunted:
         width = f"{100 * next(iter(hunted.values())):g} %"
         parts.append(f"in steps of {width} from the lowest level up ({', '.join(hunted)}), which miss narrower windows")
-    if others:
+    if not_hunted:
         apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
         parts.append(
-            f"at the levels alone, up to {100 * apart:.0f} % apart ({', '.join(others)}): an exceedance between two of them, "
+            f"at the levels alone, up to {100 * apart:.0f} % apart ({', '.join(not_hunted)}): an exceedance between two of them, "
             "below the first on the levels, is missed, and the median may be too high; hunt_step in [fragility] looks there too"
         )
     return "first exceedances were looked for " + "; ".join(parts)

@@ -60,19 +60,19 @@ class Capacity:
 
 def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
     """Return the first exceedance from below; None if every run is left out."""
-    seen = sorted((x, state) for x, state in looks.items() if state != LEFT_OUT)
-    if not seen:
+    states = sorted((x, state) for x, state in looks.items() if state != LEFT_OUT)
+    if not states:
         return None
-    high = min((x for x, state in seen if state == EXCEEDED), default=math.inf)
-    below = [(x, state) for x, state in seen if x < high]
+    high = min((x for x, state in states if state == EXCEEDED), default=math.inf)
+    below = [(x, state) for x, state in states if x < high]
     doubtful = [x for x, state in below if state == UNDECIDED]
     first = min(doubtful, default=high)
     withstood = [x for x, state in below if state == WITHSTOOD]
     decided = Bracket(max(withstood, default=0.0), high)
     if_exceeded = Bracket(max((x for x in withstood if x < first), default=0.0), first)
     if_withstood = Bracket(max((x for x, _ in below), default=0.0), high)
-    returns = sum(state == WITHSTOOD and x > high and x in levels for x, state in seen)
-    widest = max((above / x - 1.0 for x, above in pairwise(x for x, _ in seen if x <= high)), default=0.0)
+    returns = sum(state == WITHSTOOD and x > high and x in levels for x, state in states)
+    widest = max((above / x - 1.0 for x, above in pairwise(x for x, _ in states if x <= high)), default=0.0)
     return Capacity(decided, if_exceeded, if_withstood, len(doubtful), returns, widest)
 
 
@@ -88,13 +88,13 @@ def hunt(
     They come in one wave; records whose step is None keep the levels alone.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
-    wanted = []
+    requested = []
     for key, looks in states.items():
         step, first = step_of(key), capacity(looks, levels)
         if step is not None and first is not None:
             lowest, highest = min(looks), max(looks)
-            wanted += [(key, x) for x in _between(levels, step) if lowest < x < min(highest, first.decided.high)]
-    _take(states, wanted, states_of)
+            requested += [(key, x) for x in _between(levels, step) if lowest < x < min(highest, first.decided.high)]
+    _add_states(states, requested, states_of)
     return states
 
 
@@ -107,9 +107,9 @@ def _between(levels: Sequence[float], step: float) -> list[float]:
     return intensities
 
 
-def _take(states: Mapping[K, dict[float, int]], wanted: list[tuple[K, float]], states_of: Look[K]) -> None:
-    """Add the ``wanted`` states to ``states``; a run that would be left out counts as undecided."""
-    for (key, x), state in zip(wanted, states_of(wanted) if wanted else (), strict=True):
+def _add_states(states: Mapping[K, dict[float, int]], requested: list[tuple[K, float]], states_of: Look[K]) -> None:
+    """Add the ``requested`` states to ``states``; a run that would be left out counts as undecided."""
+    for (key, x), state in zip(requested, states_of(requested) if requested else (), strict=True):
         states[key][x] = UNDECIDED if state == LEFT_OUT else state
 
 
@@ -124,8 +124,8 @@ def bisect(
     The runs come in waves, one for every bracket that is wider.
     """
     states = {key: dict(looks) for key, looks in on_levels.items()}
-    while wanted := [(key, x) for key, looks in states.items() for x in _middles(capacity(looks, levels), tolerance)]:
-        _take(states, wanted, states_of)
+    while new := [(key, x) for key, looks in states.items() for x in _middles(capacity(looks, levels), tolerance)]:
+        _add_states(states, new, states_of)
     return states
 
 

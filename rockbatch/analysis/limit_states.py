@@ -22,7 +22,7 @@ def applies(rule: Rule, case: Case) -> bool:
     """Return whether a limit applies to a case, given as in run.json."""
     demand = DEMANDS[rule.demand]
     equipped = not demand.device or has_device(case, demand.device)
-    return chooses(rule, str(case["case"]), 1.0) and demand.on(case) and equipped
+    return chooses(rule, str(case["case"]), 1.0) and demand.applies_to(case) and equipped
 
 
 def threshold(rule: Rule) -> float:
@@ -45,7 +45,7 @@ def demands(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.floa
 
 def states(rule: Rule, runs: "pd.DataFrame", case: Case) -> npt.NDArray[np.int8]:
     """Return the state of each of the n runs of a case, rows of peaks.csv, shape (n,)."""
-    bounds, kept = of_runs(rule, runs, case)
+    bounds, counted = of_runs(rule, runs, case)
     limit = threshold(rule)
     state = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
-    return np.where(kept, state, LEFT_OUT).astype(np.int8)
+    return np.where(counted, state, LEFT_OUT).astype(np.int8)

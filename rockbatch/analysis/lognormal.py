@@ -89,9 +89,11 @@ class Lognormal:
         """Return the curve with a dispersion ``added`` to its own, independent of it, by the root of the squares."""
         if added == 0:
             return self
-        own = self.region / np.sqrt(1.0 + (added * self.region[:, 1:]) ** 2)
+        wide = self.region / np.sqrt(1.0 + (added * self.region[:, 1:]) ** 2)
         low, high = (math.hypot(bound, added) for bound in self.dispersion_interval)
-        return replace(self, dispersion=math.hypot(self.dispersion, added), dispersion_interval=(low, high), region=own)
+        return replace(
+            self, dispersion=math.hypot(self.dispersion, added), dispersion_interval=(low, high), region=wide
+        )
 
     def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
         """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its profile-likelihood interval.
@@ -115,9 +117,9 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
     levels say much less than as many suites would: the region is stretched to the covariance of the records' own scores
     (Chandler & Bate 2007, Biometrika 94(1):167–183), and never shrunk.
     """
-    why = _degenerate(capacities)
-    if why:
-        return why
+    refusal = _degenerate(capacities)
+    if refusal:
+        return refusal
     likelihood = _Likelihood(capacities)
     best = likelihood.maximum()
     if best is None:

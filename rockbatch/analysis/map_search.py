@@ -49,8 +49,8 @@ def regions(points: Sequence[tuple[float, End]], tolerance: float = 0.0) -> list
     narrow = [region for region in unmerged if region.high - region.low <= tolerance]
     if not narrow or len(narrow) == len(unmerged):
         return unmerged
-    kept = [point for point in points if not any(region.low <= point[0] <= region.high for region in narrow)]
-    return _regions(kept, points)
+    resolved = [point for point in points if not any(region.low <= point[0] <= region.high for region in narrow)]
+    return _regions(resolved, points)
 
 
 def _regions(points: Sequence[tuple[float, End]], whole: Sequence[tuple[float, End]]) -> list[Region]:
@@ -92,14 +92,14 @@ class Search:
         new = [(number, frequency) for number in range(maps) for frequency in frequencies]
         while new:
             self._run([(*column, amplitude) for column in new for amplitude in self.amplitudes])
-            while suggested := [point for number, own in enumerate(columns) for point in self._suggested(number, own)]:
+            while suggested := [point for number, fs in enumerate(columns) for point in self._suggested(number, fs)]:
                 self._run(suggested)
-            new = [(number, middle) for number, own in enumerate(columns) for middle in self._middles(number, own)]
+            new = [(number, middle) for number, fs in enumerate(columns) for middle in self._middles(number, fs)]
             for number, middle in new:
                 columns[number].append(middle)
-            for own in columns:
-                own.sort()
-        return [{f: sorted(self._ends[number, f].items()) for f in own} for number, own in enumerate(columns)]
+            for fs in columns:
+                fs.sort()
+        return [{f: sorted(self._ends[number, f].items()) for f in fs} for number, fs in enumerate(columns)]
 
     def _run(self, points: Sequence[Point]) -> None:
         """Run ``points``, and bisect what changes in their columns."""
@@ -118,14 +118,14 @@ class Search:
 
     def _suggested(self, number: int, frequencies: Sequence[float]) -> list[Point]:
         """Return the middles of all regions of a neighbour that has other regions: what is narrow there may be here too."""
-        wanted: dict[Point, None] = {}
+        suggested: dict[Point, None] = {}
         for left, right in pairwise(frequencies):
-            both = self._regions[number, left], self._regions[number, right]
-            if _outcomes(both[0]) != _outcomes(both[1]):
-                for frequency, other in ((left, both[1]), (right, both[0])):
-                    for region in other:
-                        wanted[number, frequency, 0.5 * (region.low + region.high)] = None
-        return [point for point in wanted if point[2] not in self._ends[point[:2]]]
+            neighbours = self._regions[number, left], self._regions[number, right]
+            if _outcomes(neighbours[0]) != _outcomes(neighbours[1]):
+                for frequency, regions in ((left, neighbours[1]), (right, neighbours[0])):
+                    for region in regions:
+                        suggested[number, frequency, 0.5 * (region.low + region.high)] = None
+        return [point for point in suggested if point[2] not in self._ends[point[:2]]]
 
     def _middles(self, number: int, frequencies: Sequence[float]) -> list[float]:
         """Return the frequencies between neighbours at which another column is needed."""
@@ -138,20 +138,20 @@ class Search:
 
     def _joined(self, frequencies: Sequence[float], columns: Sequence[list[Region]], i: int) -> bool:
         """Return whether straight lines join the boundaries of columns ``i`` and ``i + 1``, as their neighbours have it."""
-        same = _outcomes(columns[i])
-        if _outcomes(columns[i + 1]) != same:
+        outcomes = _outcomes(columns[i])
+        if _outcomes(columns[i + 1]) != outcomes:
             return False
         threes = [
             range(j, j + 3)
             for j in (i - 1, i)
-            if j >= 0 and j + 3 <= len(columns) and all(_outcomes(columns[k]) == same for k in range(j, j + 3))
+            if j >= 0 and j + 3 <= len(columns) and all(_outcomes(columns[k]) == outcomes for k in range(j, j + 3))
         ]
         step = frequencies[i + 1] - frequencies[i]
         return bool(threes) and all(
             abs(_curvature(*((frequencies[k], columns[k][boundary].high) for k in three))) * step**2 / 8
             <= 0.5 * self.tolerance
             for three in threes
-            for boundary in range(len(same) - 1)
+            for boundary in range(len(outcomes) - 1)
         )
 
 

@@ -120,7 +120,7 @@ def sensitivity(swings: "pd.DataFrame", sobol: "pd.DataFrame", width_mm: float) 
         )
         tornado.axvline(bars["answer_base"].iloc[0], color="black", linewidth=0.8)
         tornado.set(title=case, xlabel=r"$\theta_{\max}/\alpha$, one at a time")
-        own = (
+        of_case = (
             sobol[sobol["case"] == case]
             .drop_duplicates("parameter")
             .set_index("parameter")
@@ -128,7 +128,7 @@ def sensitivity(swings: "pd.DataFrame", sobol: "pd.DataFrame", width_mm: float) 
             .dropna()
         )
         for place, (index, label) in enumerate((("total", "total"), ("first", "first order"))):
-            shares.errorbar(own[index], own.index, xerr=own[f"{index}_error"], label=label, **marks(place))
+            shares.errorbar(of_case[index], of_case.index, xerr=of_case[f"{index}_error"], label=label, **marks(place))
         shares.set(
             title=case, xlabel="Sobol index", xlim=(min(-0.05, *shares.get_xlim()), max(1.05, *shares.get_xlim()))
         )
@@ -176,11 +176,11 @@ def release(fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFram
     keys = list(fits.columns[: list(fits.columns).index("parameter")])
     cases = [list(table.groupby(keys, sort=False, dropna=False)) for table in (impacts, history)]
     drawn, grid = _panels(len(fits), width_mm)
-    for axes, (_, own), (names, way), fit in zip(grid, *cases, fits.to_dict("records"), strict=True):
-        axes.plot(way["t_s"], way["theta_rad"], label="computed", **line(0))
-        axes.plot(own["t_measured_s"], 0.0 * own["t_measured_s"], label="measured impacts", **marks(1))
-        t_computed, amplitude = own["t_amplitude_computed_s"], own["amplitude_measured_rad"]
-        side = np.sign(np.interp(t_computed, way["t_s"], way["theta_rad"]))
+    for axes, (_, measured), (names, computed), fit in zip(grid, *cases, fits.to_dict("records"), strict=True):
+        axes.plot(computed["t_s"], computed["theta_rad"], label="computed", **line(0))
+        axes.plot(measured["t_measured_s"], 0.0 * measured["t_measured_s"], label="measured impacts", **marks(1))
+        t_computed, amplitude = measured["t_amplitude_computed_s"], measured["amplitude_measured_rad"]
+        side = np.sign(np.interp(t_computed, computed["t_s"], computed["theta_rad"]))
         axes.plot(t_computed, side * amplitude, label="measured amplitudes", **marks(2))
         axes.set(xlabel="t [s]", title=f"{', '.join(map(str, names))}: {fit['parameter']} = {fit['value']:.4g}")
     grid[0].set_ylabel(r"$\theta$ [rad]")

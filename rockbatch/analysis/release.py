@@ -140,11 +140,11 @@ def _carry_out(results: AnalysisFolder, spec: ReleaseSpec) -> dict[str, Any]:
         test = _Test(case, spec.fits(case), measured, spec)
         results.listener.say(f"{case.name}: fitting {test.parameter}")
         fit = test.fit(measured)
-        own: dict[str, Any] = {"case": case.name, **case.columns}
+        identity: dict[str, Any] = {"case": case.name, **case.columns}
         table, history = test.laid_over(fit.value)
-        rows.append(own | test.row(fit, table))
-        impacts.append(table.assign(**own))
-        histories.append(history.assign(**own))
+        rows.append(identity | test.row(fit, table))
+        impacts.append(table.assign(**identity))
+        histories.append(history.assign(**identity))
     keys = ["case", *study.varied]
     results.keep_table("release.csv", pd.DataFrame(rows))
     for name, parts in (("release_impacts", impacts), ("release_history", histories)):
@@ -179,9 +179,9 @@ class _Test:
         outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.0, wait=False)
         rows = written(run, outcome, 0.0, every_step=False, wait=False)
         cycles = cycles_of(run.base, rows)
-        n, there = len(self.measured.t), len(cycles.t) - 1
+        n, computed = len(self.measured.t), len(cycles.t) - 1
         t, amplitude = np.full(n, float(rows.t[-1])), np.zeros(n)
-        t[:there], amplitude[:there] = cycles.t[1 : n + 1], np.nan_to_num(cycles.amplitude[1 : n + 1])
+        t[:computed], amplitude[:computed] = cycles.t[1 : n + 1], np.nan_to_num(cycles.amplitude[1 : n + 1])
         return Passages(t - t[0] if self.spec.clock == "first impact" else t, amplitude)
 
     def fit(self, measured: Passages) -> Fit:
@@ -192,12 +192,12 @@ class _Test:
         """Return the table of impacts, measured and computed, and the computed history."""
         pier, computed = self.case.pier, self.model(value)
         table = pd.DataFrame({"impact": np.arange(1, len(computed.t) + 1)})
-        for name, unit, own, other in (
+        for name, unit, measured, modelled in (
             ("t", "s", self.measured.t, computed.t),
             ("amplitude", "rad", self.measured.amplitude, computed.amplitude),
         ):
-            table[f"{name}_measured_{unit}"], table[f"{name}_computed_{unit}"] = own, other
-            table[f"{name}_difference_{unit}"] = own - other
+            table[f"{name}_measured_{unit}"], table[f"{name}_computed_{unit}"] = measured, modelled
+            table[f"{name}_difference_{unit}"] = measured - modelled
         for name, amplitude in (("measured", self.measured.amplitude), ("computed", computed.amplitude)):
             every = np.concatenate([[abs(pier.initial_rotation_rad)], amplitude])
             table[f"restitution_{name}"] = apparent_restitution(pier, every)[1:]
@@ -222,16 +222,16 @@ class _Test:
         }  # fmt: skip
         for name, value in (("", fit.value), ("_low", fit.low), ("_high", fit.high)):
             row[f"over_housner{name}"] = value / e if e > 0.0 else math.nan
-        for name, own in apart.items():
+        for name, best in apart.items():
             for end in ("value", "low", "high"):
-                row[name if end == "value" else f"{name}_{end}"] = math.nan if own is None else getattr(own, end)
+                row[name if end == "value" else f"{name}_{end}"] = math.nan if best is None else getattr(best, end)
         row |= {"t_rms_s": fit.t_rms, "amplitude_rms_rad": fit.amplitude_rms}
         row |= {"time_stretch": fit.stretch, "time_stretch_error": fit.stretch_error}
         return row | {"remark": self._remark(fit, apart)}
 
     def _alone(self, kind: int) -> Fit | None:
         """Return the fit to times (0) or to amplitudes (1) alone, where both were measured often enough."""
-        if any(np.count_nonzero(~np.isnan(own)) < 3 for own in self.measured):
+        if any(np.count_nonzero(~np.isnan(values)) < 3 for values in self.measured):
             return None
         nothing = np.full(len(self.measured.t), math.nan)
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
@@ -240,23 +240,23 @@ class _Test:
         """Return how well the model describes the test, in a sentence."""
         pier = self.case.pier
         first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
-        off = [
-            f"{name} by {value * 1000.0:.3g} {unit} ({value / scale:.2g} of {what})"
-            for name, value, unit, scale, what in (
+        differences = [
+            f"{name} by {value * 1000.0:.3g} {unit} ({value / scale:.2g} of {reference})"
+            for name, value, unit, scale, reference in (
                 ("times", fit.t_rms, "ms", first, "a mean half cycle"),
                 ("amplitudes", fit.amplitude_rms, "mrad", start, "the initial rotation"),
             )
             if value == value
         ]
-        said = f"measured values differ from computed ones by root mean square: {', '.join(off)}"
+        words = f"measured values differ from computed ones by root mean square: {', '.join(differences)}"
         poor = fit.t_rms > POOR_TIMES * first or fit.amplitude_rms > POOR_AMPLITUDES * start
         if fit.at_end:
-            return f"the best value is at the end of what can be: check size, slenderness and initial rotation; {said}"
+            return f"the best value is at the end of what can be: check size, slenderness and initial rotation; {words}"
         if abs(fit.stretch - 1.0) > max(fit.stretch_error, NO_STRETCH):
             p = self.case.pier.p / fit.stretch
             return (
                 f"measured times are {fit.stretch:.3f} ± {fit.stretch_error:.3f} times as long as computed ones, as of a pier "
-                f"with p = {p:.4g} rad/s instead of {self.case.pier.p:.4g}: check size, slenderness, initial rotation; {said}"
+                f"with p = {p:.4g} rad/s instead of {self.case.pier.p:.4g}: check size, slenderness, initial rotation; {words}"
             )
         times, amplitudes = apart["by_times"], apart["by_amplitudes"]
         if (
@@ -266,8 +266,10 @@ class _Test:
         ):
             return (
                 f"times and amplitudes ask for values that differ by more than their intervals, {times.value:.4g} and "
-                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may be others than stated; {said}"
+                f"{amplitudes.value:.4g}: size, slenderness or initial rotation may be others than stated; {words}"
             )
         if poor:
-            return f"poor: no value describes the test; check size, slenderness, initial rotation and the clock; {said}"
-        return said
+            return (
+                f"poor: no value describes the test; check size, slenderness, initial rotation and the clock; {words}"
+            )
+        return words

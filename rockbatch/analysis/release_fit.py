@@ -82,30 +82,30 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
     bounds = float(grid[0]), float(grid[-1])
     value = _least_squares(measured, model, grid)
     for _ in range(ROUNDS):
-        at = _linear(measured, model, value, bounds)._replace(shared=shared)
-        posterior, before = _posterior(at), value
-        value = min(max(before + posterior.quantile(0.5), bounds[0]), bounds[1])
-        if abs(value - before) <= 1e-9 * (bounds[1] - bounds[0]):
+        linear = _linear(measured, model, value, bounds)._replace(shared=shared)
+        posterior, centre = _posterior(linear), value
+        value = min(max(centre + posterior.quantile(0.5), bounds[0]), bounds[1])
+        if abs(value - centre) <= 1e-9 * (bounds[1] - bounds[0]):
             break
-    low, high = (before + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
+    low, high = (centre + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
     t_rms, amplitude_rms = (
-        math.sqrt(float(np.nanmean((own - other) ** 2))) if not np.isnan(own).all() else math.nan
-        for own, other in zip(measured, model(value), strict=True)
+        math.sqrt(float(np.nanmean((data - modelled) ** 2))) if not np.isnan(data).all() else math.nan
+        for data, modelled in zip(measured, model(value), strict=True)
     )
     near = 1e-6 * (bounds[1] - bounds[0])
     at_end = min(value - bounds[0], bounds[1] - value) <= near
     low, high = (min(max(end, bounds[0]), bounds[1]) for end in (low, high))
     scatter = float(posterior.weights @ posterior.spread)
-    stretch = _stretch(at, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
+    stretch = _stretch(linear, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
     return Fit(value, low, high, scatter, t_rms, amplitude_rms, at_end, *stretch)
 
 
-def _stretch(at: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
+def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
     """Return the factor on all computed times, ``t``, 0 for amplitudes, that measured ones ask for, and its error."""
-    given = ~np.isnan(np.concatenate(measured))
-    if np.count_nonzero(at.kinds == 0) < LEAST_TIMES:
+    known = ~np.isnan(np.concatenate(measured))
+    if np.count_nonzero(linear.kinds == 0) < LEAST_TIMES:
         return math.nan, math.nan
-    posterior = _posterior(at._replace(slopes=np.column_stack([at.slopes, np.nan_to_num(t[given])])))
+    posterior = _posterior(linear._replace(slopes=np.column_stack([linear.slopes, np.nan_to_num(t[known])])))
     low, middle, high = (posterior.quantile(0.5 + side * confidence, 1) for side in (-0.5, 0.0, 0.5))
     return 1.0 + middle, max(high - middle, middle - low)
 
@@ -116,10 +116,10 @@ def _least_squares(measured: Passages, model: Model, grid: Samples) -> float:
 
     def misfit(value: float) -> float:
         total = 0.0
-        for own, other in zip(measured, model(value), strict=True):
-            given = ~np.isnan(own)
-            if given.any():
-                misses, least = own[given] - other[given], EXACT * float(np.abs(own[given]).max())
+        for data, modelled in zip(measured, model(value), strict=True):
+            known = ~np.isnan(data)
+            if known.any():
+                misses, least = data[known] - modelled[known], EXACT * float(np.abs(data[known]).max())
                 total += 0.5 * misses.size * math.log(float(misses @ misses) + misses.size * least**2)
         return total
 
@@ -136,7 +136,7 @@ def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float,
     """
     step = NEAR * (bounds[1] - bounds[0])
     below, above = max(value - step, bounds[0]), min(value + step, bounds[1])
-    first, now, last = model(below), model(value), model(above)
+    first, centre, last = model(below), model(value), model(above)
     n = len(measured.t)
     earlier = np.tril(np.ones((n, n)))  # amplitude k has impacts 1 to k before it
     number = np.arange(1.0, n + 1.0)
@@ -144,11 +144,11 @@ def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float,
     of_amplitudes = earlier * (slopes / number)[:, None]
     durations = earlier * (np.diff(t_slopes, append=t_slopes[-1:]) / number)[:, None]  # of the half cycle after each
     of_times = np.vstack([np.zeros(n), np.cumsum(durations, axis=0)[:-1]])
-    given = np.concatenate([~np.isnan(measured.t), ~np.isnan(measured.amplitude)])
-    kinds = np.repeat([0, 1], n)[given]
-    misses = np.concatenate([own - other for own, other in zip(measured, now, strict=True)])[given]
-    both = np.concatenate([t_slopes, slopes])[given][:, None]
-    return _Linear(misses, both, np.vstack([of_times, of_amplitudes])[given], kinds, False)
+    known = np.concatenate([~np.isnan(measured.t), ~np.isnan(measured.amplitude)])
+    kinds = np.repeat([0, 1], n)[known]
+    misses = np.concatenate([data - modelled for data, modelled in zip(measured, centre, strict=True)])[known]
+    all_slopes = np.concatenate([t_slopes, slopes])[known][:, None]
+    return _Linear(misses, all_slopes, np.vstack([of_times, of_amplitudes])[known], kinds, False)
 
 
 class _Posterior(NamedTuple):
@@ -163,12 +163,12 @@ class _Posterior(NamedTuple):
     freedom: int
     spread: Samples
 
-    def quantile(self, share: float, which: int = 0) -> float:
-        """Return what parameter ``which`` lies below with a probability of ``share``."""
+    def quantile(self, share: float, parameter: int = 0) -> float:
+        """Return the value below which ``parameter`` lies with a probability of ``share``."""
         from scipy.optimize import brentq
         from scipy.special import stdtr
 
-        centres, scales = self.centres[:, which], self.scales[:, which]
+        centres, scales = self.centres[:, parameter], self.scales[:, parameter]
 
         def excess(value: float) -> float:
             return float(self.weights @ stdtr(self.freedom, (value - centres) / scales)) - share
@@ -179,18 +179,18 @@ class _Posterior(NamedTuple):
         return float(brentq(excess, low, high, xtol=1e-6 * float(scales.min())))
 
 
-def _posterior(at: _Linear) -> _Posterior:
+def _posterior(linear: _Linear) -> _Posterior:
     """Return the posterior distribution when nothing is known of the scatters but what the values show.
 
     Given the ratios of the scatters it is Student's t; the ratios have Jeffreys' prior, and are summed over a grid.
     """
-    kinds = np.unique(at.kinds)
+    kinds = np.unique(linear.kinds)
     ends = np.tile([-RATIOS, RATIOS], (len(kinds), 1))
     coarse = _grid(ends, 2.0)
-    logs = _evaluated(at, kinds, coarse)[0]
+    logs = _evaluated(linear, kinds, coarse)[0]
     likely = coarse[logs > logs.max() - UNLIKELY]
     ends = np.column_stack([likely.min(axis=0) - 2.0, likely.max(axis=0) + 2.0])
-    logs, centres, scales, freedom, spread = _evaluated(at, kinds, _grid(ends, 1.0))
+    logs, centres, scales, freedom, spread = _evaluated(linear, kinds, _grid(ends, 1.0))
     weights = np.exp(logs - logs.max())
     return _Posterior(weights / weights.sum(), centres, scales, freedom, spread)
 
@@ -201,27 +201,27 @@ def _grid(ends: Samples, step: float) -> Samples:
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
-def _evaluated(at: _Linear, kinds: Samples, ratios: Samples) -> tuple[Samples, Samples, Samples, int, Samples]:
+def _evaluated(linear: _Linear, kinds: Samples, ratios: Samples) -> tuple[Samples, Samples, Samples, int, Samples]:
     """Return ln of the posterior density, and the parts of :class:`_Posterior`, for ``ratios`` of scatters, shape (q, kinds).
 
     They are ln of the variance that reading leaves over the mean of what impacts leave in values of that kind.
     """
-    own = at.by_impact @ at.by_impact.T
-    sources = [own]
+    by_impacts = linear.by_impact @ linear.by_impact.T
+    sources = [by_impacts]
     for kind in kinds:
-        members = (at.kinds == kind).astype(float)
-        read = np.diag(members) + (np.outer(members, members) if at.shared and kind == 0 else 0.0)
-        sources.append(read * (members @ np.diag(own) / members.sum() or 1.0))
+        members = (linear.kinds == kind).astype(float)
+        read = np.diag(members) + (np.outer(members, members) if linear.shared and kind == 0 else 0.0)
+        sources.append(read * (members @ np.diag(by_impacts) / members.sum() or 1.0))
     logs = np.column_stack([np.zeros(len(ratios)), ratios])
     shares = np.exp(logs - logs.max(axis=1, keepdims=True)).T[:, :, None, None]
     parts = shares * np.stack(sources)[:, None]
     inverse = np.linalg.inv(parts.sum(axis=0))
-    weighted = inverse @ at.slopes
-    covariance = np.linalg.inv(at.slopes.T @ weighted)
-    centres = np.einsum("qij,qmj,m->qi", covariance, weighted, at.misses)
+    weighted = inverse @ linear.slopes
+    covariance = np.linalg.inv(linear.slopes.T @ weighted)
+    centres = np.einsum("qij,qmj,m->qi", covariance, weighted, linear.misses)
     unexplained = inverse - weighted @ covariance @ weighted.swapaxes(1, 2)
-    squares = np.maximum(np.einsum("i,qij,j->q", at.misses, unexplained, at.misses), np.finfo(float).tiny)
-    freedom = max(len(at.misses) - at.slopes.shape[1], 1)
+    squares = np.maximum(np.einsum("i,qij,j->q", linear.misses, unexplained, linear.misses), np.finfo(float).tiny)
+    freedom = max(len(linear.misses) - linear.slopes.shape[1], 1)
     influences = unexplained @ parts
     information = np.einsum("aqij,bqji->qab", influences, influences)
     density = sum(0.5 * np.linalg.slogdet(matrix)[1] for matrix in (inverse, covariance, information))

@@ -126,8 +126,8 @@ def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[fl
     if curve.readings is None:
         return None
     bounds = []
-    for reading, without in ((curve.readings.withstood, 0.0), (curve.readings.exceeded, math.inf)):
-        bounds.append(without if isinstance(reading, str) else reading.widened(added).rate(x, rates)[0])
+    for reading, rate_of_tail in ((curve.readings.withstood, 0.0), (curve.readings.exceeded, math.inf)):
+        bounds.append(rate_of_tail if isinstance(reading, str) else reading.widened(added).rate(x, rates)[0])
     return min(bounds), max(bounds)
 
 
@@ -180,21 +180,16 @@ def risk_table(
 
     Of a curve that could not be fitted there is the reason, as its ``note``.
     """
-    known = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
-    rows = [known.get(id(curve)) or _which(curve, varied) | {"note": str(curve.fitted)} for curve in curves]
-    return pd.DataFrame(rows, columns=list(next(iter(known.values()), rows[0] if rows else {})))
-
-
-def _which(curve: Curve, varied: Sequence[str]) -> dict[str, Any]:
-    columns = {name: curve.case.columns.get(name) for name in varied}
-    return {"case": curve.case.name, **columns, "limit_state": curve.limit.name}
+    finite = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
+    rows = [finite.get(id(curve)) or curve.identity(varied) | {"note": str(curve.fitted)} for curve in curves]
+    return pd.DataFrame(rows, columns=list(next(iter(finite.values()), rows[0] if rows else {})))
 
 
 def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
     curve, hazard = risk.curve, spec.hazard
-    row = _which(curve, varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
-    own = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
-    row |= {"dispersion": own, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
+    row = curve.identity(varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
+    dispersion = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
+    row |= {"dispersion": dispersion, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
     low, high = map(_or_nothing, risk.interval)
     within, beyond = map(_or_nothing, risk.undecided or (math.nan, math.nan))
     row |= {"rate_per_year": risk.rate, "rate_low": low, "rate_high": high}
@@ -221,11 +216,11 @@ def deaggregation_table(risks: Sequence[Risk], spec: FragilitySpec, varied: Sequ
     """
     rows: list[dict[str, Any]] = []
     for risk in risks:
-        which = _which(risk.curve, varied)
-        for low, high, where, part in deaggregated(risk, spec):
+        identity = risk.curve.identity(varied)
+        for low, high, position, part in deaggregated(risk, spec):
             share = part / risk.rate if risk.rate > 0 else math.nan
-            bin_ = {"above": low, "up_to": high, "unit": spec.unit, "hazard": where}
-            rows.append(which | bin_ | {"rate_per_year": part, "share": share})
+            bin_ = {"above": low, "up_to": high, "unit": spec.unit, "hazard": position}
+            rows.append(identity | bin_ | {"rate_per_year": part, "share": share})
     return pd.DataFrame(rows)
 
 
@@ -250,8 +245,8 @@ def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, st
     bins = []
     for i, part in enumerate(np.diff(upto)):
         middle = math.sqrt(edges[i] * edges[i + 1])
-        where = "below" if middle < ends[0] else "above" if middle > ends[1] else "within"
-        bins.append((float(edges[i]), float(edges[i + 1]), where, float(part)))
+        position = "below" if middle < ends[0] else "above" if middle > ends[1] else "within"
+        bins.append((float(edges[i]), float(edges[i + 1]), position, float(part)))
     return bins
 
 

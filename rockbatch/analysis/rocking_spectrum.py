@@ -70,8 +70,8 @@ def _self_similar(polarity: str, spectrum: SpectrumSpec, motions: Sequence[Motio
         case, intensity, motion = spectrum.cases[place], spectrum.intensities[level], motions[of_motion]
         pier = replace(case.pier, p=case.pier.p * frequencies[of_motion])
         scale = intensity * pier.gravity * math.tan(pier.alpha) / motion.pga
-        own = replace(case, pier=pier, columns=case.columns | {INTENSITY: intensity})
-        return PlannedRun(moved(of_motion, scale), polarity, scale, own, motion)
+        scaled_case = replace(case, pier=pier, columns=case.columns | {INTENSITY: intensity})
+        return PlannedRun(moved(of_motion, scale), polarity, scale, scaled_case, motion)
 
     return Made(len(motions) * len(spectrum.intensities) * len(spectrum.cases), make)
 
@@ -125,8 +125,8 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
         statistics = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
         statistics["p16"], statistics["p84"] = statistics.pop("low"), statistics.pop("high")
         rows.append(dict(zip(keys, names, strict=True)) | _sizes(runs, varied) | statistics)
-    wanted = ("count", "p16", "median", "p84", "largest", "overturned", "flight", "failed")
-    return pd.DataFrame(rows, columns=[*dict.fromkeys((*keys, *_sizes(table, varied), *wanted))])
+    shown = ("count", "p16", "median", "p84", "largest", "overturned", "flight", "failed")
+    return pd.DataFrame(rows, columns=[*dict.fromkeys((*keys, *_sizes(table, varied), *shown))])
 
 
 def _sizes(runs: "pd.DataFrame", varied: Sequence[str]) -> dict[str, float]:

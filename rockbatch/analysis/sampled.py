@@ -42,10 +42,10 @@ def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dic
 
     A restitution that is an input and that the study does not give is Housner's of its own pier.
     """
-    own = own_values(study, case)
-    if own.get("restitution", 0.0) is None:
-        own["restitution"] = case.pier.restitution
-    base = {parameter.name: own[parameter.name] for parameter in inputs}
+    values_of_study = own_values(study, case)
+    if values_of_study.get("restitution", 0.0) is None:
+        values_of_study["restitution"] = case.pier.restitution
+    base = {parameter.name: values_of_study[parameter.name] for parameter in inputs}
     return [base, *(base | {parameter.name: level} for parameter in inputs for level in parameter.levels)]
 
 

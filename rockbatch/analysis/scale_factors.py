@@ -34,37 +34,38 @@ def scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> "pd.Da
 def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
     if spec.method == "cloud":
-        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": said(plan, spec)}
+        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plan, spec)}
     factors, used = [], []
     for m in range(len(names)):
-        meant = plan.used[m] | plan.not_used[m]
-        factors.append([plan.factor(m, x) if x in meant else None for x in spec.levels])
+        intensities = plan.used[m] | plan.not_used[m]
+        factors.append([plan.factor(m, x) if x in intensities else None for x in spec.levels])
         used.append([x in plan.used[m] for x in spec.levels])
     limits = [spec.least_scale or None, spec.most_scale if np.isfinite(spec.most_scale) else None]
-    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": said(plan, spec)}
+    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": in_words(plan, spec)}
 
 
-def said(plan: LevelPlan, spec: FragilitySpec) -> str:
+def in_words(plan: LevelPlan, spec: FragilitySpec) -> str:
     """Return in words how far records are scaled, and how many are left at each level."""
-    factors = [plan.factor(m, x) for m, own in enumerate(plan.used) for x in own]
+    factors = [plan.factor(m, x) for m, used in enumerate(plan.used) for x in used]
     if min(factors) == max(factors) == 1.0:
         return "records are taken as they were recorded"
     parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
     if spec.method == "cloud" and max(map(len, plan.used)) > 1:
         parts.append("each counts once at every scale, as if these were records of their own: intervals are too narrow")
-    beyond = {x: sum(x in own for own in plan.not_used) for x in spec.levels}
+    beyond = {x: sum(x in used for used in plan.not_used) for x in spec.levels}
     if any(beyond.values()):
         limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"
-        left = [
-            f"{sum(x in own for own in plan.used)} of {count(sum(x in own for own in plan.used) + n, 'record')} at {x:g}"
+        remaining = [
+            f"{sum(x in used for used in plan.used)} of {count(sum(x in used for used in plan.used) + n, 'record')} at {x:g}"
             for x, n in beyond.items()
             if n
         ]
-        parts.append(f"factors {limits} are allowed, which leaves {', '.join(left)} {spec.unit}")
+        parts.append(f"factors {limits} are allowed, which leaves {', '.join(remaining)} {spec.unit}")
     far = [
-        f"{min(own):.3g} to {max(own):.3g} at {x:g}"
+        f"{min(values):.3g} to {max(values):.3g} at {x:g}"
         for x in (() if spec.method == "cloud" else spec.levels)
-        if (own := [given[x] for given in plan.used if x in given]) and max(abs(y / x - 1.0) for y in own) > FAR
+        if (values := [by_level[x] for by_level in plan.used if x in by_level])
+        and max(abs(y / x - 1.0) for y in values) > FAR
     ]
     if far:
         parts.append(

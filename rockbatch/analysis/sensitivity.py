@@ -106,10 +106,10 @@ def sensitivity(
 
 def _carry_out(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, Any]:
     """Write the runs at all points, unless they exist already, and the tables."""
-    study = wanted = results.study
+    study = with_vertical = results.study
     if any(parameter.name == "vertical" for parameter in spec.inputs):  # read it, whatever the study does with it
-        wanted = replace(study, motions=replace(study.motions, vertical=study.motions.vertical or True))
-    motions, points = results.read_motions(wanted), Points(study, spec)
+        with_vertical = replace(study, motions=replace(study.motions, vertical=study.motions.vertical or True))
+    motions, points = results.read_motions(with_vertical), Points(study, spec)
     results.info |= {
         "varied": list(study.varied),
         **{name: value for name, value in asdict(spec).items() if name != "inputs"},
@@ -162,7 +162,7 @@ def values_of(rows: Iterable[Mapping[str, str]], points: int, overturned: float)
 
 def answers(values: Values, statistic: str) -> Values:
     """Return the statistic of the suite at every point, shape (points,), of ``values``, shape (members of the suite, points)."""
-    statistic_of = STATISTICS[statistic].of
+    statistic_of = STATISTICS[statistic].evaluate
     assert statistic_of is not None
     return np.array([statistic_of(at_point) for at_point in values.T])
 
@@ -204,10 +204,10 @@ def tables(
     swings: list[dict[str, Any]] = []
     shares: list[pd.DataFrame] = []
     for case, inputs, (ends, many) in zip(study.cases, points.inputs, points.parts, strict=True):
-        own = {"case": case.name, **case.columns}
-        swings += [own | row for row in tornado(inputs, points.all[ends], results[ends])]
+        identity = {"case": case.name, **case.columns}
+        swings += [identity | row for row in tornado(inputs, points.all[ends], results[ends])]
         if inputs:
-            shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**own))
+            shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**identity))
     return (
         pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO_COLUMNS]),
         pd.concat(shares, ignore_index=True)[["case", *study.varied, *INDICES]],

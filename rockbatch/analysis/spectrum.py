@@ -66,8 +66,8 @@ class Spectrum(Analysis):
         self_similar = self.spectra is not None and self.spectra.axis == SELF_SIMILAR
         axes = (SELF_SIMILAR,) if self_similar else tuple(name for name in AXES if name != SELF_SIMILAR)
         if axis is not None and axis not in axes:
-            asked = f"; for {SELF_SIMILAR} write it as the range in [spectrum]" if axis == SELF_SIMILAR else ""
-            raise InputError(f'axis = "{axis}": must be {" or ".join(axes)} in this spectrum{asked}')
+            remedy = f"; for {SELF_SIMILAR} write it as the range in [spectrum]" if axis == SELF_SIMILAR else ""
+            raise InputError(f'axis = "{axis}": must be {" or ".join(axes)} in this spectrum{remedy}')
         tables = (self.spectrum, self.spectrum_suite, self.overturning_map)
         return plots.spectrum(*tables, axis or axes[0], width_mm)
 
@@ -157,13 +157,13 @@ def _carry_out_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
     with results.journal(of_runs, columns(study), digest) as journal:
         waves = Waves(study, journal, results.engine, listener)
         for spec in maps:
-            own, before = overturning_map.Maps(spec, study.cases), waves.finished
+            computed, finished = overturning_map.Maps(spec, study.cases), waves.finished
             grid = f"{spec.frequencies} frequencies × {spec.amplitudes} amplitudes"
             grid += f" × {count(len(study.cases), 'case')}" if len(study.cases) > 1 else ""
             listener.say(f"map {spec.name}: {grid} on {results.engine}; then what changes is looked at more closely")
-            by_case = own.find(waves)
-            rows += own.rows(by_case)
-            listener.say(f"map {spec.name}: {sum(map(len, by_case))} frequencies, {waves.finished - before} runs")
+            by_case = computed.find(waves)
+            rows += computed.rows(by_case)
+            listener.say(f"map {spec.name}: {sum(map(len, by_case))} frequencies, {waves.finished - finished} runs")
         results.keep_table(file, pd.DataFrame(rows, columns=overturning_map.columns(study.varied)))
         journal.write_in_order(results.directory / of_runs)
         results.keep(of_runs, digest)

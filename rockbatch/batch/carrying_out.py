@@ -62,12 +62,12 @@ def carry_out(
     progress : function, optional
         Called with the number of simulations of each group that is finished.
     """
-    wanted = range(len(runs)) if among is None else among
-    left = to_simulate(runs, wanted, journal, first)
-    with closing(engine.outcomes(some_of(runs, left), numerics, output)) as groups:
+    requested = range(len(runs)) if among is None else among
+    remaining = to_simulate(runs, requested, journal, first)
+    with closing(engine.outcomes(some_of(runs, remaining), numerics, output)) as groups:
         for group in groups:
-            images = (image for place, outcome in group for image in _images(runs, left[place], outcome))
-            missing = [image for image in images if image[0] in wanted and first + image[0] not in journal]
+            images = (image for place, outcome in group for image in _images(runs, remaining[place], outcome))
+            missing = [image for image in images if image[0] in requested and first + image[0] not in journal]
             if row is not None:
                 journal.add_all({first + i: row(run, outcome) for i, run, outcome in missing})
             elif missing:
@@ -76,8 +76,8 @@ def carry_out(
             progress(len(group))
 
 
-def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
-    """Return the indices of the runs that give all that are ``wanted`` and not in ``journal``, or mirror images of them.
+def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
+    """Return the indices of the runs that give all that are ``requested`` and not in ``journal``, or mirror images of them.
 
     Raises ``InputError`` for more than :data:`MOST_RUNS`.
     """
@@ -88,11 +88,11 @@ def to_simulate(runs: Runs, wanted: range, journal: Container[int] = (), first: 
         )
 
     def is_left(index: int) -> bool:
-        return index in wanted and first + index not in journal
+        return index in requested and first + index not in journal
 
     if not runs.mirrored:
-        return array("q", filter(is_left, wanted))
-    firsts = ((index, runs.images(index)[0]) for index in filter(is_left, wanted))
+        return array("q", filter(is_left, requested))
+    firsts = ((index, runs.images(index)[0]) for index in filter(is_left, requested))
     return array(
         "q", (first for index, first in firsts if first == index or not is_left(first))
     )  # else in its own turn

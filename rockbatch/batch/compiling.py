@@ -41,7 +41,7 @@ def make_ready(study: Study, listener: Listener) -> None:
                 assistants.append(assistant)
 
     with on_compilation(assist):
-        while task := _next(waiting.popleft):
+        while task := _next_task(waiting.popleft):
             _compile(task)
     for assistant in assistants:
         assistant.join()
@@ -57,7 +57,7 @@ def _tasks(study: Study) -> list[Task]:
     return [(PlannedRun(still, "+", 1.0, case), numerics, study.output) for case in kernels.values()]
 
 
-def _next(take: Callable[[], Task]) -> Task | None:
+def _next_task(take: Callable[[], Task]) -> Task | None:
     """Return the task that ``take`` takes from those that wait, if any."""
     with suppress(IndexError):
         return take()
@@ -71,7 +71,7 @@ def _compile(task: Task) -> None:
 
 def _compile_elsewhere(waiting: "deque[Task]") -> None:
     """Have another process compile what waits, from its end; what it fails to compile is left to this one."""
-    while task := _next(waiting.pop):
+    while task := _next_task(waiting.pop):
         with suppress(OSError):
             subprocess.run(
                 [sys.executable, "-P", "-m", __name__], input=pickle.dumps(task), capture_output=True, check=False

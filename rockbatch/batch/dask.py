@@ -101,11 +101,11 @@ class Dask:
     def _check_workers(self, client: "Client") -> None:
         """Refuse workers without rockbatch: they end at the first message about it, and would be waited for for ever."""
         specs = client.run(find_spec, "rockbatch", on_error="return")
-        without = [address for address, spec in specs.items() if spec is None or isinstance(spec, Exception)]
-        if without:
+        lacking = [address for address, spec in specs.items() if spec is None or isinstance(spec, Exception)]
+        if lacking:
             self.__exit__(None, None, None)
             raise InputError(
-                f"there is no rockbatch where these workers run: {', '.join(without)}; install the same version there, in the "
+                f"there is no rockbatch where these workers run: {', '.join(lacking)}; install the same version there, in the "
                 "Python that starts `dask worker`"
             )
 
@@ -118,14 +118,14 @@ class Dask:
         self._opened.close()
 
     def __str__(self) -> str:
-        where = self.address or "this machine"
-        return f"a dask cluster of {self.jobs} thread{'s' * (self.jobs != 1)} ({where})"
+        place = self.address or "this machine"
+        return f"a dask cluster of {self.jobs} thread{'s' * (self.jobs != 1)} ({place})"
 
     @property
     def jobs(self) -> int:
         """Return the number of threads of all workers at present."""
-        there = self._client is not None and self._client.status == "running"
-        return sum(self._client.nthreads().values()) if self._client and there else 0
+        connected = self._client is not None and self._client.status == "running"
+        return sum(self._client.nthreads().values()) if self._client and connected else 0
 
     def outcomes(
         self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
@@ -156,18 +156,18 @@ class Dask:
                     yield finished(group, outcomes)
                     hand_out()
         except KeyboardInterrupt:
-            yield from _kept(pending)
+            yield from _finished_groups(pending)
             raise
         except KilledWorker as error:
-            yield from _kept(pending)
+            yield from _finished_groups(pending)
             raise InputError(
                 f"runs {group.start + 1} to {group.stop} of those that were left: several workers died at them in turn, the "
                 f"last {error.last_worker.address}; look at its log and memory, and give the same command again"
             ) from error
         except (CancelledError, OSError) as error:
-            why = "the connection to the scheduler broke" if isinstance(error, CancelledError) else error
+            cause = "the connection to the scheduler broke" if isinstance(error, CancelledError) else error
             raise InputError(
-                f"{self.address or 'the cluster of this machine'}: lost ({why}); give the same command again to go on, with a "
+                f"{self.address or 'the cluster of this machine'}: lost ({cause}); give the same command again to go on, with a "
                 "scheduler and workers that are there"
             ) from error
         finally:
@@ -179,21 +179,21 @@ class Dask:
         from distributed import TimeoutError as NotYetError
         from distributed import wait
 
-        began = seen = time.monotonic()
-        there, deaths = set(self._workers(client)), 0
+        began = last_seen = time.monotonic()
+        alive, deaths = set(self._workers(client)), 0
         while True:
             try:
                 return list(wait(list(pending), timeout=GLANCE_S, return_when="FIRST_COMPLETED").done)
             except NotYetError:
-                patience, who = (PATIENCE_S, "worker") if client.status == "running" else (GONE_S, "scheduler")
+                patience, awaited = (PATIENCE_S, "worker") if client.status == "running" else (GONE_S, "scheduler")
                 now = time.monotonic()
                 if workers := self._workers(client):
-                    seen = now
-                deaths += bool(there - workers)
-                there = workers
-                if now - seen > patience:
+                    last_seen = now
+                deaths += bool(alive - workers)
+                alive = workers
+                if now - last_seen > patience:
                     raise OSError(
-                        f"no {who} for {patience:g} s{_PAUSED * bool(who == 'worker' and self.jobs)}"
+                        f"no {awaited} for {patience:g} s{_PAUSED * bool(awaited == 'worker' and self.jobs)}"
                     ) from None
                 if deaths >= MOST_DEATHS and now - began > PATIENCE_S:
                     raise OSError(
@@ -203,11 +203,11 @@ class Dask:
 
     def _workers(self, client: "Client") -> set[str]:
         """Return the addresses of the workers at present, without those that have paused."""
-        known = client.scheduler_info()["workers"] if client.status == "running" else {}
-        return {address for address, worker in known.items() if worker.get("status") != "paused"}
+        listed = client.scheduler_info()["workers"] if client.status == "running" else {}
+        return {address for address, worker in listed.items() if worker.get("status") != "paused"}
 
 
-def _kept(pending: "dict[Future, range]") -> Iterator[Outcomes]:
+def _finished_groups(pending: "dict[Future, range]") -> Iterator[Outcomes]:
     """Yield those of the groups that were handed out that are finished."""
     for future, group in pending.items():
         if future.status == "finished":
@@ -246,7 +246,7 @@ class Records:
     def _record(self, motion: Motion, keep: bool) -> "Future":
         if id(motion) in self._sent:
             return self._sent[id(motion)][1]
-        future = self.client.submit(_held, motion, pure=False)
+        future = self.client.submit(_unchanged, motion, pure=False)
         if keep:  # with the motion, whose id must not become another's
             self._sent[id(motion)] = motion, future
         return future
@@ -279,17 +279,17 @@ def _deaf_to_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, handler)
 
 
-def _held(motion: Motion) -> Motion:
+def _unchanged(motion: Motion) -> Motion:
     return motion
 
 
 def simulate(
-    records: Sequence[Motion], members: Sequence[Member], numerics: Numerics, output: Output, wanted: str
+    records: Sequence[Motion], members: Sequence[Member], numerics: Numerics, output: Output, expected: str
 ) -> list[Outcome | None]:
-    """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``wanted``."""
-    if program() != wanted:
+    """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``expected``."""
+    if program() != expected:
         raise InputError(
-            f"a worker runs another rockbatch or another Numba ({program()}, not {wanted}): install the same everywhere"
+            f"a worker runs another rockbatch or another Numba ({program()}, not {expected}): install the same everywhere"
         )
     moved = cache(lambda record, sign, scale: scaled(records[record], scale, sign))
     runs = [PlannedRun(moved(record, sign, scale), sign, scale, case) for record, sign, scale, case in members]

@@ -105,8 +105,8 @@ def _tried(
                 shares = [wave[i::jobs] for i in range(min(jobs, len(wave)))]
                 with starting_threads(", or write --jobs 1" * (jobs > 1)):
                     groups = pool.map(carried_out, shares)
-                for share, own in zip(shares, groups, strict=True):
-                    outcomes |= zip(share, own, strict=True)
+                for share, results in zip(shares, groups, strict=True):
+                    outcomes |= zip(share, results, strict=True)
                 begun += len(wave)
                 progress(len(wave))
         finally:

@@ -13,7 +13,7 @@ from rockbatch._version import __version__
 from rockbatch.batch.carrying_out import to_simulate
 from rockbatch.batch.half_cycles import HALF_CYCLES, rows_of_half_cycles
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.kept_histories import keep_histories, kept
+from rockbatch.batch.kept_histories import keep_histories, to_keep
 from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.shocks import rows_by_shock, sequences_of
@@ -88,12 +88,12 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
     """
     try:
         earlier = json.loads(read_text(directory / INFO))
-        same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
+        is_same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
         cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept", "peaks")}
-        jobs, wall_s, kept = (float(cost[name]) for name in ("jobs", "wall_s", "kept"))
+        jobs, wall_s, n_kept = (float(cost[name]) for name in ("jobs", "wall_s", "kept"))
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return None
-    if not (same and math.isfinite(jobs + wall_s + kept) and (directory / PEAKS).exists()):
+    if not (is_same and math.isfinite(jobs + wall_s + n_kept) and (directory / PEAKS).exists()):
         return None
     if differs := edited(directory, earlier):
         raise InputError(
@@ -117,8 +117,8 @@ def to_be_replaced(directory: Path, study: Study) -> str | None:
         created = str(earlier["created"])[:16].replace("T", " ")
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return None
-    same = path.samefile(study.path) if path.exists() and study.path.exists() else title == study.title
-    if not same:
+    is_same = path.samefile(study.path) if path.exists() and study.path.exists() else title == study.title
+    if not is_same:
         raise InputError(
             f'{directory} holds the results of another study, {legible(str(path))}, "{legible(title)}", of {legible(created)}; '
             "choose another folder with --out, or replace them with --fresh"
@@ -153,28 +153,28 @@ def finish(
     with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = open_results(directory)
-    histories, without = _keep_histories(saved, study, runs, listener, records)
+    histories, refusal = _keep_histories(saved, study, runs, listener, records)
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = verdicts(saved) if study.checks else []
         checks = write_verdicts(directory, judged) if study.checks else None
-    beside = [
+    tables = [
         *_beside_peaks(saved, study, motions),
         *_shocks(saved, study, motions, runs, listener),
         *_half_cycles(saved, study, runs, listener),
     ]
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
-    written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
-    return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), without)
+    written = (directory / PEAKS, directory / INFO, *tables, histories, checks, report)
+    return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), refusal)
 
 
 def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
     """Write the tables that the study asks for beside the peaks, and take away those of another time."""
     written = []
-    for name, wanted, rows in (
+    for name, requested, rows in (
         (INTENSITY, study.output.intensity, intensities), (ESTIMATE, study.output.estimate, estimates)
     ):  # fmt: skip
-        if wanted:
+        if requested:
             written.append(write(saved.directory / name, rows(saved.peaks, study, motions.motions)))
         else:
             (saved.directory / name).unlink(missing_ok=True)
@@ -207,7 +207,7 @@ def _keep_histories(
     saved: Saved, study: Study, runs: Plan, listener: Listener, records: Collection[str]
 ) -> tuple[Path | None, InputError | None]:
     """Write the histories that the study asks for: their file, and why some are not in it."""
-    chosen = kept(study, runs, saved.peaks.iloc[: len(runs)], records)
+    chosen = to_keep(study, runs, saved.peaks.iloc[: len(runs)], records)
     if chosen.left_out:
         number = len(chosen.numbers)
         listener.say(

@@ -22,7 +22,7 @@ LEAST_GROUP, MOST_GROUP = 32, 1024
 """Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
 
 STEPS_OF_A_GROUP = 2e7
-"""About a second of work: how long an interrupt or the progress may have to wait, and what a crash can lose."""
+"""About a second of work: the longest wait of an interrupt or the progress, and the most that a crash can lose."""
 
 NOTHING_MORE = Output(both_laws=False)
 
@@ -48,7 +48,7 @@ def groups(runs: Sequence[PlannedRun], numerics: Numerics, jobs: int, most: int 
 def outcomes_of(
     runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
 ) -> list[Outcome | None]:
-    """Simulate a group of runs, with what ``output`` asks for; ``None`` for those that ``stop`` has stopped."""
+    """Simulate a group of runs with the results of ``output``; ``None`` for those that ``stop`` has stopped."""
     stop = stop or Stop()
     simulated = [planned.run for planned in runs]
     outcomes = _run_all(simulated, numerics, stop)
@@ -78,11 +78,11 @@ def _with_other_law(
         if run.base.ratchets and outcome is not None and outcome.was_run
     }
     others = _run_all(list(creeping.values()), numerics, stop)
-    for i, other in zip(creeping, others, strict=True):
+    for i, by_other in zip(creeping, others, strict=True):
         outcome = outcomes[i]
         assert outcome is not None
-        failed = f"by the other spring law: {other.reason}" if other and other.status == "failed" else ""
-        outcomes[i] = other and outcome.noted(failed, settlement_other_law=other.settlement)
+        failed = f"by the other spring law: {by_other.reason}" if by_other and by_other.status == "failed" else ""
+        outcomes[i] = by_other and outcome.noted(failed, settlement_other_law=by_other.settlement)
     return outcomes
 
 

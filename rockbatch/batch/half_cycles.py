@@ -1,4 +1,4 @@
-"""The table of half cycles, for studies that ask for it: each run is made once more, and read."""
+"""The table of half cycles, on request: each run is repeated, and its history read."""
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -44,7 +44,7 @@ class Written(NamedTuple):
 
 
 class Journal:
-    """Rows of a table that is under way, in a file beside it, each written down for good once its run is finished.
+    """Rows of an unfinished table, in a file beside it, each saved once its run is finished.
 
     The file survives whatever ends the process. Its first line says what is run and names the columns; then comes a
     line for each finished run, in whatever order they finish: its number, and its cells as they will be in the table.
@@ -91,7 +91,7 @@ class Journal:
         self._seed = zlib.crc32(self._first)
         self._forget()
         self._written = False
-        self._remedy = "undo that to go on, choose another folder with --out, or start over with --fresh"
+        self._remedy = "undo that to continue, choose another folder with --out, or start over with --fresh"
 
     def _forget(self) -> None:
         self._starts, self._sizes = array("q"), array("q")  # of each row [bytes], by the number of its run
@@ -108,8 +108,8 @@ class Journal:
             self._file = opened(self.path, "r+b")
             entered.callback(lambda: self._file.close())
             if damaged := self._recover():
-                kept = f"the {self._count} runs that are whole count, the others are carried out again"
-                self._tell(f"{self.path}: {_damaged(damaged)}; {kept}")
+                remark = f"the {self._count} undamaged runs are kept, the others are carried out again"
+                self._tell(f"{self.path}: {_damaged(damaged)}; {remark}")
                 self._write_whole_rows_only()
             self._file.truncate(self._end)
             if self._end == 0:
@@ -151,29 +151,29 @@ class Journal:
         return ((number, self[number]) for number in self)
 
     def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
-        """Write down the rows of finished runs by their numbers, once for good: on return the disk has them."""
+        """Save the rows of finished runs by their numbers; they are on disk on return."""
         self.add_columns(list(rows), {name: [row.get(name) for row in rows.values()] for name in self.columns})
 
     def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
-        """Write down, as :meth:`add_all`, the columns of the rows of runs ``numbers``, each shape (n,), empty if missing."""
+        """Save, as :meth:`add_all`, the columns of the rows of runs ``numbers``, each shape (n,), empty if missing."""
         self._add(zip(numbers, self._lines(len(numbers), columns), strict=True))
 
     def add_from(self, path: Path) -> None:
-        """Take over what is in another journal of the same digest and columns, such as that of another machine.
+        """Add the rows of another journal of the same digest and columns, such as that of another machine.
 
         Raises ``InputError`` if it is of another digest, or if the same run has another row there.
         """
-        other = Journal(path, self.columns, self.digest, runs=self.runs)
-        other._remedy = "undo that, or have its share run again"
-        with opened(path) as other._file:
-            if damaged := other._recover():
-                self._tell(f"{path}: {_damaged(damaged)}; they are passed over")
-            for number in other:
-                if number in self and other._row(number) != self._row(number):
-                    raise InputError(f"{path}: run {number} has come to something else than elsewhere; leave one out")
-            missing = [number for number in other if number not in self]
+        source = Journal(path, self.columns, self.digest, runs=self.runs)
+        source._remedy = "undo that, or have its share run again"
+        with opened(path) as source._file:
+            if damaged := source._recover():
+                self._tell(f"{path}: {_damaged(damaged)}; they are skipped")
+            for number in source:
+                if number in self and source._row(number) != self._row(number):
+                    raise InputError(f"{path}: run {number} differs from the same run in another folder; leave one out")
+            missing = [number for number in source if number not in self]
             for first in range(0, len(missing), ROWS_AT_ONCE):
-                self._add((number, other._row(number)) for number in missing[first : first + ROWS_AT_ONCE])
+                self._add((number, source._row(number)) for number in missing[first : first + ROWS_AT_ONCE])
 
     def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> Written:
         """Write the table, whole or not at all: finished runs by their numbers, then rows that belong to no run.
@@ -276,7 +276,7 @@ class Journal:
         return int(match[1]) if len(cells) == len(self.columns) + 1 else None
 
     def _write_whole_rows_only(self) -> None:
-        """Leave out what is damaged, so that it is reported once."""
+        """Drop damaged lines, so that they are reported once."""
         with replacing(self.path) as temporary, temporary.open("wb") as file:
             file.write(_sealed(self._first))
             file.writelines(_sealed(b"%d," % number + self._row(number)[:-1], self._seed) for number in self)
@@ -287,15 +287,15 @@ class Journal:
     def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
         """Report what has changed since a journal with another first line, unless it has no rows."""
         seed = zlib.crc32(first)
-        there = sum(_unsealed(line, seed) is not None for _, line in lines)
+        rows = sum(_unsealed(line, seed) is not None for _, line in lines)
         self._forget()
-        if not there:
+        if not rows:
             return
         head = first.decode(errors="replace").partition(",")[0]
         digests = dict(part.partition(":")[::2] for part in head.split())
-        others = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
+        changed = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
         raise InputError(
-            f"{self.path}: holds {there} finished runs, but since then something has changed ({', '.join(others)}); "
+            f"{self.path}: holds {rows} finished runs, but something has changed since ({', '.join(changed)}); "
             f"{self._remedy}"
         )
 
@@ -323,7 +323,7 @@ def _sealed(body: bytes, seed: int = 0) -> bytes:
 
 
 def _unsealed(line: bytes, seed: int = 0) -> bytes | None:
-    """Return what was sealed; None if the line is damaged."""
+    """Return the body of a line; None if the line is damaged."""
     folded = line[9:-1]
     return _unfolded(folded) if line[:9] == b"%08x " % zlib.crc32(folded, seed) else None
 

@@ -1,4 +1,4 @@
-"""The runs whose histories are kept beside the peaks: run once more, and written down."""
+"""Histories kept beside the peaks: their runs are repeated and recorded."""
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -48,7 +48,7 @@ def keep_histories(
     saved : Saved
         The results of all ``runs`` of ``study``.
     progress : function, optional
-        Called after each of :func:`kept`.
+        Called after each of :func:`to_keep`.
     records : collection of str, optional
         Records all of whose runs are kept, too.
 
@@ -63,7 +63,7 @@ def keep_histories(
         held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
-    chosen = kept(study, runs, table, records).numbers
+    chosen = to_keep(study, runs, table, records).numbers
     if not chosen:
         return None
     path = saved.directory / HISTORIES
@@ -91,7 +91,7 @@ class Kept:
     left_out: int = 0
 
 
-def kept(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
+def to_keep(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
     """Return the runs whose histories the study asks for, and all of ``records``; one that was refused has none.
 
     ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
@@ -123,9 +123,9 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     pier, base = run.case.pier, run.case.base
     columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
     columns += 2 * sum(len(places(pier, device)) for device in base.restraints)  # elongations and forces
-    if _has(row, LEDGER):
+    if _has_value(row, LEDGER):
         columns += len(TERMS)
-    if _has(row, FORCES):
+    if _has_value(row, FORCES):
         columns += len(FORCE_UNITS)
     events = row["impacts"] + row["separations"] + _reversals(pier, base) * row["t_end_s"]
     rows = row["t_end_s"] / run.motion.dt + 2.0 * events
@@ -139,8 +139,8 @@ def _reversals(pier: Pier, base: Base) -> float:
     return 2.0 * vertical_frequency(pier, base) / math.pi
 
 
-def _has(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
-    """Return whether the row has a number there: it was asked for, and the run is not very long."""
+def _has_value(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
+    """Return whether the row has a number there: it was requested, and the run is not very long."""
     value = row.get(column)
     return value is not None and value == value
 
@@ -169,6 +169,6 @@ def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
     outcome = replace(outcome, status=row["status"], reason=row["reason"])
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=_has(row, LEDGER), forces=_has(row, FORCES),
+        ledger=_has_value(row, LEDGER), forces=_has_value(row, FORCES),
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Messages and progress of a batch for whoever waits for it."""
+"""Messages and progress of a batch."""
 
 import sys
 import warnings
@@ -16,27 +16,27 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 PATIENCE_S = 1.5
-"""Time [s] after which a listener hears what is under way."""
+"""Time [s] after which a listener receives a message on what is running."""
 
 Advance = Callable[[int], object]
-"""Called with the number of things that are done since the last call."""
+"""Called with the number of items finished since the last call."""
 
 SHORT = 1.0
-"""Time [s] within which no bar appears, unless one was asked for."""
+"""Delay [s] before a bar appears, unless one was requested."""
 
 
 def silent(done: int) -> None:
-    """Do nothing about things that are done."""
+    """Ignore finished items."""
 
 
 class Listener:
-    """Receiver of the messages of a batch; this one keeps them to itself."""
+    """Receiver of the messages of a batch; this one ignores them."""
 
     def motions(self, motion_set: "MotionSet") -> None:
         """Receive the motions that were read, and the files that could not be used."""
 
     def say(self, text: str) -> None:
-        """Receive a sentence about what begins, or is there already."""
+        """Receive a sentence about what begins or already exists."""
 
     def progress(self, total: int) -> AbstractContextManager[Advance]:
         """Return a context for ``total`` things that begin, called with the number of those that are done."""
@@ -61,7 +61,7 @@ class Bars(Listener):
 
 
 class Calls(Listener):
-    """Listener that calls a function with the number of things that are done, and of all."""
+    """Listener that calls a function with the number of finished items, and of all."""
 
     def __init__(self, function: Callable[[int, int], object]) -> None:
         self.function = function
@@ -101,7 +101,7 @@ def listener_of(progress: Progress) -> Listener:
 
 @contextmanager
 def announced_if_slow(listener: Listener, words: str) -> "Iterator[None]":
-    """Tell ``listener`` what is under way, if it takes more than PATIENCE_S."""
+    """Send ``listener`` a message on what is running, if it takes more than PATIENCE_S."""
     timer = Timer(PATIENCE_S, listener.say, [words])
     timer.daemon = True
     with suppress(RuntimeError):  # of no more threads, those that carry out the runs tell

@@ -1,4 +1,4 @@
-"""Runs of a study, in the order of its table, each made when it is asked for."""
+"""Runs of a study, in the order of its table, each made on demand."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
@@ -17,7 +17,7 @@ from rockbatch.study import Case, Study
 class PlannedRun:
     """A row of the plan: a motion, already scaled and turned, in a case.
 
-    ``recorded`` is the motion before that, if it is at hand: a cluster is then sent each record once. ``mirror_of`` is the
+    ``recorded`` is the motion before that, if available: a cluster is then sent each record once. ``mirror_of`` is the
     polarity of the run whose mirror image this one is, if that is in the same table.
     """
 
@@ -30,11 +30,11 @@ class PlannedRun:
 
     @property
     def run(self) -> Run:
-        """Return what is simulated: the pier of the case on its base, under the motion."""
+        """Return the simulation: the pier of the case on its base, under the motion."""
         return Run(self.case.pier, self.case.base, self.motion)
 
     def ran(self, outcome: Outcome) -> Ran:
-        """Return the run with what it came to."""
+        """Return the run with its outcome."""
         return Ran(outcome, self.motion, self.polarity, self.scale, self.case, self.mirror_of)
 
 
@@ -46,7 +46,7 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
 
 
 class Runs(Sequence[PlannedRun]):
-    """Runs that are made when they are asked for, so that memory does not grow with their number."""
+    """Runs made on demand, so that memory does not grow with their number."""
 
     mirrored = False
     """True if some are mirror images of others."""

@@ -47,9 +47,9 @@ def run(
     study : path or Study
         A study file, or one that is loaded.
     out : path, optional
-        Folder for what ``rockbatch run`` leaves: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
-        for, and ``report.html``. What an earlier process has finished there counts; one that was interrupted is gone on
-        with. Without it nothing is kept on disk, and there are no histories.
+        Folder for the results of ``rockbatch run``: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
+        for, and ``report.html``. Runs that an earlier process finished there are kept; an interrupted one is
+        continued. Without it nothing is kept on disk, and there are no histories.
     motions : path, MotionSet, Motion or list of Motion, optional
         What replaces all motions of the study: a file or folder, or motions.
     jobs : int or Engine, optional
@@ -86,16 +86,16 @@ def run(
            t     theta
     407  4.0  0.019396
     """
-    asked, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     if out is None:
-        return _in_memory(asked, engine, listener)
-    command = ["run", str(asked.path) if asked.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
+        return _in_memory(loaded, engine, listener)
+    command = ["run", str(loaded.path) if loaded.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
     if motions is not None:
         command += [
             "--motions",
             os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}",
         ]
-    finished = run_into(Path(out), asked, engine, listener, command=command, fresh=fresh)
+    finished = run_into(Path(out), loaded, engine, listener, command=command, fresh=fresh)
     assert finished is not None  # no share is asked for
     if finished.without:
         raise finished.without
@@ -148,23 +148,23 @@ def run_into(
     listener.motions(motions)
     _check_records(records, motions)
     runs = Plan(study, motions)
-    wanted = _share(len(runs), *share) if share else range(len(runs))
+    requested = _share(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
     with Journal(directory / PART, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
-            what = f"{described(study, motions)} are finished in {directory}"
-            listener.say(f"{what}; nothing is left to run (--fresh runs them again)")
+            state = f"{described(study, motions)} are finished in {directory}"
+            listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
             return finish(directory, study, motions, runs, info | cost, listener, records)
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:
             listener.say(f"{replaced}, will be replaced")
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
-            every = count(len(to_simulate(runs, wanted)), "run")
+            every = count(len(to_simulate(runs, requested)), "run")
             listener.say(f"{described(study, motions)} on {engine}{of_share.format(every)}")
-            cost = _carry_out_left(study, runs, wanted, journal, engine, listener)
+            cost = _carry_out_left(study, runs, requested, journal, engine, listener)
         if share:
             listener.say(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
@@ -179,8 +179,8 @@ def merge(
 ) -> FinishedBatch:
     """Join the journals in the folders ``shares``, and write the results into ``directory``.
 
-    ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong with the shares,
-    or missing; what could be joined stays, so that it can be carried out there.
+    ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong or missing in the
+    shares; joined rows stay, so that the rest can be carried out there.
     """
     motions = ground_motions(study)
     listener.motions(motions)
@@ -195,10 +195,10 @@ def merge(
                 problems.append(f"{share / PART}: not there; give folders that `rockbatch run --shard` has written")
             except InputError as error:
                 problems += error.problems
-        left = [number for number in range(len(runs)) if number not in journal]
-        if left and not problems:
+        missing = [number for number in range(len(runs)) if number not in journal]
+        if missing and not problems:
             problems.append(
-                f"{len(left)} of {len(runs)} rows are in none of these folders: {_ranges(left)}; finish their shares "
+                f"{len(missing)} of {len(runs)} rows are missing in these folders: {_ranges(missing)}; finish their shares "
                 f"and merge again, or carry them out here: rockbatch run {study.path} --out {directory}"
             )
         if problems:
@@ -220,7 +220,7 @@ def _ranges(numbers: Sequence[int], most: int = 5) -> str:
 
 
 def _check_records(records: Collection[str], motions: MotionSet) -> None:
-    """Refuse records that there are not."""
+    """Refuse names of records that do not exist."""
     names = [motion.name for motion in motions.motions]
     wrong = []
     for name in (name for name in records if name not in names):
@@ -240,25 +240,25 @@ def _share(runs: int, share: int, shares: int) -> range:
 
 
 def _carry_out_left(
-    study: Study, runs: Plan, wanted: range, journal: Journal, engine: Engine, listener: Listener
+    study: Study, runs: Plan, requested: range, journal: Journal, engine: Engine, listener: Listener
 ) -> dict[str, Any]:
-    """Carry out those of the runs that are not in the journal; what run.json says of it."""
-    every, left = (len(to_simulate(runs, wanted, there)) for there in ((), journal))
-    kept = every - left
-    if kept:
-        listener.say(f"{kept} of them are finished already, {left} are left (--fresh starts over)")
+    """Carry out the runs that are missing in the journal; return their entry in run.json."""
+    every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
+    n_finished = every - remaining
+    if n_finished:
+        listener.say(f"{n_finished} of them are finished already, {remaining} are left (--fresh starts over)")
     make_ready(study, listener)
     try:
-        with listener.progress(left) as progress:
-            carry_out(runs, study.numerics, journal, engine, study.output, among=wanted, progress=progress)
+        with listener.progress(remaining) as progress:
+            carry_out(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
     except KeyboardInterrupt:
-        done = every - len(to_simulate(runs, wanted, journal))
+        n_done = every - len(to_simulate(runs, requested, journal))
         listener.say(
-            f"interrupted: {done} of {count(every, 'run')} are finished and kept in {journal.path}; "
-            "the same command goes on from there"
+            f"interrupted: {n_done} of {count(every, 'run')} are finished and kept in {journal.path}; "
+            "the same command continues from there"
         )
         raise
-    return {"jobs": engine.jobs, "kept": kept}
+    return {"jobs": engine.jobs, "kept": n_finished}
 
 
 def described(study: Study, motions: MotionSet) -> str:

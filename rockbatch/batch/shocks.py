@@ -1,4 +1,4 @@
-"""The table of shocks in the sequences of a study: each sequence is run once more, and read shock by shock."""
+"""The table of shocks in the sequences of a study: each sequence is run again, and read shock by shock."""
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -37,7 +37,7 @@ def rows_by_shock(
                 outcomes = by_shock(run, outcome, quiet_s, error=error)
             except InputError:  # too long to be held in memory
                 outcomes = [ShockOutcome("not read")] * len(motion.shocks)
-        return [names | each for each in shock_rows(motion, run.pier, outcomes)]
+        return [names | shock_row for shock_row in shock_rows(motion, run.pier, outcomes)]
 
     pool = ThreadPoolExecutor(max(1, jobs))
     try:

@@ -122,7 +122,7 @@ def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:
-    """Raise ``InputError`` with all that is impossible or implausible about a run and its settings."""
+    """Raise ``InputError`` with everything impossible or implausible in a run and its settings."""
     pier, base, motion, substeps = run.pier, run.base, run.motion, numerics.substeps
     tolerance = numerics.tolerance or 0.0
     wrong = problems(pier, base) or unlikely_devices(pier, base.restraints)

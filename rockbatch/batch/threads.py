@@ -40,8 +40,8 @@ class Engine(Protocol):
     ) -> Generator[Outcomes, None, None]:
         """Index and outcome of every run, group by group, as they finish.
 
-        What a run comes to depends neither on the engine nor on the others of its group, only the order does. After
-        Ctrl-C comes what is finished by then, and ``KeyboardInterrupt``.
+        Results depend neither on the engine nor on the others of a group, only their order does. After
+        Ctrl-C come the results finished by then, and ``KeyboardInterrupt``.
         """
 
 
@@ -76,7 +76,7 @@ class Threads:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Nothing stays: threads live as long as a batch."""
+        """Release nothing: threads live as long as a batch."""
 
     def outcomes(
         self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE

@@ -1,4 +1,4 @@
-"""The answer to a set of checks, in the order in which a designer asks: cases that pass, fail and by what, or are open."""
+"""The answer to a set of checks, in a designer's order: cases that pass, that fail and why, and that are not decided."""
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -13,17 +13,17 @@ from rockbatch.grouping import grouped
 
 MOST_NAMES = 6
 MOST_CHECKS = 3
-"""Checks that fail, or are not decided, of which the answer has a line each."""
+"""Greatest number of checks that fail or are not decided with a line each in the answer."""
 
 Words = Callable[[Verdict], str]
 
 
 class Line(NamedTuple):
-    """One statement of the answer: its sign, what it says, of which cases, and why."""
+    """One statement of the answer: its verdict, its text, its cases and the details."""
 
     verdict: str
-    says: str
-    which: str
+    text: str
+    cases: str
     details: tuple[str, ...]
 
 
@@ -39,9 +39,9 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
         Of a verdict: the name of its case, and of the record that governs it.
     """
     cases = grouped(verdicts, case_of)
-    ways = {name: {verdict.verdict for verdict in own} for name, own in cases.items()}
-    failing = [name for name, own in ways.items() if FAIL in own]
-    open_ = [name for name, own in ways.items() if NOT_DECIDED in own and FAIL not in own]
+    kinds = {name: {verdict.verdict for verdict in of_case} for name, of_case in cases.items()}
+    failing = [name for name, of_case in kinds.items() if FAIL in of_case]
+    open_ = [name for name, of_case in kinds.items() if NOT_DECIDED in of_case and FAIL not in of_case]
     meeting = [name for name in cases if name not in failing and name not in open_]
     free = {name: _unlimited(cases[name], worst) for name in meeting}
     every = _Cases(cases, case_of, record_of)
@@ -55,14 +55,14 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
 
 
 def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:
-    own = _key(verdicts[0].case, verdicts[0].columns)
+    key = _key(verdicts[0].case, verdicts[0].columns)
     return unlimited(
-        [response for response in worst if _key(response.case["case"], response.case["columns"]) == own], verdicts
+        [response for response in worst if _key(response.case["case"], response.case["columns"]) == key], verdicts
     )
 
 
 def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
-    """Return what distinguishes cases, in the ten digits that the files have."""
+    """Return the key that distinguishes cases, with the ten digits of the files."""
     values = ((name, value if isinstance(value, str) else f"{value:.9g}") for name, value in columns.items())
     return str(case), *sorted(values)
 
@@ -79,56 +79,56 @@ class _Cases:
         """Return the line on cases that pass every check."""
         if not names:
             return None
-        ratios = [own for own in self._of(names) if math.isfinite(own.ratio) and not own.is_ban]
+        ratios = [judged for judged in self._of(names) if math.isfinite(judged.ratio) and not judged.is_ban]
         closest = max(ratios, key=lambda verdict: verdict.ratio, default=None)
         details = self._exempt(names)
         if closest is not None:
-            where = f", in {self.case_of(closest)}" if len(names) > 1 else ""
-            details = (f"Closest to its limit: {closest.check}, {wording.against(closest)}{where}.", *details)
+            place = f", in {self.case_of(closest)}" if len(names) > 1 else ""
+            details = (f"Closest to its limit: {closest.check}, {wording.against(closest)}{place}.", *details)
         if len(names) == len(self.verdicts):
             return Line(PASS, f"Every check passes in {self._among(names)}", "", details)
         return Line(PASS, f"{self._among(names)} pass{'es' * (len(names) == 1)} every check", _listed(names), details)
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:
-        """Return the line on cases that fail nothing because nothing limits what governs them."""
-        worst = worst_of_all(response for own in free.values() for response in own)
+        """Return the line on cases that pass only because their governing responses have no limit."""
+        worst = worst_of_all(response for responses in free.values() for response in responses)
         if not worst:
             return None
         names = ", ".join(RESPONSES[name].words for name in worst)
-        says = f"{self._among(free)} meet{'s' * (len(free) == 1)} the limits, but none is set on {names}"
+        text = f"{self._among(free)} meet{'s' * (len(free) == 1)} the limits, but none is set on {names}"
         values = ", ".join(f"{RESPONSES[name].words} {in_words(response)}" for name, response in worst.items())
-        return Line(NOT_DECIDED, _capital(says), _listed(list(free)), (f"Without a limit, at most: {values}.",))
+        return Line(NOT_DECIDED, _capital(text), _listed(list(free)), (f"Without a limit, at most: {values}.",))
 
     def failing(self, names: Sequence[str]) -> Line | None:
         """Return the line on checks that fail, each with its worst demand, and the case nearest to passing."""
         if not names:
             return None
         checks = grouped(self._of(names, FAIL), lambda verdict: verdict.check)
-        worst = sorted((max(same, key=_excess) for same in checks.values()), key=_excess, reverse=True)
+        worst = sorted((max(group, key=_excess) for group in checks.values()), key=_excess, reverse=True)
         details = [self._failure(verdict, len(checks[verdict.check]) - 1) for verdict in worst[:MOST_CHECKS]]
-        if rest := [verdict.check for verdict in worst[MOST_CHECKS:]]:
-            details.append(f"{', '.join(rest[:MOST_NAMES])}: fail, too; see every check.")
+        if others := [verdict.check for verdict in worst[MOST_CHECKS:]]:
+            details.append(f"{', '.join(others[:MOST_NAMES])}: fail, too; see every check.")
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
         if len(names) > 1 and math.isfinite(_excess(near)):
             case = self.case_of(near)
             details.append(f"Nearest to passing: {case}, {near.check} at {wording.ratio(near)} × its limit.")
             details += self._exempt([case])
-        says = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
-        return Line(FAIL, _capital(says), _listed(names), tuple(details))
+        text = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
+        return Line(FAIL, _capital(text), _listed(names), tuple(details))
 
     def _failure(self, verdict: Verdict, more: int) -> str:
         """Return a check with its demand, its limit and the record that governs it; ``more`` cases fail it, too."""
-        others = f" and {more} more case{'s' * (more > 1)}" if more else ""
-        where = f"in {self.case_of(verdict)}{others}" if len(self.verdicts) > 1 else ""
+        other_cases = f" and {more} more case{'s' * (more > 1)}" if more else ""
+        place = f"in {self.case_of(verdict)}{other_cases}" if len(self.verdicts) > 1 else ""
         record = self.record_of(verdict) if verdict.record else ""
         if verdict.is_ban:
             verb = DEMANDS[verdict.demand].verb if verdict.demand in DEMANDS else "is not so"
-            return " ".join(filter(None, (f"{verdict.check}: {record or 'some record'} {verb}", where))) + "."
+            return " ".join(filter(None, (f"{verdict.check}: {record or 'some record'} {verb}", place))) + "."
         if (
             record and math.isfinite(verdict.governing) and verdict.governing != verdict.value
         ):  # a mean, say, of several
             record = f"at most {wording.number(verdict.governing)} {verdict.unit}".rstrip() + f" in {record}"
-        return ", ".join(filter(None, (f"{verdict.check}: {wording.against(verdict)}", record, where))) + "."
+        return ", ".join(filter(None, (f"{verdict.check}: {wording.against(verdict)}", record, place))) + "."
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
         """Return the line on cases that are not decided, and why; in cases that fail anyway it does not matter."""
@@ -146,8 +146,8 @@ class _Cases:
     def _doubt(self, verdict: Verdict) -> str:
         case = f" in {self.case_of(verdict)}" if len(self.verdicts) > 1 else ""
         limit = "" if verdict.is_ban else f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip()
-        by = f"left open by {self.record_of(verdict)}" if verdict.record else ""
-        return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, by))) + "."
+        cause = f"left open by {self.record_of(verdict)}" if verdict.record else ""
+        return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
 
     def _exempt(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return which checks do not apply to which cases, a sentence for each set of checks."""
@@ -158,19 +158,19 @@ class _Cases:
             if checks
         )
 
-    def _of(self, names: Sequence[str], way: str = "") -> list[Verdict]:
+    def _of(self, names: Sequence[str], kind: str = "") -> list[Verdict]:
         """Return the verdicts of these cases, all or those of one kind."""
-        return [verdict for name in names for verdict in self.verdicts[name] if not way or verdict.verdict == way]
+        return [verdict for name in names for verdict in self.verdicts[name] if not kind or verdict.verdict == kind]
 
-    def _among(self, some: Collection[str]) -> str:
+    def _among(self, cases: Collection[str]) -> str:
         total = len(self.verdicts)
-        if len(some) == total:
+        if len(cases) == total:
             return {1: "the only case", 2: "both cases"}.get(total, f"all {total} cases")
-        return f"{len(some)} of {total} cases"
+        return f"{len(cases)} of {total} cases"
 
 
 def _excess(verdict: Verdict) -> float:
-    """Return the ratio by which a check exceeds its limit; infinite for events that may not be."""
+    """Return the ratio by which a check exceeds its limit; infinite for events that must not occur."""
     return math.inf if verdict.is_ban or math.isnan(verdict.ratio) else verdict.ratio
 
 

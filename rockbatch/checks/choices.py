@@ -1,4 +1,4 @@
-"""Rules held against the study that they are about: choices that it does not offer, and limits that decide nothing."""
+"""Rules checked against their study: choices that it does not offer, and limits that decide nothing."""
 
 import fnmatch
 import math
@@ -28,14 +28,14 @@ def unmet(
     other_law: bool,
     output: Collection[str],
 ) -> Iterator[str]:
-    """Return a message for each thing that the rule chooses and the study lacks, which starts with the name of its key.
+    """Return a message for each choice of the rule that the study lacks; each starts with the name of its key.
 
     ``output`` are the keys of [output] whose columns are there.
     """
     for pattern in rule.case:
         if not any(_fits(name, pattern) for name in cases):
-            meant = closest(pattern, cases)
-            instead = f"did you mean {shown(meant)}?" if meant else f"there is {', '.join(map(shown, cases))}"
+            nearest = closest(pattern, cases)
+            instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {', '.join(map(shown, cases))}"
             yield f"case = {shown(pattern)}: there is no such case; {instead}"
     for scale in rule.scale:
         if not any(math.isclose(scale, factor) for factor in scales):
@@ -74,8 +74,8 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
         )
     if demand.most is None:
         return
-    mine = [case for case in cases if demand.on(case) and is_about(rule, str(case["case"]))]
-    most = max((demand.most.of(case) for case in mine), default=math.inf)
+    mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]))]
+    most = max((demand.most.value(case) for case in mine), default=math.inf)
     if value > most:
         yield (
             f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.most.beyond}, so the limit decides nothing; check the "

@@ -1,4 +1,4 @@
-"""Demands: what a pier and its foundation have to bear, from the rows of peaks.csv and what run.json says about the case.
+"""Demands on a pier and its foundation, from the rows of peaks.csv and the case in run.json.
 
 Rotations are small: the heel of a pier that tilts by θ stands 2 b θ above its toe, and its top moves by its height times θ.
 """
@@ -36,9 +36,9 @@ Lever = Callable[[Case], float]
 
 
 class Most(NamedTuple):
-    """A value of the case, such as that at θ = α, and what one beyond it would be."""
+    """A value of the case, such as that at θ = α, and words for one beyond it."""
 
-    of: Lever
+    value: Lever
     beyond: str
 
 
@@ -50,7 +50,7 @@ class Demand:
     ----------
     words : str
         Its meaning, with its unit.
-    of : function
+    evaluate : function
         Its values from the rows of one case, n of them, and the case.
     bases : tuple of str
         Bases to which it applies.
@@ -75,7 +75,7 @@ class Demand:
     """
 
     words: str
-    of: Of
+    evaluate: Of
     bases: tuple[str, ...] = ("rigid", "elastic", "yielding")
     event: bool = False
     of_the_case: bool = False
@@ -87,7 +87,7 @@ class Demand:
     device: str = ""
     held: bool = False
 
-    def on(self, case: Case) -> bool:
+    def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
         return case["base"] in self.bases or (self.held and _holds_a_tilt(case))
 
@@ -110,7 +110,7 @@ FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
 
 ROCKING = "theta_rocking_over_alpha"
-"""Likewise with rocking."""
+"""A column that every run with rocking has."""
 
 BROUGHT = {"forces": FORCES, "rocking": ROCKING}
 """By keys of [output], a column that each brings."""
@@ -165,17 +165,17 @@ def _largest(*columns: str, times: Lever = _ONE) -> Of:
 def _rotation(words: str, name: str, lever: Lever, **more: Any) -> Demand:
     """Return |θ|/α times ``lever``, from the columns NAME_over_alpha and NAME_error."""
 
-    def of(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
         value, error = np.abs(_numbers(runs, f"{name}_over_alpha")), _numbers(runs, f"{name}_error")
         return Estimated(lever(case) * value, lever(case) * error)
 
-    return Demand(words, of, most=Most(lever, _OVERTURNS), **more)
+    return Demand(words, values, most=Most(lever, _OVERTURNS), **more)
 
 
 def _tilt(words: str, lever: Lever) -> Demand:
     """Return the tilt of the base times ``lever``; its error is that of the residual rotation, to which it is proportional."""
 
-    def of(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
         pier = case["pier"]
         ratio = tilt_over_residual(
             pier["gravity"], pier["height_m"], pier["half_width_m"], case["parameters"]["omega_v"]
@@ -183,7 +183,7 @@ def _tilt(words: str, lever: Lever) -> Demand:
         error = _alpha(case) * float(ratio) * _numbers(runs, "theta_res_error")
         return Estimated(lever(case) * np.abs(_numbers(runs, "base_tilt_rad")), lever(case) * error)
 
-    return Demand(words, of, _SPRINGS, most=Most(lambda case: lever(case) * _alpha(case), _OVERTURNS))
+    return Demand(words, values, _SPRINGS, most=Most(lambda case: lever(case) * _alpha(case), _OVERTURNS))
 
 
 def _toe(settlement: str) -> Callable[["pd.DataFrame", Case], Values]:
@@ -194,12 +194,12 @@ def _toe(settlement: str) -> Callable[["pd.DataFrame", Case], Values]:
 def _in_flight(name: str) -> Of:
     """Return a column of flights; 0 for a run that went through and has none."""
 
-    def of(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
         value, went_through = _numbers(runs, name), runs["status"].isin(["ok", "overturned"])
         none = np.isnan(value) & (went_through & runs["flight_s"].isna()).to_numpy()
         return _without_error(np.where(none, 0.0, value))
 
-    return of
+    return values
 
 
 def _event(words: str, happened: Callable[["pd.DataFrame"], "pd.Series[bool]"], verb: str) -> Demand:
@@ -209,12 +209,12 @@ def _event(words: str, happened: Callable[["pd.DataFrame"], "pd.Series[bool]"], 
 
 
 def _parameter(words: str, name: str, bases: tuple[str, ...], most: Most | None = None) -> Demand:
-    """Return a parameter of the case; NaN for one that it has not, as a force if no mass is known."""
+    """Return a parameter of the case; NaN if it is missing, as a force is if no mass is known."""
 
-    def of(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
         return _without_error(np.array([float(case["parameters"].get(name, np.nan))]))
 
-    return Demand(words, of, bases, of_the_case=True, most=most)
+    return Demand(words, values, bases, of_the_case=True, most=most)
 
 
 def _forces(words: str, *columns: str, times: Lever = _ONE, **more: Any) -> Demand:
@@ -223,19 +223,19 @@ def _forces(words: str, *columns: str, times: Lever = _ONE, **more: Any) -> Dema
     0 for a run with forces that has none of this, such as no impact; unknown if an earlier version wrote no such column.
     """
 
-    def of(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
         value, _ = _largest(*columns)(runs, case)
         if set(columns) <= set(runs):
             value = times(case) * np.where(np.isnan(value) & ~np.isnan(_numbers(runs, FORCES)), 0.0, value)
         return Estimated(value, value * _numbers(runs, "forces_error"))
 
-    return Demand(words, of, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s", "_kNm")), **more)
+    return Demand(words, values, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s", "_kNm")), **more)
 
 
 def _in_kilonewtons(device: str) -> Demand:
     """Return the largest force of a device in kN, from that over the weight: earlier results have no other."""
-    of = _largest(f"{device}_force_over_weight", times=_weight)
-    return Demand(f"greatest force of a {device.replace('_', ' ')} [kN]", of, weighed=True)
+    over_weight = _largest(f"{device}_force_over_weight", times=_weight)
+    return Demand(f"greatest force of a {device.replace('_', ' ')} [kN]", over_weight, weighed=True)
 
 
 def has_device(case: Case, device: str) -> bool:
@@ -328,7 +328,7 @@ _OF_DEVICES: dict[str, str | Demand] = {
     "deck_spring_blows": "how often gaps beside the deck close",
     "deck_spring_energy_J_kg": "energy that all deck springs take, over the pier's mass [J/kg]",
 }
-"""Demands on devices, likewise."""
+"""Demands that need devices: words alone if the column has the demand's name."""
 
 
 def _with_device(name: str, demand: str | Demand) -> Demand:
@@ -394,7 +394,7 @@ DEMANDS = {
 
 
 def listed() -> dict[str, list[str]]:
-    """Return the names of all demands by that on which they depend, in words: the list in the example of checks."""
+    """Return the names of all demands, grouped by what they depend on: the list in the example of checks."""
 
     def group(name: str) -> str:
         demand = DEMANDS[name]

@@ -1,4 +1,4 @@
-"""Rules held against results: pass, fail or not decided."""
+"""Evaluation of rules on results: pass, fail or not decided."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -34,7 +34,7 @@ from rockbatch.toml.kinds import shown
 MOST_NAMES = 5
 
 
-NOT_WEIGHED = "the study does not say what the pier weighs"
+NOT_WEIGHED = "the study does not state the pier's mass"
 
 
 def judge(
@@ -44,7 +44,7 @@ def judge(
     records: Mapping[str, str] | None = None,
     count: str = "station",
 ) -> list[Verdict]:
-    """Hold every rule against every case at every scale.
+    """Evaluate every rule for every case at every scale.
 
     Parameters
     ----------
@@ -70,11 +70,11 @@ def judge(
         raise InputError("there is no run to check")
     stations = dict(records or _stations(runs))
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
-    there: dict[str, Any] = {"scales": scales, "polarities": polarities}
-    there["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
-    there["output"] = [key for key, column in BROUGHT.items() if column in runs]
-    there["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
-    wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **there)]
+    available: dict[str, Any] = {"scales": scales, "polarities": polarities}
+    available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
+    available["output"] = [key for key, column in BROUGHT.items() if column in runs]
+    available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
+    wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
@@ -93,8 +93,8 @@ def judge(
 
 def _stations(runs: "pd.DataFrame") -> dict[str, str]:
     """Return the station of every record in a table; empty if it does not say."""
-    known = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
-    return dict(zip(runs["record"], known, strict=True))
+    stations = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
+    return dict(zip(runs["record"], stations, strict=True))
 
 
 def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count: str) -> Verdict:
@@ -117,7 +117,7 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         note=f"a {case['base']} base has no {rule.demand}",
         unit="" if rule.statistic == "count" else demand.unit,
     )
-    if not demand.on(case):
+    if not demand.applies_to(case):
         return none
     if demand.device and not has_device(case, demand.device):
         return replace(none, note=f"the pier has no {demand.device}")
@@ -125,7 +125,7 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         return replace(none, note=NOT_WEIGHED)
     if not demand.of_the_case:
         return _of_suite(rule, suite, case, none)
-    value = float(demand.of(suite, case).value[0])
+    value = float(demand.evaluate(suite, case).value[0])
     if math.isnan(value):
         return replace(none, note=NOT_WEIGHED)
     verdict, note = _decide(rule, value, value)
@@ -134,34 +134,34 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
 
 def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any]:
     """Return a value and its bounds, with its ratio and margin to the limit."""
-    over, under, margin = value, rule.limit, rule.limit - value
+    numerator, denominator, margin = value, rule.limit, rule.limit - value
     if rule.sense == "at least":
-        over, under, margin = rule.limit, value, value - rule.limit
+        numerator, denominator, margin = rule.limit, value, value - rule.limit
     if math.isnan(value):
         ratio = margin = math.nan
     else:
-        ratio = over / under if under else 0.0 if over == 0 else math.inf
+        ratio = numerator / denominator if denominator else 0.0 if numerator == 0 else math.inf
     return {"value": value, "low": low, "high": high, "ratio": ratio, "margin": margin}
 
 
 def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> Verdict:
-    """Return the verdict on a statistic of a suite; ``none`` has what is known of it before."""
-    runs, kept = of_runs(rule, suite, case)
+    """Return the verdict on a statistic of a suite; ``none`` is the verdict without its numbers."""
+    runs, counting = of_runs(rule, suite, case)
     counted_as, unknown = counts_as(suite, none.count)
-    bounds = by_record(runs, kept, counted_as)
+    bounds = by_record(runs, counting, counted_as)
     n = len(bounds.value)
     value, low, high = (_statistic(rule, values) for values in (bounds.value, bounds.low, bounds.high))
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
     count = "component" if unknown else none.count
-    verdict, why = _decide(rule, low, high, count, n)
+    verdict, reason = _decide(rule, low, high, count, n)
     remark = STATISTICS[rule.statistic or "max"].remark
-    deciding = governing(runs, kept, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
+    deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
-        why,
+        reason,
         remark(bounds.high) if remark and n else "",
         unknown,
-        "" if none.count == "component" else _directions(lacking(kept, counted_as)),
+        "" if none.count == "component" else _directions(lacking(counting, counted_as)),
         _laws(rule, suite, case, deciding),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
     ]
@@ -182,14 +182,14 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
 
 def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -> str:
     """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
-    other = by_other_law(rule, suite, case)
-    if other is None:
+    by_other = by_other_law(rule, suite, case)
+    if by_other is None:
         return ""
     remark = "the worse of two spring laws counts"
-    if deciding is not None and np.isfinite(other[deciding]):
-        own = float(DEMANDS[rule.demand].of(suite, case).value[deciding])
-        remark += f": {own:.4g} by that of the case, {other[deciding]:.4g} by the other"
-    missing = int((np.isnan(other) & (suite["status"] == "ok").to_numpy()).sum())
+    if deciding is not None and np.isfinite(by_other[deciding]):
+        of_case = float(DEMANDS[rule.demand].evaluate(suite, case).value[deciding])
+        remark += f": {of_case:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+    missing = int((np.isnan(by_other) & (suite["status"] == "ok").to_numpy()).sum())
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
@@ -197,7 +197,7 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
     """Return the remark on records whose worst direction may be one that does not count."""
     if not records:
         return ""
-    names = [f"{name} ({some} of {all_})" for name, (some, all_) in records.items()]
+    names = [f"{name} ({used} of {total})" for name, (used, total) in records.items()]
     more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
     return f"not every direction counts, and the worst may be another: {', '.join(names[:MOST_NAMES])}{more}"
 
@@ -206,7 +206,7 @@ def _statistic(rule: Rule, values: Values) -> float:
     if len(values) == 0:
         return math.nan
     statistic = STATISTICS[rule.statistic or "max"]
-    return float((values > (rule.above or 0.0)).sum()) if statistic.of is None else statistic.of(values)
+    return float((values > (rule.above or 0.0)).sum()) if statistic.evaluate is None else statistic.evaluate(values)
 
 
 def _decide(rule: Rule, low: float, high: float, count: str = "", records: int | None = None) -> tuple[str, str]:
@@ -225,12 +225,12 @@ def _decide(rule: Rule, low: float, high: float, count: str = "", records: int |
 
 
 def _too_few(rule: Rule, count: str, records: int) -> str:
-    """Return the remark that too few records count, and who asks for more; empty if there are enough."""
+    """Return the remark that too few records count, and the code that asks for more; empty if there are enough."""
     statistic = STATISTICS[rule.statistic or "max"]
-    least, who = statistic.least, statistic.code
+    least, authority = statistic.least, statistic.code
     if rule.least is not None and rule.least > least:
-        least, who = rule.least, "the check"
+        least, authority = rule.least, "the check"
     if records >= least:
         return ""
     counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
-    return f"{counts}, {who} asks for {least}" if who else counts
+    return f"{counts}, {authority} asks for {least}" if authority else counts

@@ -25,7 +25,7 @@ TOP = Section((), "", {
 
 
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
-    """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are then not looked at.
+    """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are ignored.
 
     Raises ``InputError`` with every mistake and its line.
     """
@@ -58,7 +58,7 @@ def read_checks(
     ----------
     file : TomlFile
     unmet : function, optional
-        Says what a rule chooses and the study does not have, as :func:`rockbatch.checks.choices.unmet` does.
+        Returns the choices of a rule that the study lacks, as :func:`rockbatch.checks.choices.unmet` does.
     opened : function, optional
         Opens the file that [suite] names, or raises ``InputError``.
     """
@@ -67,20 +67,20 @@ def read_checks(
     count = read.get("count")
     names: set[str] = set()
     rules = _rules(file, unmet, count, names)
-    beside = None
+    rules_file = None
     if suite is not None and "checks" in read:
         try:
-            beside = opened(file.path.parent / read["checks"])
+            rules_file = opened(file.path.parent / read["checks"])
         except InputError as error:
             for problem in error.problems:
                 suite.complain(f"checks = {shown(read['checks'])}: {problem}", "checks")
         else:
-            Table(beside, (), "", beside.data).read(TOP, other=("check", "suite"))
-            its = beside.table("suite")
+            Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
+            its = rules_file.table("suite")
             its_count = None if its is None else its.read({"count": SUITE["count"]}).get("count")
-            rules += _rules(beside, unmet, its_count or count, names)
-            file.adopt(beside, (*suite.at, "checks"))
-    return Checks(tuple(rules), count or COUNTS[0], beside)
+            rules += _rules(rules_file, unmet, its_count or count, names)
+            file.adopt(rules_file, (*suite.key_path, "checks"))
+    return Checks(tuple(rules), count or COUNTS[0], rules_file)
 
 
 def _rules(

@@ -1,4 +1,4 @@
-"""The responses that a designer asks for first, whatever is checked, and whether a check limits them."""
+"""The responses that a designer asks for first, checked or not, and whether a check limits them."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -78,11 +78,11 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
     numbers = pd.DataFrame({name: runs[name].to_numpy(np.float64, na_value=np.nan) for name in _TAKEN if name in runs})
     for case, rows in rows_of_cases(runs, cases):
         rows = rows[stood[rows]]
-        own = numbers.iloc[rows]
+        numbers_of_case = numbers.iloc[rows]
         for name in RESPONSES if len(rows) else ():
-            if not DEMANDS[name].on(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
+            if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
                 continue
-            values = DEMANDS[name].of(own, case).value
+            values = DEMANDS[name].evaluate(numbers_of_case, case).value
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
                 worst.append(Worst(name, float(values[place]), case, runs, int(rows[place])))

@@ -151,9 +151,9 @@ class Rule:
         """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
         if not DEMANDS[self.demand].of_runs:
             return ""
-        ways = dict.fromkeys(self.counts(status) for status in USUAL)
+        kinds = dict.fromkeys(self.counts(status) for status in USUAL)
         return "; ".join(
-            f"{', '.join(status for status in USUAL if self.counts(status) == way)}: {way}" for way in ways
+            f"{', '.join(status for status in USUAL if self.counts(status) == kind)}: {kind}" for kind in kinds
         )
 
 
@@ -209,27 +209,27 @@ def _unknown_words(rule: Rule) -> list[str]:
         try:
             key.kind(value)
         except KindError as error:
-            meant = f"; did you mean {error.meant}?" if error.meant else ""
-            wrong.append(f"{name} = {shown(value)}: expected {error}{meant}")
+            hint = f"; did you mean {error.meant}?" if error.meant else ""
+            wrong.append(f"{name} = {shown(value)}: expected {error}{hint}")
     return wrong
 
 
 def _misfits(rule: Rule) -> list[str]:
     """Return what the attributes of a rule say about each other, each message at the first of them that is wrong."""
     demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
-    both = rule.at_most is not None and rule.at_least is not None
+    two_limits = rule.at_most is not None and rule.at_least is not None
     neither = rule.at_most is None and rule.at_least is None
     wrong_way = not demand.of_the_case and rule.at_most is None and not neither
     least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
     example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
     counts = rule.statistic == "count"
-    with_other_law = " and ".join(name for name, other in DEMANDS.items() if other.other_law)
+    with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
     rules = [
-        (both, "at_least: given beside at_most; keep one, and write the other as a check of its own"),
+        (two_limits, "at_least: given beside at_most; keep one, and write the other as a check of its own"),
         (neither, f"{example.split()[0]} is missing, the limit; write for example {example}"),
         (wrong_way, f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}"),
         (
-            not (both or neither or wrong_way or math.isfinite(rule.limit)),
+            not (two_limits or neither or wrong_way or math.isfinite(rule.limit)),
             f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
         ),
         (rule.above is not None and not counts, 'above: is for statistic = "count"; leave it out'),
@@ -253,8 +253,8 @@ def _misfits(rule: Rule) -> list[str]:
         (demand.of_runs and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
     ]
     return [message for applies, message in rules if applies] + [
-        f"{name}: {why}; leave it out"
-        for applies, names, why in without_place
+        f"{name}: {reason}; leave it out"
+        for applies, names, reason in without_place
         for name in names
         if applies and getattr(rule, name) is not None
     ]

@@ -25,14 +25,14 @@ def quantile(values: Values, q: float) -> float:
 def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.int64], q: float) -> Values:
     """Return a quantile of each of several groups, of ``n`` values each, in order, from ``first`` on; NaN for an empty one."""
     of_groups = np.full(len(n), math.nan)
-    some = n > 0
-    last = n[some] - 1
+    filled = n > 0
+    last = n[filled] - 1
     below = np.floor(q * last).astype(np.int64)
     share = q * last - below
-    low, high = ordered[first[some] + below], ordered[first[some] + np.minimum(below + 1, last)]
+    low, high = ordered[first[filled] + below], ordered[first[filled] + np.minimum(below + 1, last)]
     between = share >= 1e-9  # else rounding, no reason to look at the next rank
     with np.errstate(invalid="ignore"):
-        of_groups[some] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
+        of_groups[filled] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
     return of_groups
 
 
@@ -77,7 +77,7 @@ class Statistic:
     ----------
     words : str
         What it is called in a sentence: "mean of …".
-    of : function
+    evaluate : function
         Of finite or infinite values; ``None`` for the count of those above a threshold, which the rule gives.
     least : int
         Number of records below which nothing can pass.
@@ -90,7 +90,7 @@ class Statistic:
     """
 
     words: str
-    of: Callable[[Values], float] | None
+    evaluate: Callable[[Values], float] | None
     least: int = 1
     code: str = ""
     unchecked: str = ""

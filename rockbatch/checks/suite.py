@@ -60,23 +60,23 @@ def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple
     order = np.argsort(kinds, kind="stable")
     ends = np.cumsum(np.bincount(kinds))
     rows = np.split(order, ends[:-1])
-    firsts = runs[keys].iloc[[own[0] for own in rows if len(own)]].reset_index(drop=True)
+    firsts = runs[keys].iloc[[kind[0] for kind in rows if len(kind)]].reset_index(drop=True)
     by_name = dict(iter(firsts.groupby("case", sort=False)))
     for case in cases:
-        own = by_name.get(case["case"], firsts[:0])
-        of_case = [rows[kind] for kind in own.index[_has(own, case["columns"])]]
+        firsts_of_case = by_name.get(case["case"], firsts[:0])
+        of_case = [rows[kind] for kind in firsts_of_case.index[_fits(firsts_of_case, case["columns"])]]
         yield case, np.sort(np.concatenate(of_case)) if of_case else order[:0]
 
 
-def _has(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
+def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArray[np.bool_]:
     """Return True for each row with these values of the varied keys, shape (n,)."""
-    same = np.ones(len(runs), dtype=bool)
+    fits = np.ones(len(runs), dtype=bool)
     for name, value in columns.items():
         if isinstance(value, str):
-            same &= (runs[name] == value).to_numpy()
+            fits &= (runs[name] == value).to_numpy()
         else:  # peaks.csv has ten digits of it
-            same &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
-    return same
+            fits &= np.isclose(runs[name].to_numpy(np.float64, na_value=np.nan), value, rtol=1e-9, atol=0.0)
+    return fits
 
 
 def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequence[str]) -> "pd.DataFrame":
@@ -98,78 +98,78 @@ def counts_as(runs: "pd.DataFrame", count: str) -> "tuple[pd.Series[str], str]":
     """Return the record as which each run counts, by ``count`` of ``COUNTS``; and why that is not its station if it should be."""
     if count == "component":
         return runs["record"], ""
-    known = runs["station"].fillna("").astype(str)
-    if (known == "").any():
+    stations_of_runs = runs["station"].fillna("").astype(str)
+    if (stations_of_runs == "").any():
         return runs["record"], (
             "these results do not say which components are of one station, so that each counts as a record; start "
             "`rockbatch run` again"
         )
-    return known, ""
+    return stations_of_runs, ""
 
 
-def by_record(runs: Bounds, kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:
-    """Return the demand of each record: the worst of its runs that are ``kept``. Empty if every run is left out."""
-    names, record = np.unique(counted_as.to_numpy()[kept].astype(str), return_inverse=True)
+def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:
+    """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
+    names, record = np.unique(counted_as.to_numpy()[counting].astype(str), return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
         of_records = np.zeros(len(names))  # no demand is negative
-        np.maximum.at(of_records, record, of_runs[kept])
+        np.maximum.at(of_records, record, of_runs[counting])
         return of_records
 
     return Bounds(worst(runs.value), worst(runs.low), worst(runs.high), runs.estimated)
 
 
-def governing(runs: Bounds, kept: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
+def governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) -> int | None:
     """Return the place of the run that demands most, or may (``by_bound``); None if no run demands anything."""
     first, second = (runs.high, runs.value) if by_bound else (runs.value, runs.high)
-    order = [i for i in np.lexsort((-second, -first)) if kept[i]]  # a stable sort: of equal ones the first
+    order = [i for i in np.lexsort((-second, -first)) if counting[i]]  # a stable sort: of equal ones the first
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
-def lacking(kept: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[str, tuple[int, int]]:
+def lacking(counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[str, tuple[int, int]]:
     """Return records with fewer runs than the others, or than were planned: their runs that count, and of how many.
 
     Their worst direction may be the one that is missing.
     """
-    planned, left = Counter(counted_as), Counter(counted_as[kept])
+    planned, remaining = Counter(counted_as), Counter(counted_as[counting])
     usual = max(Counter(planned.values()).items(), key=lambda item: (item[1], item[0]))[0] if planned else 0
-    wanted = {name: max(n, usual) for name, n in planned.items()}
-    return {name: (left[name], n) for name, n in wanted.items() if 0 < left[name] < n}
+    expected = {name: max(n, usual) for name, n in planned.items()}
+    return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}
 
 
 def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
     """Return the bounds of every run, and True for those that count at all."""
     demand = DEMANDS[rule.demand]
-    value, error = demand.of(runs, case)
+    value, error = demand.evaluate(runs, case)
     estimated = bool(np.isfinite(error).any())
     margin = np.nan_to_num(error)
     low, high = np.maximum(value - margin, 0.0), value + margin
     status = runs["status"].to_numpy()
-    kept = np.ones(len(runs), dtype=bool)
+    counting = np.ones(len(runs), dtype=bool)
     if demand.event:
         if rule.demand != "failed":  # what a run that was cut short would have come to is open
             high = np.where((status == "failed") | (status == "flight"), 1.0, high)
-        return Bounds(value, low, high, False), kept
+        return Bounds(value, low, high, False), counting
 
-    other = by_other_law(rule, runs, case)
-    if other is not None:  # the worse counts
-        high = np.where(np.isnan(other) & rule.other_law, np.inf, np.fmax(high, other))
-        value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, other)) for bound in (value, low))
+    by_other = by_other_law(rule, runs, case)
+    if by_other is not None:  # the worse counts
+        high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
+        value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     unknown = np.zeros(len(runs), dtype=bool)
     for name in USUAL:
-        ended, way = status == name, rule.counts(name)
-        if way == "infinite":
+        ended, kind = status == name, rule.counts(name)
+        if kind == "infinite":
             value, low, high = (np.where(ended, np.inf, bound) for bound in (value, low, high))
-        elif way == "unknown":
+        elif kind == "unknown":
             unknown |= ended
-        elif way == "left out":
-            kept &= ~ended
+        elif kind == "left out":
+            counting &= ~ended
     missing = np.isnan(value)  # as the residual of a run that was cut short
     unknown |= missing
     # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
     nothing = missing | (unknown & (status == "failed"))
     low = np.where(nothing, 0.0, low)
-    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), kept
+    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
 
 
 def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:
@@ -185,6 +185,6 @@ def counted(rule: Rule, runs: "pd.DataFrame") -> str:
     parts = []
     for name in (*USUAL, NOT_RUN):
         if n := np.count_nonzero(status == name):
-            way = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].of_runs else ""
-            parts.append(f"{n} {name}{way}")
+            kind = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].of_runs else ""
+            parts.append(f"{n} {name}{kind}")
     return ", ".join(parts)

@@ -28,7 +28,7 @@ def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
 def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:
     """Return the number of verdicts of each kind, in the order of ``WAYS``."""
     count = Counter(verdict.verdict for verdict in verdicts)
-    return {way: count[way] for way in WAYS}
+    return {kind: count[kind] for kind in WAYS}
 
 
 def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
@@ -41,11 +41,11 @@ def _is_open(verdict: Verdict) -> bool:
     return math.isinf(verdict.high) and math.isfinite(verdict.value)
 
 
-def number(value: float, beside: float = math.nan) -> str:
+def number(value: float, neighbour: float = math.nan) -> str:
     """Return a value in four significant digits, in more if it would look the same as a limit that it is not."""
     if not math.isfinite(value):
         return "∞" if value > 0 else "-∞"
-    digits = next((n for n in range(4, 10) if value == beside or f"{value:.{n}g}" != f"{beside:.{n}g}"), 10)
+    digits = next((n for n in range(4, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
     rounded = float(f"{value:.{digits}g}")
     return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
 
@@ -59,7 +59,7 @@ def against(verdict: Verdict) -> str:
 
 
 def demanded(verdict: Verdict) -> str:
-    """Return the demand as a number without its unit; of an event that no record may cause, if one does."""
+    """Return the demand as a number without its unit; of an event that must not occur, whether it does."""
     value = verdict.value
     if math.isnan(value):
         return ""
@@ -98,7 +98,7 @@ def margin(verdict: Verdict) -> str:
 
 
 class Notes:
-    """Remarks on verdicts, each said once for all of them that it holds for.
+    """Remarks on verdicts, each stated once for all verdicts to which it applies.
 
     A part of a note is common if it holds for every verdict of some checks, and for :data:`REPEATED` verdicts or more.
     """
@@ -110,7 +110,7 @@ class Notes:
             for part in verdict.note.split("; ") if verdict.note else ():
                 counts.setdefault(part, Counter())[verdict.check] += 1
         every = Counter(verdict.check for verdict in applied)
-        whole = {part: [check for check in own if own[check] == every[check]] for part, own in counts.items()}
+        whole = {part: [check for check in n if n[check] == every[check]] for part, n in counts.items()}
         self._common = {
             part: checks for part, checks in whole.items() if sum(every[check] for check in checks) >= REPEATED
         }
@@ -119,25 +119,25 @@ class Notes:
             if verdict.counting:
                 self._counting.setdefault(verdict.counting, {})[verdict.check] = None
 
-    def of(self, verdict: Verdict) -> str:
+    def about(self, verdict: Verdict) -> str:
         """Return the remark on this verdict alone."""
         parts = verdict.note.split("; ") if verdict.note else []
         return "; ".join(part for part in parts if verdict.check not in self._common.get(part, ()))
 
     def common(self) -> list[str]:
-        """Return remarks on all verdicts of some checks, and how runs count that did not go through: a sentence each."""
+        """Return remarks on all verdicts of some checks, and how incomplete runs count: a sentence each."""
         notes = [f"{', '.join(checks)}: {part}." for part, checks in self._common.items()]
-        ways = [
-            f"{', '.join(checks)}: runs that do not end standing count so: {way}."
-            for way, checks in self._counting.items()
+        sentences = [
+            f"{', '.join(checks)}: runs that do not end standing count so: {kind}."
+            for kind, checks in self._counting.items()
         ]
-        return notes + ways
+        return notes + sentences
 
 
 def records_of(verdicts: Iterable[Verdict]) -> str:
     """Return the name of the records that count: "stations", "components", or "records" if both occur."""
-    ways = {verdict.count for verdict in verdicts} - {""}
-    return f"{ways.pop()}s" if len(ways) == 1 else "records"
+    kinds = {verdict.count for verdict in verdicts} - {""}
+    return f"{kinds.pop()}s" if len(kinds) == 1 else "records"
 
 
 def run(verdict: Verdict) -> str:
@@ -164,8 +164,8 @@ def _unit_of_demand(verdict: Verdict) -> str:
     return DEMANDS[verdict.demand].unit if verdict.demand in DEMANDS else verdict.unit
 
 
-def asked(verdict: Verdict) -> str:
-    """Return what the check asks: "design value by EN 1998-2 of top_drift_m at most 1.5 m"."""
+def requirement(verdict: Verdict) -> str:
+    """Return the requirement of the check: "design value by EN 1998-2 of top_drift_m at most 1.5 m"."""
     return (
         verdict.words
         if verdict.is_ban
@@ -174,15 +174,15 @@ def asked(verdict: Verdict) -> str:
 
 
 def unchecked(verdict: Verdict) -> str:
-    """Return what a code's own statistic rests on, as it is not the clause's own text; empty for other statistics."""
+    """Return the basis of a code's statistic, which was not compared with the clause itself; empty for other statistics."""
     return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
 
 
 def counting(verdicts: Iterable[Verdict]) -> list[str]:
     """Return what a record of the suites is, a sentence for each way to count."""
-    ways = {
+    sentences = {
         "station": "A record is a station: its components, angles and polarities are its directions, and the worst counts.",
         "component": "A record is a horizontal component, with the worse of its polarities: those of one station count apart.",
     }
     counts = {verdict.count for verdict in verdicts}
-    return [sentence for way, sentence in ways.items() if way in counts]
+    return [sentence for kind, sentence in sentences.items() if kind in counts]

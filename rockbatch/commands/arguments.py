@@ -1,4 +1,4 @@
-"""Arguments of every command and what its help says; the module that carries it out is loaded when it is called."""
+"""Arguments and help of every command, whose module is loaded when it is called."""
 
 import argparse
 import re
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from rockbatch.study import Study
 
 RUNS, SECONDS = 24, 60.0
-"""Runs that ``rockbatch accuracy`` measures, and how long it may take, unless asked otherwise."""
+"""Default number of runs that ``rockbatch accuracy`` measures, and its time limit [s]."""
 
 Arguments = Mapping[str, Mapping[str, Any]]
-"""Names of arguments, with what ``ArgumentParser.add_argument`` takes beside."""
+"""Names of arguments, with the keywords of ``ArgumentParser.add_argument``."""
 
 _PLAIN = argparse.RawDescriptionHelpFormatter
 
@@ -54,15 +54,15 @@ class Command:
             parser.add_argument(argument, **options)
 
     def carry_out(self, arguments: argparse.Namespace) -> int:
-        """Load the command, run it and return its exit code; a study is read first, as its mistakes need nothing else loaded."""
-        given = [_study(arguments)] if "study" in self.arguments else []
+        """Load the command, run it and return its exit code; a study is read first, since mistakes in it need no other module."""
+        studies = [_study(arguments)] if "study" in self.arguments else []
         module, _, function = self.function.partition(".")
-        code: int = getattr(import_module(f"rockbatch.commands.{module}"), function)(arguments, *given)
+        code: int = getattr(import_module(f"rockbatch.commands.{module}"), function)(arguments, *studies)
         return code
 
 
 def _study(arguments: argparse.Namespace) -> "Study":
-    """Return the study that is given, with the changes that the command line makes."""
+    """Return the given study with the changes of the command line."""
     from rockbatch.study import load_study
 
     study = load_study(arguments.study, motions=arguments.motions)
@@ -99,12 +99,12 @@ def _shard(text: str) -> tuple[int, int]:
     return share, shares
 
 
-def _flag(says: str) -> dict[str, Any]:
-    return {"action": "store_true", "help": says}
+def _flag(text: str) -> dict[str, Any]:
+    return {"action": "store_true", "help": text}
 
 
-def _value(kind: Callable[[str], Any], metavar: str | None, says: str, **more: Any) -> dict[str, Any]:
-    return {"type": kind, "metavar": metavar, "help": says, **more}
+def _value(kind: Callable[[str], Any], metavar: str | None, text: str, **more: Any) -> dict[str, Any]:
+    return {"type": kind, "metavar": metavar, "help": text, **more}
 
 
 _STUDY: Arguments = {
@@ -117,12 +117,12 @@ _STUDY: Arguments = {
 
 _ENGINE: Arguments = {
     "--jobs": _value(_whole, "N", "threads, or processes (default: all processors)"),
-    "--fresh": _flag("start over, instead of going on with what is finished in the folder"),
+    "--fresh": _flag("start over instead of continuing with what is finished in the folder"),
     "--engine": _value(
         str, None, "threads of this process (default), or a dask.distributed cluster", choices=("threads", "dask")
     ),
     "--scheduler": _value(
-        _address, "ADDRESS", "a dask scheduler that runs already (default: processes of this machine)"
+        _address, "ADDRESS", "address of a running dask scheduler (default: processes of this machine)"
     ),
 }
 """The engine that carries out the runs."""
@@ -141,7 +141,7 @@ _RUN: Arguments = {
         str, "RECORD", "keep the histories of all runs under this record, too; finished runs are not repeated for it",
         action="append", default=[],
     ),
-    "--dry-run": _flag("write nothing; say how many runs there are, and how long and how much disk they will take"),
+    "--dry-run": _flag("write nothing; say how many runs there are, and the time and disk space they will take"),
 }  # fmt: skip
 _MOTIONS: Arguments = {
     "path": _value(Path, "PATH", "files or folders (recursive)", nargs="+"),
@@ -151,14 +151,14 @@ _MOTIONS: Arguments = {
     "--unit": {"help": 'acceleration unit of files that do not state theirs, such as "cm/s2"'},
     "--dt": {"type": float, "help": "sampling interval [s] of text columns without a time column"},
     "--columns": {"help": 'names of text columns, such as "time,000,090,up"'},
-    "--role": {"choices": ("horizontal",), "help": "what components are whose direction nothing tells"},
-    "--layout": {"choices": ("columns", "wrapped"), "help": "wrapped: one series goes on from line to line"},
+    "--role": {"choices": ("horizontal",), "help": "role of components whose direction is not stated"},
+    "--layout": {"choices": ("columns", "wrapped"), "help": "wrapped: one series continued from line to line"},
     "--sensitivity": {"type": float, "help": "counts per acceleration unit"},
 }
 _ACCURACY: Arguments = {
     "--runs": _value(_whole, "N", f"runs to measure, spread over the study (default: {RUNS})", default=RUNS),
     "--seconds": _value(
-        _seconds, "S", f"how long it may take; what there is no time for is left out (default: {SECONDS:g})", default=SECONDS
+        _seconds, "S", f"time limit; measurements that do not fit are left out (default: {SECONDS:g})", default=SECONDS
     ),
     "--no-scipy": _flag("leave out SciPy's solvers, which are slow"),
 }  # fmt: skip
@@ -203,7 +203,7 @@ COMMANDS = {
         {**_STUDY, "shares": _value(Path, "DIR", "folders of the shares", nargs="+"), **_CSV}, _FILES,
     ),
     "motions": Command(
-        "show what is in a folder of records, and what is not used", "rockbatch motions records --csv records.csv",
+        "list the records of a folder, and the files that are not used", "rockbatch motions records --csv records.csv",
         "motions.main", _MOTIONS, "  FILE           the table, with --csv\n  motions.toml   with --write-manifest",
     ),
     "check": Command(
@@ -218,7 +218,7 @@ COMMANDS = {
         "make the report again, or compare two studies", "rockbatch report reports/pier reports/other", "check.report",
         {
             "directory": _FOLDER,
-            "other": _value(Path, "OTHER", "a second one, to compare the first with", nargs="?"),
+            "other": _value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
             "--out": _value(Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html)"),
         },
     ),

@@ -24,21 +24,21 @@ from rockbatch.results.reading import Saved
 
 WIDTH = 100
 WORST = 10
-"""Verdicts that are printed in full if there are too many for all."""
+"""Number of verdicts printed in full if there are too many to print all."""
 
 _COLOURS = {PASS: "32", FAIL: "31", NOT_DECIDED: "33"}  # green, red, amber
 _LOUD = {FAIL: "FAIL", NOT_DECIDED: "NOT DECIDED"}
 _PLAIN = {PASS: "+", FAIL: "x", NOT_DECIDED: "?", DOES_NOT_APPLY: "-"}
 _LEFT_OUT = (5, 4, 1)
-"""Columns of the verdicts that are left out, one after the other, if the terminal is too narrow: margin, ratio, records."""
+"""Columns of the verdicts that a narrow terminal leaves out, in this order: margin, ratio, records."""
 
 
 def main(arguments: argparse.Namespace) -> int:
-    """Hold results against rules; print and write the verdicts, and the report again if there is one."""
+    """Check results against rules; print and write the verdicts, and rewrite the report if it exists."""
     saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
     if unusable := len(saved.info["unusable"]):
-        say(f"files that are no usable records, and in no suite: {unusable}")
+        say(f"files that are not usable as records, and in no suite: {unusable}")
     code = tell(results, write_verdicts(arguments.directory, results), saved)
     if is_plain(arguments.directory / "report.html"):
         say(str(write_report(arguments.directory, saved=saved)))
@@ -52,7 +52,7 @@ def report(arguments: argparse.Namespace) -> int:
 
 
 def mark(verdict: str) -> str:
-    """Return sign and word of a verdict: "✗ FAIL"; the signs are plain ones if the terminal cannot show the others."""
+    """Return sign and word of a verdict: "✗ FAIL"; plain signs if the terminal cannot show these."""
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 
@@ -62,7 +62,7 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
     show(summed_up(verdicts) if many else table(verdicts))
     show("\n" + answered(verdicts, saved))
     count = wording.count_of(verdicts)
-    say(", ".join(f"{n} {way}" for way, n in count.items() if n))
+    say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
     say(f"{path}{': all of them' if many else ''}")
     if not (count["pass"] or count["fail"] or count["not decided"]):
         say("none of the checks applies to these cases")
@@ -70,7 +70,7 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
-    """Return the answer as the report begins with it, and the worst responses, whatever is checked."""
+    """Return the answer with which the report begins, and the worst responses whether checked or not."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
     scaled = len({verdict.scale for verdict in verdicts}) > 1
 
@@ -81,7 +81,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     worst = worst_of_cases(simulated(with_case(saved.peaks)), saved.info["cases"])
     lines = []
     for line in answer(verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record)):
-        words = f"{line.says}: {line.which}." if line.which else f"{line.says}."
+        words = f"{line.text}: {line.cases}." if line.cases else f"{line.text}."
         lines.append(_coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
     if not verdicts:
@@ -90,11 +90,11 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     longest = max(map(len, responses), default=0)
     for words, response in responses.items():
         columns = response.case["columns"]
-        where = (
+        hint = (
             f"{labels.get(response.run['record'], response.run['record'])}, {response.case['case']} "
             f"{named(columns, columns.values())}"
         )
-        lines.append(_filled(f"{words:<{longest}}  {in_words(response)}: {where.rstrip()}", 2, longest + 6))
+        lines.append(_filled(f"{words:<{longest}}  {in_words(response)}: {hint.rstrip()}", 2, longest + 6))
     return "\n".join(lines)
 
 
@@ -115,7 +115,7 @@ def summed_up(verdicts: Sequence[Verdict]) -> str:
 
 
 def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
-    """Return a block of lines for verdicts beside each other of one case and scale: their numbers, and remarks on them."""
+    """Return a block of lines for each run of verdicts of one case and scale: their numbers and remarks."""
     head, *lines = _numbers(verdicts)
     many_scales = len({verdict.scale for verdict in verdicts}) > 1
     blocks = []
@@ -127,7 +127,7 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
         parts = [f"{case}  {named(values, values.values())}".rstrip(), head]
         for verdict, line in block:
             parts.append(_coloured(line, verdict.verdict))
-            remarks = (wording.governing(verdict), verdict.counted, notes.of(verdict))
+            remarks = (wording.governing(verdict), verdict.counted, notes.about(verdict))
             if verdict.verdict != DOES_NOT_APPLY and any(remarks):
                 parts.append(_filled("; ".join(filter(None, remarks)), 6, 6))
         blocks.append("\n".join(parts))
@@ -139,9 +139,9 @@ def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
     head = ("check", wording.records_of(verdicts), "demand", "limit", "ratio", "margin", "unit", "verdict")
     lines, places, edge = [head, *map(_cells, verdicts)], list(range(len(head))), width() or math.inf
     for place in (None, *_LEFT_OUT):
-        places = [other for other in places if other != place]
-        left = [places.index(other) for other in (0, 6, 7)]
-        text = [f"  {line}".rstrip() for line in aligned([[line[i] for i in places] for line in lines], left)]
+        places = [column for column in places if column != place]
+        flush_left = [places.index(column) for column in (0, 6, 7)]
+        text = [f"  {line}".rstrip() for line in aligned([[line[i] for i in places] for line in lines], flush_left)]
         if max(map(len, text)) <= edge:
             break
     return text
@@ -171,7 +171,7 @@ def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
     first = {verdict.check: verdict for verdict in reversed(verdicts)}
     rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
     lines = [
-        f"{name}: {wording.asked(first[name])} [{first[name].basis}] {first[name].reason}".rstrip()
+        f"{name}: {wording.requirement(first[name])} [{first[name].basis}] {first[name].reason}".rstrip()
         for name in dict.fromkeys(verdict.check for verdict in verdicts)
     ]
     lines += [*notes.common(), *wording.counting(verdicts)]

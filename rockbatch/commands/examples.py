@@ -15,11 +15,11 @@ def init(arguments: argparse.Namespace) -> int:
     study = "pier.toml" if arguments.example == FIRST else f"{arguments.example}.toml"
     for path in copy(arguments.example, arguments.folder, study):
         show(str(path))
-    there = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
+    change_folder = "" if arguments.folder == Path() else f"cd {arguments.folder}\n    "
     limits = f"in {CHECKS}" if arguments.example == FIRST else f"({CHECKS} has many to choose from)"
     report = Path("reports", Path(study).stem, "report.html")
     show(
-        f"\nNext:\n\n    {there}{_called()} run {study}\n\n"
+        f"\nNext:\n\n    {change_folder}{_called()} run {study}\n\n"
         f"It leaves a report in {report}. Then put the numbers of your pier and the\n"
         f"folder of your records (path) into {study}, and agree on limits {limits}."
     )
@@ -27,9 +27,9 @@ def init(arguments: argparse.Namespace) -> int:
 
 
 def _called() -> str:
-    """Return what a shell needs to find rockbatch from any folder: its name, or its path if the name would not do."""
-    here = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
-    return "rockbatch" if here is None or shutil.which("rockbatch") == here else shlex.quote(here)
+    """Return the word by which a shell finds rockbatch from any folder: its name, or its path if the name is not on PATH."""
+    script = shutil.which("rockbatch", path=str(Path(sys.executable).parent))
+    return "rockbatch" if script is None or shutil.which("rockbatch") == script else shlex.quote(script)
 
 
 def main(arguments: argparse.Namespace) -> int:

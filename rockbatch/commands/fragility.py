@@ -11,7 +11,7 @@ from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.risk import Risk, percent, probability, risks
 from rockbatch.analysis.risk import note as note_on_risk
 from rockbatch.batch.listening import count
-from rockbatch.commands.options import asked, folder, tell_files
+from rockbatch.commands.options import analysis_arguments, folder, tell_files
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
 from rockbatch.study import Study
@@ -20,7 +20,7 @@ from rockbatch.study.fragility import FragilitySpec
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
     """Fit fragility curves, and print them."""
-    result = fragility(study, **asked(arguments))
+    result = fragility(study, **analysis_arguments(arguments))
     show(table(result.curves, result.spec))
     show(result.info["scales"]["said"])
     if result.spec.hazard is not None:
@@ -33,7 +33,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 
 
 def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
-    """Return medians and dispersions with their intervals, a line for each limit and case, and what to know about them."""
+    """Return medians and dispersions with their intervals, a line for each limit and case, with remarks."""
     rows, notes = [], []
     for curve in curves:
         case = _case(curve)
@@ -57,8 +57,8 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     method = {"ida": "incremental dynamic analysis", "cloud": "cloud analysis"}.get(spec.method, spec.method)
     title = f"Fragility for {spec.label}, {method}"
     if little := sum(curve.says_little for curve in curves):
-        some = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
-        title += f"; {some}: too many runs are undecided"
+        share = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
+        title += f"; {share}: too many runs are undecided"
     lines = [title, in_width(heads, rows, names=2), *limits, looked_at(curves, spec), *notes, added(spec)]
     return "\n".join(line for line in lines if line)
 
@@ -70,7 +70,7 @@ def added(spec: FragilitySpec) -> str:
 
 
 def risk_lines(rates: Sequence[Risk], spec: FragilitySpec) -> str:
-    """Return annual rates and probabilities with their intervals, a line for each limit and case, and what they rest on."""
+    """Return annual rates and probabilities with their intervals, a line for each limit and case, with their basis."""
     years = spec.hazard.years if spec.hazard else ()
     level = f"{100 * spec.confidence:g} %"
     heads = [

@@ -79,8 +79,8 @@ def _table(rows: list[dict[str, Any]]) -> str:
     """Return the rows as a table; a column without a value is left out."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
     cells = [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
-    left = [place for place, key in enumerate(used) if key in TEXTS]
-    return in_width([head for head, _ in used.values()], cells, left=left)
+    flush_left = [place for place, key in enumerate(used) if key in TEXTS]
+    return in_width([head for head, _ in used.values()], cells, left=flush_left)
 
 
 def _list(title: str, entries: list[tuple[str, str]]) -> None:

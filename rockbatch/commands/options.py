@@ -23,7 +23,7 @@ def engine(arguments: argparse.Namespace) -> Engine:
     return Threads(arguments.jobs or cores())
 
 
-def asked(arguments: argparse.Namespace) -> dict[str, Any]:
+def analysis_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the arguments of every analysis: its folder, its engine, and the listener for its messages."""
     return {"out": folder(arguments), "jobs": engine(arguments), "fresh": arguments.fresh, "progress": Terminal()}
 

@@ -23,15 +23,17 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 def shown(fits: "pd.DataFrame", impacts: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return a block for each case: the fitted value, how well it describes the test, and a table of impacts."""
     keys, blocks = ["case", *varied], []
-    for (names, own), fit in zip(impacts.groupby(keys, sort=False, dropna=False), fits.to_dict("records"), strict=True):
+    for (names, rows), fit in zip(
+        impacts.groupby(keys, sort=False, dropna=False), fits.to_dict("records"), strict=True
+    ):
         cells = {
-            "impact": own["impact"].map(str),
-            "t [s]": own["t_measured_s"].map(lambda t: _number(t, ".4f")),
-            "computed": own["t_computed_s"].map(lambda t: _number(t, ".4f")),
-            "amplitude [rad]": own["amplitude_measured_rad"].map(lambda a: _number(a, ".5f")),
-            "computed ": own["amplitude_computed_rad"].map(lambda a: _number(a, ".5f")),
-            "apparent e": own["restitution_measured"].map(lambda e: _number(e, ".3f")),
-            "computed  ": own["restitution_computed"].map(lambda e: _number(e, ".3f")),
+            "impact": rows["impact"].map(str),
+            "t [s]": rows["t_measured_s"].map(lambda t: _number(t, ".4f")),
+            "computed": rows["t_computed_s"].map(lambda t: _number(t, ".4f")),
+            "amplitude [rad]": rows["amplitude_measured_rad"].map(lambda a: _number(a, ".5f")),
+            "computed ": rows["amplitude_computed_rad"].map(lambda a: _number(a, ".5f")),
+            "apparent e": rows["restitution_measured"].map(lambda e: _number(e, ".3f")),
+            "computed  ": rows["restitution_computed"].map(lambda e: _number(e, ".3f")),
         }
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()
         table = in_width(list(cells), list(zip(*cells.values(), strict=True)))
@@ -42,12 +44,12 @@ def shown(fits: "pd.DataFrame", impacts: "pd.DataFrame", varied: tuple[str, ...]
 def in_words(fit: "dict[str, object]") -> str:
     """Return what was fitted in a case, in sentences."""
     value = {name: float(str(fit[name])) for name in ("value", "low", "high", "confidence", "scatter", "over_housner")}
-    said = f"{fit['parameter']} = {value['value']:.4g}, {value['low']:.4g} to {value['high']:.4g} ({value['confidence']:.0%})"
+    text = f"{fit['parameter']} = {value['value']:.4g}, {value['low']:.4g} to {value['high']:.4g} ({value['confidence']:.0%})"
     if not math.isnan(value["over_housner"]):
-        said += f", {value['over_housner']:.3f} of Housner's"
+        text += f", {value['over_housner']:.3f} of Housner's"
     if value["scatter"] > 1e-3 * value["value"]:
-        said += f"; it scatters by ±{value['scatter']:.2g} from impact to impact"
-    return f"{said}.\n  {fit['remark']}"
+        text += f"; it scatters by ±{value['scatter']:.2g} from impact to impact"
+    return f"{text}.\n  {fit['remark']}"
 
 
 def _number(value: float, form: str) -> str:

@@ -83,7 +83,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
         say(str(write_semicolons(saved.directory)))
     failed = int(((peaks["status"] == "failed") & (peaks["case"] != "")).sum())
     lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
-    if words := " and ".join(f"{count(n, noun)} {how}" for n, noun, how in lost if n):
+    if words := " and ".join(f"{count(n, noun)} {state}" for n, noun, state in lost if n):
         say(f"{words}: the column reason of peaks.csv says why")
         code = 1
     return code

@@ -3,7 +3,7 @@
 import argparse
 
 from rockbatch.analysis.sensitivity import sensitivity
-from rockbatch.commands.options import asked, tell_files
+from rockbatch.commands.options import analysis_arguments, tell_files
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
 from rockbatch.lazy import pd
@@ -11,8 +11,8 @@ from rockbatch.study import Study
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Compute what the peak rotation depends on, and print it."""
-    result = sensitivity(study, **asked(arguments))
+    """Compute and print the sensitivity of the peak rotation."""
+    result = sensitivity(study, **analysis_arguments(arguments))
     show(shown(result.sensitivity, result.sobol, study.varied))
     ended = ", ".join(f"{number} {status}" for status, number in sorted(result.info["statuses"].items()))
     cut = f"theta_max/alpha = {result.spec.overturned:g}"
@@ -25,14 +25,14 @@ def shown(swings: "pd.DataFrame", shares: "pd.DataFrame", varied: tuple[str, ...
     """Return both tables for a terminal, a block for each case: the answer at both ends, and the indices with their errors."""
     keys = ["case", *varied]
     blocks = []
-    for names, own in swings.groupby(keys, sort=False, dropna=False):
-        both = own.merge(shares, on=[*keys, "parameter"])
+    for names, of_case in swings.groupby(keys, sort=False, dropna=False):
+        merged = of_case.merge(shares, on=[*keys, "parameter"])
         cells = {
-            "": both["parameter"],
-            **{end: both[end].map(_value) for end in ("low", "base", "high")},
-            **{f"at {end}": both[f"answer_{end}"].map("{:.4f}".format) for end in ("low", "base", "high")},
-            "first-order": both["first"].map("{:z.2f}".format) + both["first_error"].map(" ± {:.2f}".format),
-            "total": both["total"].map("{:z.2f}".format) + both["total_error"].map(" ± {:.2f}".format),
+            "": merged["parameter"],
+            **{end: merged[end].map(_value) for end in ("low", "base", "high")},
+            **{f"at {end}": merged[f"answer_{end}"].map("{:.4f}".format) for end in ("low", "base", "high")},
+            "first-order": merged["first"].map("{:z.2f}".format) + merged["first_error"].map(" ± {:.2f}".format),
+            "total": merged["total"].map("{:z.2f}".format) + merged["total_error"].map(" ± {:.2f}".format),
         }
         table = in_width(list(cells), list(zip(*cells.values(), strict=True)))
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()

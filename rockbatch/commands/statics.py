@@ -34,7 +34,7 @@ def main(arguments: argparse.Namespace) -> int:
     for warning in flexible(study):
         say(warning)
     if any(getattr(device, "kind", "") == "viscous" for case in study.cases for device in case.base.restraints):
-        say("viscous dampers bear nothing at rest, and are in none of these numbers")
+        say("viscous dampers carry no force at rest and enter none of these numbers")
     if arguments.csv:
         _write(arguments.csv, study, [fact.name for fact in FACTS], [(case, [sheet.row]) for case, sheet in sheets])
     if arguments.curves:
@@ -50,7 +50,7 @@ def name_of(case: Case) -> str:
 
 
 def table(sheets: Sheets) -> str:
-    """Return the sheets side by side: a line for each number that one of them has."""
+    """Return the sheets side by side: a line for each quantity that any of them has."""
     all_of_them = [sheet.row for _, sheet in sheets]
     rows = [(fact, [row[fact.name] for row in all_of_them]) for fact in FACTS]
     lines = [
@@ -91,7 +91,7 @@ def rotations(sheet: Statics) -> str:
 
 def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[tuple[Case, list[Any]]]) -> None:
     """Write a table whose rows begin with the case and the varied values."""
-    lines = [{"case": case.name} | case.columns | line for case, own in rows for line in own]
+    lines = [{"case": case.name} | case.columns | line for case, of_case in rows for line in of_case]
     try:
         write_whole(path, csv_text(["case", *study.varied, *columns], lines))
     except OSError as error:

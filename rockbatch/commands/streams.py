@@ -1,7 +1,7 @@
 """Output to the terminal.
 
-Text may come from anybody's files, so that what a terminal would obey is written out (:func:`rockbatch.files.legible`); and a
-stream that takes no more, or cannot write a letter, ends nothing: the results are on the disk.
+Text may come from untrusted files: control characters are escaped (:func:`rockbatch.files.legible`). A stream that fails, or
+cannot encode a letter, stops nothing: the results are on disk.
 """
 
 import errno
@@ -16,7 +16,7 @@ from typing import TextIO
 from rockbatch.files import legible
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
-"""Colours of verdicts, which a terminal gets as they are."""
+"""Colours of verdicts, by their ANSI numbers."""
 
 _lost: dict[TextIO, OSError] = {}
 
@@ -29,17 +29,17 @@ def open_missing() -> None:
 
 
 def say(text: str) -> None:
-    """Print a message on stderr, apart from what a command was asked for."""
+    """Print a message on stderr, apart from the output of a command."""
     tell(sys.stderr, text)
 
 
 def show(text: str) -> None:
-    """Print on stdout what a command was asked for."""
+    """Print the output of a command on stdout."""
     tell(sys.stdout, text)
 
 
 def tell(stream: TextIO | None, text: str) -> None:
-    """Print ``text`` to a stream, as far as that can take it."""
+    """Print ``text`` to a stream, as far as it can be written."""
     if stream is None or stream in _lost:
         return
     parts = _COLOURS.split(text) if stream.isatty() else [text]
@@ -52,12 +52,12 @@ def tell(stream: TextIO | None, text: str) -> None:
 
 
 def give_up(stream: TextIO, error: OSError) -> None:
-    """Write nothing more to a stream that has failed: a pipe whose reader has seen enough, a full disk."""
+    """Write nothing more to a stream that has failed: a pipe that its reader closed, a full disk."""
     _lost[stream] = error
     with suppress(OSError, ValueError):  # what is left in its buffer must not fail once more when it is closed
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     if stream is sys.stdout and error.errno != errno.EPIPE:
-        tell(sys.stderr, f"what was asked for cannot be printed ({error.strerror}); the rest is done all the same")
+        tell(sys.stderr, f"the output cannot be printed ({error.strerror}); all else is still done")
 
 
 def is_lost(stream: TextIO) -> bool:
@@ -118,5 +118,5 @@ def in_width(head: Sequence[str], rows: Sequence[Sequence[str]], names: int = 1,
 
 
 def _shortened(text: str, room: int) -> str:
-    """Return ``text`` with its middle left out if it is longer than ``room``; what tells names apart stands at the end."""
+    """Return ``text`` with its middle left out if it is longer than ``room``; names differ at their ends."""
     return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"

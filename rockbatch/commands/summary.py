@@ -50,12 +50,12 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 
 
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
-    """Return what to know about the runs as a whole, a sentence each."""
+    """Return remarks on the runs as a whole, a sentence each."""
 
-    def warning(runs: "pd.Series[bool]", one: str, several: str) -> str:
-        """Return the number of these runs within one sentence or the other; empty for none."""
+    def warning(runs: "pd.Series[bool]", singular: str, plural: str) -> str:
+        """Return a sentence with the number of these runs, in the singular or the plural; empty for none."""
         n = int(runs.sum())
-        return "" if n == 0 else one if n == 1 else several.format(n)
+        return "" if n == 0 else singular if n == 1 else plural.format(n)
 
     rotate = warning(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
     lean = warning(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
@@ -68,7 +68,7 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
             "with rocking = true under [output] so has a column, for all runs"
         ),
         slide and (
-            f"{slide} more friction than the interface has: the pier would slide, which is not followed; see the column note"
+            f"{slide} more friction than the interface has: the pier would slide, which is not modelled; see the column note"
         ),
     ]  # fmt: skip
     return [sentence for sentence in sentences if sentence]
@@ -76,12 +76,12 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
 
 def flexible(study: Study) -> list[str]:
     """Return a warning about each case whose pier is not rigid by its flexural period; the period is compared only if given."""
-    given = [case for case in study.cases if case.pier.flexural_period_s is not None]
-    if not given:
+    flexible_cases = [case for case in study.cases if case.pier.flexural_period_s is not None]
+    if not flexible_cases:
         return []
     from rockbatch.pier.statics import MOST_FLEXURE, flexure, sheet_of
 
-    sheets = [(case, sheet_of(case.pier, case.base)) for case in given]
+    sheets = [(case, sheet_of(case.pier, case.base)) for case in flexible_cases]
     return [
         f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
         + f": {flexure(sheet)}".replace("α", "alpha")
@@ -94,19 +94,19 @@ def _other_law(table: "pd.DataFrame", varied: Sequence[str]) -> str:
     """Return a warning if the settlement is a range by the spring law, of a tenth and a millimetre or more; else empty."""
     if "settlement_other_law_m" not in table:
         return ""
-    own, other = table["settlement_m"], table["settlement_other_law_m"]
-    gap = (own - other).abs()
-    differ = gap > (0.1 * own.abs()).clip(lower=1e-3)
+    of_case, by_other = table["settlement_m"], table["settlement_other_law_m"]
+    gap = (of_case - by_other).abs()
+    differ = gap > (0.1 * of_case.abs()).clip(lower=1e-3)
     if not differ.any():
         return ""
     worst = table.iloc[int(np.nanargmax(gap.to_numpy()))]
     keys = ["scale", *varied] if table["scale"].nunique() > 1 else varied
-    which = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
+    run = f"{worst['record']}, {worst['case']} {named(keys, [worst[name] for name in keys])}".rstrip()
     mm = [1000 * worst[name] for name in ("settlement_m", "settlement_other_law_m")]
     law = "Bouc–Wen" if mm[0] > mm[1] else "elastic–perfectly plastic"
     return (
-        f"settlement is no number but a range in {count(int(differ.sum()), 'run')}, by the law of the springs, the widest in "
-        f"{which}: {min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
+        f"the settlement is a range, not one value, in {count(int(differ.sum()), 'run')}, depending on the law of the "
+        f"springs; the widest in {run}: {min(mm):z.1f} to {max(mm):z.1f} mm, the larger by the {law} law; checks take the worse"
     )
 
 

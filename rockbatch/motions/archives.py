@@ -70,7 +70,7 @@ def members(archive: Path) -> Iterator[Member]:
     Raises ``InputError`` for what is no archive, or too large.
     """
     total = 0
-    seen: set[Path] = set()
+    visited: set[Path] = set()
     with _opened(archive) as opened:
         listed = opened.infolist()
     for info in sorted(listed, key=_name):
@@ -81,12 +81,12 @@ def members(archive: Path) -> Iterator[Member]:
         total += info.file_size
         path = archive / _within(info)
         refusal = _refusal(info)
-        if not refusal and path in seen:
+        if not refusal and path in visited:
             refusal = "the archive has two files of this name; unpack it"
         elif not refusal and total > _MOST_UNPACKED:
             refusal = f"the archive unpacks to more than {_MOST_UNPACKED // 2**30} GiB; unpack it"
         elif not refusal:
-            seen.add(path)
+            visited.add(path)
         yield Member(path, _name(info), refusal)
 
 

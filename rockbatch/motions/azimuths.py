@@ -32,12 +32,12 @@ def rotated_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> t
 
     Two that are square to each other are turned; a single one goes on as it is if it points along the only azimuth asked for.
     """
-    why = _obstacle(horizontals)
-    if not why:
+    obstacle = _obstacle(horizontals)
+    if not obstacle:
         return [_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths], []
     stay = [len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]) for c in horizontals]
     refused = [
-        Unusable(c.name, c.source, f"cannot be turned: {why}")
+        Unusable(c.name, c.source, f"cannot be turned: {obstacle}")
         for c, is_so in zip(horizontals, stay, strict=True)
         if not is_so
     ]
@@ -58,8 +58,8 @@ def _obstacle(horizontals: Sequence[Component]) -> str:
         return f"{first.name} and {second.name} are {between:g}° apart, not square to each other"
     if not overlap(first, second):
         return f"{first.name} and {second.name} have no time in common"
-    why = too_unlike(first, second)
-    return f"{second.name}: {why}" if why else ""
+    difference = too_unlike(first, second)
+    return f"{second.name}: {difference}" if difference else ""
 
 
 def _azimuth(component: Component) -> float:
@@ -85,7 +85,7 @@ def _turned(first: Component, second: Component, azimuth: float) -> Component:
     base = split_stem(first.name)[0]
     if base != split_stem(second.name)[0]:
         base = first.name
-    own = [f"{part.name}: {note}" for part in (first, second) for note in part.notes]
+    notes = [f"{part.name}: {note}" for part in (first, second) for note in part.notes]
     starts = [part.start for part in (first, second) if part.start is not None]
     return replace(
         first,
@@ -98,6 +98,6 @@ def _turned(first: Component, second: Component, azimuth: float) -> Component:
         confirmed=tuple(key for key in first.confirmed if key in second.confirmed),
         processed=first.processed if first.processed == second.processed else None,
         initial=_initial(first, second, common, azimuth),
-        odd=(*first.odd, *second.odd),
-        notes=(*own, *common.notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
+        findings=(*first.findings, *second.findings),
+        notes=(*notes, *common.notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
     )

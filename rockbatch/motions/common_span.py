@@ -102,5 +102,5 @@ def _offset(first: Component, second: Component, name: str) -> tuple[float, list
         return offset, []
     if abs(jitter) <= _CLOCK:
         return even, []
-    when = "late" if jitter > 0 else "early"
-    return even, [f"{name} {abs(jitter) * 1e3:.2g} ms {when}, {abs(jitter) / step:.2g} of dt: taken as simultaneous"]
+    side = "late" if jitter > 0 else "early"
+    return even, [f"{name} {abs(jitter) * 1e3:.2g} ms {side}, {abs(jitter) / step:.2g} of dt: taken as simultaneous"]

@@ -85,14 +85,14 @@ class Component:
     magnitude: float | None = None  # of the event, where a manifest has it
     distance_km: float | None = None  # of the site from the event, likewise
     confirmed: tuple[str, ...] = ()  # what a manifest confirms: "confirm", "confirm_pga" (see motion.Finding)
-    wanted: bool = False  # whether a manifest says that it is used, whatever else there is of the same recording
+    preferred: bool = False  # whether a manifest says that it is used, whatever other copies of the recording there are
     sensor: Sensor = UNKNOWN_SENSOR
     event: str = ""  # what the header says of it, to tell recordings of one sensor apart where start is not known
     processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
     initial: Initial | None = None  # the ground's state at the first sample, where the file has it
     origin: Origin = UNKNOWN_ORIGIN
     notes: tuple[str, ...] = ()  # what was done to the data
-    odd: tuple[Finding, ...] = ()  # what its header, or copies of it that are left out, have otherwise
+    findings: tuple[Finding, ...] = ()  # contradictions of its header, or of copies of it that are left out
     number: int = 0  # of the component in its file, from 1
 
     @property

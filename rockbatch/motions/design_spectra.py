@@ -221,7 +221,7 @@ class TableSpectrum:
         elif any(b <= a for a, b in zip(self.periods, self.periods[1:], strict=False)):
             wrong.append("periods must grow from line to line")
         if wrong:
-            raise InputError(*(f"{self.name}: {what}" for what in wrong))
+            raise InputError(*(f"{self.name}: {message}" for message in wrong))
 
     def __str__(self) -> str:
         return f"{self.name}, {100 * self.damping:g} %"

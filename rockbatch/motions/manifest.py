@@ -112,7 +112,7 @@ class Manifest:
         Table(file, (), "", file.data).read({}, other=("record", "sequence"))
         self.sequences += [(str(file.path), sequence) for sequence in read_sequences(file, "sequence")]
         folder = Path(os.path.realpath(file.path.parent))
-        seen: set[tuple[Path, str | None]] = set()
+        listed: set[tuple[Path, str | None]] = set()
         for table in file.tables("record", title="file"):
             values = table.read(RECORD)
             if file.is_full:
@@ -127,13 +127,13 @@ class Manifest:
             elif not _is_there(path):
                 hint = nearby(path, path.relative_to(folder).as_posix()) if len(file.problems) < _MOST_HINTS else ""
                 table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
-            elif (path, values.get("component")) in seen:
+            elif (path, values.get("component")) in listed:
                 table.complain(f"file = {shown(values['file'])}: given twice; write one table for it", "file")
             else:
-                seen.add((path, values.get("component")))
+                listed.add((path, values.get("component")))
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
-    def of(self, path: Path) -> list[Entry]:
+    def entries_for(self, path: Path) -> list[Entry]:
         """Return entries of a file, those of the whole file first; those of its archive where it has none of its own."""
         real = Path(os.path.realpath(path))
         archive = archive_of(real)
@@ -170,39 +170,39 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
 
 
 def described(
-    components: Sequence[Component], entries: Sequence[Entry], gravity: float, others: Sequence[Unusable] = ()
+    components: Sequence[Component], entries: Sequence[Entry], gravity: float, refused: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
     """Return components of a file as its entries want them, and whether each is to be used; mistakes are noted.
 
-    ``others`` are the components of the file that cannot be used, which entries may be for too.
+    ``refused`` are the components of the file that cannot be used, which entries may be for too.
     """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
         if entry.table.file.is_full:
             break
-        meant = [
+        matching = [
             i for i, c in enumerate(components) if entry.component in (None, c.name, c.orientation.label, c.number)
         ]
-        if not meant and components and not any(map(entry.is_for, others)):
-            labels = [*(c.orientation.label or c.name for c in components), *(other.label for other in others)]
-            known = ", ".join(map(shown, filter(None, labels)))
-            said = f"component = {shown(entry.component)}: the file has {known}"
-            entry.table.complain(f"{said}; write one of these, or its number in the file", "component")
-        if len(meant) > 1:
+        if not matching and components and not any(map(entry.is_for, refused)):
+            labels = [*(c.orientation.label or c.name for c in components), *(unusable.label for unusable in refused)]
+            labels_shown = ", ".join(map(shown, filter(None, labels)))
+            complaint = f"component = {shown(entry.component)}: the file has {labels_shown}"
+            entry.table.complain(f"{complaint}; write one of these, or its number in the file", "component")
+        if len(matching) > 1:
             for key in (key for key in ("azimuth", "role") if key in entry.values):
                 entry.table.complain(
-                    f"{key}: the file has {len(meant)} components; write component = "
+                    f"{key}: the file has {len(matching)} components; write component = "
                     f"{shown(components[0].orientation.label)} with it, and a table for each",
                     key,
                 )
-        for i in meant:
+        for i in matching:
             component, used = chosen[i]
             chosen[i] = (_described(component, entry, gravity), used and entry.use)
     return chosen
 
 
 def _described(component: Component, entry: Entry, gravity: float) -> Component:
-    values, where = entry.values, entry.table.file.path.name
+    values, file = entry.values, entry.table.file.path.name
     notes = list(component.notes)
     factor = 1.0
     initial = component.initial
@@ -210,19 +210,19 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         factor *= _unit_factor(component, entry, gravity)
         if factor != 1.0:
             initial = None  # in what unit it was, nobody says
-            notes.append(f"unit {values['unit']} as {where} says, instead of {component.unit}")
+            notes.append(f"unit {values['unit']} as {file} says, instead of {component.unit}")
     if "dt" in values and abs(values["dt"] - component.dt) > _SAME * component.dt:
         initial = None
-        notes.append(f"dt = {values['dt']:g} s as {where} says, instead of {component.dt:g} s")
+        notes.append(f"dt = {values['dt']:g} s as {file} says, instead of {component.dt:g} s")
         component = replace(component, dt=values["dt"])
     if values.get("scale", 1.0) != 1.0:
         factor *= values["scale"]
         initial = initial and initial.times(values["scale"])
-        notes.append(f"scaled by {values['scale']:g} as {where} says")
+        notes.append(f"scaled by {values['scale']:g} as {file} says")
     if values.get("polarity") == "-":
         factor = -factor
         initial = initial and initial.times(-1.0)
-        notes.append(f"sign reversed as {where} says")
+        notes.append(f"sign reversed as {file} says")
     if "station" in values:
         joined = values["station"] in (component.station, component.site)  # as a draft has it: no name for people
         name = component.origin.station if joined else values["station"]
@@ -235,7 +235,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         magnitude=values.get("magnitude", component.magnitude),
         distance_km=values.get("distance_km", component.distance_km),
         confirmed=tuple(key for key in _CONFIRM if values.get(key, key in component.confirmed)),
-        wanted=values.get("use", component.wanted),
+        preferred=values.get("use", component.preferred),
         initial=initial,
         notes=tuple(notes),
     )
@@ -297,17 +297,17 @@ def _from_csv(path: Path) -> TomlFile:
         names = [name.strip() for name in next(rows)]
         for name in names:
             if name not in RECORD and not file.is_full:
-                meant = closest(name, RECORD)
-                instead = f"did you mean {meant}?" if meant else "write one of " + ", ".join(RECORD)
+                closest_key = closest(name, RECORD)
+                instead = f"did you mean {closest_key}?" if closest_key else "write one of " + ", ".join(RECORD)
                 file.complain(("header",), f"{shown(name)}: unknown column; {instead}")
         for cells in rows:
             key_path: tuple[str | int, ...] = ("record", len(records))
-            given = {name: cell.strip() for name, cell in zip(names, cells, strict=False) if cell.strip()}
+            row = {name: cell.strip() for name, cell in zip(names, cells, strict=False) if cell.strip()}
             if any(cell.strip() for cell in cells):
-                file.lines.update({key: rows.line_num for key in (key_path, *((*key_path, name) for name in given))})
+                file.lines.update({key: rows.line_num for key in (key_path, *((*key_path, name) for name in row))})
                 if len(cells) > len(names):
                     file.complain(key_path, f"found {len(cells)} cells; the first line names {len(names)} columns")
-                records.append({name: _value(name, given[name], delimiter) for name in given if name in RECORD})
+                records.append({name: _value(name, row[name], delimiter) for name in row if name in RECORD})
     except csv.Error as error:
         raise InputError(f"{path}:{rows.line_num}: not a line of a CSV file: {error}") from None
     return file

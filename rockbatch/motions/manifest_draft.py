@@ -79,8 +79,8 @@ def _called(component: Component, of_file: Sequence[Reading]) -> str | int | Non
         return None
     labels = [r.orientation.label if isinstance(r, Component) else getattr(r, "label", "") for r in of_file]
     texts = [{label, reading.name} for label, reading in zip(labels, of_file, strict=True)]
-    own = (text for text in (component.orientation.label, component.name) if text)
-    return next((text for text in own if sum(text in both for both in texts) == 1), component.number)
+    names = (text for text in (component.orientation.label, component.name) if text)
+    return next((text for text in names if sum(text in words for words in texts) == 1), component.number)
 
 
 def _table(
@@ -103,7 +103,7 @@ def _table(
         )
     if not orientation.vertical:
         text += "# azimuth =\n" if orientation.azimuth is None else ""
-        text += "".join(f"# {odd.key} = true   # {legible(odd.text)}\n" for odd in gross_findings(component))
+        text += "".join(f"# {f.key} = true   # {legible(f.text)}\n" for f in gross_findings(component))
     if double:
         text += f"# use = true   # {legible(double.partition(';')[0])}\n"
     return text + f"# station = {_written(station)}\n# magnitude =\n# distance_km =\n"
@@ -111,10 +111,10 @@ def _table(
 
 def _remark(name: str, unusable: Unusable) -> str:
     """Return the remark on a file that is not used, or a table with a line to fill in for each key that it lacks."""
-    said, file = f"# Not used: {legible(unusable.reason)}\n", _written(name)
+    remark, file = f"# Not used: {legible(unusable.reason)}\n", _written(name)
     if not unusable.lacks:
-        return f"{said}# [[record]]\n# file = {file}\n# use = false\n"
-    return f"{said}[[record]]\nfile = {file}\n" + "".join(f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks)
+        return f"{remark}# [[record]]\n# file = {file}\n# use = false\n"
+    return f"{remark}[[record]]\nfile = {file}\n" + "".join(f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks)
 
 
 def _written(value: Any) -> str:

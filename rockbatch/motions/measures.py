@@ -40,9 +40,9 @@ def initial_of(
     """
     if velocities is None or len(velocities) != len(acceleration):
         return None
-    off = velocities - velocity(acceleration, dt)
-    initial = Initial(float(off.mean()))
-    if off.std() > _BELONG * np.abs(velocities).max():
+    offsets = velocities - velocity(acceleration, dt)
+    initial = Initial(float(offsets.mean()))
+    if offsets.std() > _BELONG * np.abs(velocities).max():
         return None
     if displacements is None or len(displacements) != len(acceleration):
         return initial
@@ -52,12 +52,12 @@ def initial_of(
 def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
     """Return the velocity and displacement at ``time`` [s] after the first sample, before the last."""
     k = min(int(time / dt), len(acceleration) - 2)
-    rest = time - k * dt
+    remainder = time - k * dt
     v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
     a, slope = float(acceleration[k]), float(acceleration[k + 1] - acceleration[k]) / dt
     return Initial(
-        v + rest * (a + rest * slope / 2.0),
-        d + rest * (v + rest * (a / 2.0 + rest * slope / 6.0)),
+        v + remainder * (a + remainder * slope / 2.0),
+        d + remainder * (v + remainder * (a / 2.0 + remainder * slope / 6.0)),
     )
 
 
@@ -122,9 +122,9 @@ def _energy(acceleration: Samples, dt: float) -> Samples:
 def cumulative_absolute_velocity(acceleration: Samples, dt: float) -> float:
     """CAV = ∫|a| dt [m/s] over the whole record (EPRI 1988), exact for a straight between its samples."""
     first, second = np.abs(acceleration[:-1]), np.abs(acceleration[1:])
-    both = first + second
+    sums = first + second
     crosses = acceleration[:-1] * acceleration[1:] < 0
-    return float(0.5 * dt * np.where(crosses, (first**2 + second**2) / np.where(crosses, both, 1.0), both).sum())
+    return float(0.5 * dt * np.where(crosses, (first**2 + second**2) / np.where(crosses, sums, 1.0), sums).sum())
 
 
 def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> float:

@@ -182,23 +182,23 @@ class Motion(Shown):
         wrong = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
-        for what, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
+        for component, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
             if samples is None:
                 continue
             try:
                 samples = _frozen(samples)
             except TypeError as error:
-                wrong.append(f'motion "{self.name}": {what} acceleration {error}')
+                wrong.append(f'motion "{self.name}": {component} acceleration {error}')
                 continue
-            object.__setattr__(self, what, samples)
+            object.__setattr__(self, component, samples)
             if np.ndim(samples) != 1 or len(samples) == 0:
                 wrong.append(
-                    f'motion "{self.name}": {what} acceleration has shape {np.shape(samples)}: must be samples in a row'
+                    f'motion "{self.name}": {component} acceleration has shape {np.shape(samples)}: must be samples in a row'
                 )
             elif not np.isfinite(samples).all():
                 first = int(np.argmin(np.isfinite(samples)))
                 wrong.append(
-                    f'motion "{self.name}": {what} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: '
+                    f'motion "{self.name}": {component} sample {first} (t = {first * self.dt:g} s) is {samples[first]}: '
                     "must be a number; repair the record or leave it out"
                 )
         if not wrong and self.vertical is not None and len(self.vertical) != len(self.horizontal):

@@ -143,18 +143,18 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
     whole = orientation_of(stem) if stem.isalnum() and not _is_number("", stem, stem) else None
     if whole and (whole.vertical or whole.azimuth is not None):
         return "", whole
-    rest, behind = stem, ""
+    site, behind = stem, ""
     while True:
         for end in _ENDS:
-            match = end.fullmatch(rest)
-            if match is None or _is_number(match["site"], match["label"], rest):
+            match = end.fullmatch(site)
+            if match is None or _is_number(match["site"], match["label"], site):
                 continue
             if orientation := orientation_of(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
-        processing = _PROCESSING.fullmatch(rest)
+        processing = _PROCESSING.fullmatch(site)
         if processing is None:
             break
-        rest, behind = processing["site"], rest[len(processing["site"]) :] + behind
+        site, behind = processing["site"], site[len(processing["site"]) :] + behind
     for orientation in reversed(_channels(stem)):
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
@@ -172,14 +172,14 @@ def _contradicted(orientation: Orientation, stem: str) -> bool:
     return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
 
 
-def _is_number(before: str, label: str, stem: str) -> bool:
+def _is_number(site: str, label: str, stem: str) -> bool:
     """Return whether the digits at the end of a name are no azimuth: a date or time, a station's number, or that of a file."""
     if not label.isdigit():
         return False
     if _STATION.search(stem) or _CHANNELS.search(stem):
         return True
-    if not before or not stem[len(before)].isdigit():  # apart: 001, or 2019.187, the day of a year
-        return re.fullmatch("00[1-9]", label) is not None or re.search(r"(?:19|20)\d\d$", before) is not None
+    if not site or not stem[len(site)].isdigit():  # apart: 001, or 2019.187, the day of a year
+        return re.fullmatch("00[1-9]", label) is not None or re.search(r"(?:19|20)\d\d$", site) is not None
     run = stem[len(stem.rstrip("0123456789")) :]
     if len(run) == 4:
         return 1900 <= int(run) < 2040

@@ -70,16 +70,16 @@ def to_motions(
         if vertical:
             together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
             partner, refused = _partner(component, together)
-            notes += [f"no vertical: {v.source}: {why}" for v, why in refused]
-            unusable += [Unusable(v.name, v.source, why) for v, why in refused if id(v) not in used]
+            notes += [f"no vertical: {v.source}: {obstacle}" for v, obstacle in refused]
+            unusable += [Unusable(v.name, v.source, obstacle) for v, obstacle in refused if id(v) not in used]
             used.update(id(v) for v in together)
         motion = _motion(component, partner, notes)
         lacking = bool(vertical) and motion.vertical is None
         motions.append(replace(motion, station=known_as[station], lacks_vertical=lacking))
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
-        left = [v for group in verticals for v in group if id(v) not in used]
-        unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in left]
+        unused = [v for group in verticals for v in group if id(v) not in used]
+        unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in unused]
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _named(motions, [c.folder for _, c in horizontals])
     judged = [
@@ -97,15 +97,15 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for station in judged:
-        motion, odd = station.motion, findings(station)
+        motion, of_motion = station.motion, findings(station)
         keys = {*station.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
             unusable.append(Unusable(motion.name, motion.files, f"{motion.label} {_NO_VERTICAL}"))
-        elif why := doubt(motion.name, odd, keys):
-            unusable.append(Unusable(motion.name, motion.files, why))
+        elif refusal := doubt(motion.name, of_motion, keys):
+            unusable.append(Unusable(motion.name, motion.files, refusal))
         else:
-            said = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in odd]
-            motions.append(replace(motion, findings=odd, notes=(*motion.notes, *said)))
+            remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in of_motion]
+            motions.append(replace(motion, findings=of_motion, notes=(*motion.notes, *remarks)))
     return MotionSet(motions, unusable)
 
 
@@ -113,10 +113,10 @@ def _question(component: Component) -> str:
     """Return which statement a component of unknown direction lacks, and where to write it."""
     label = component.orientation.label
     one_of_several = bool(label) and component.source.endswith(f"({label})")
-    which = f"component = {shown(label)}" if one_of_several else "it"
+    place = f"component = {shown(label)}" if one_of_several else "it"
     return (
         f"direction not known{f' from {shown(label)}' if label else ''}: in motions.toml, which `rockbatch motions FOLDER "
-        f'--write-manifest` drafts, write role = "horizontal" or "vertical", or azimuth = …, for {which}; where none of '
+        f'--write-manifest` drafts, write role = "horizontal" or "vertical", or azimuth = …, for {place}; where none of '
         'those that do not say is vertical, role = "horizontal" under [motions] in the study, or --role horizontal'
     )
 
@@ -126,12 +126,12 @@ def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) ->
     components, added = list(files), []
     for component in packaged:
         azimuth = component.orientation.azimuth
-        same = [
+        replaced = [
             i for i, file in enumerate(components)
             if file.site == component.site and same_azimuth(file.orientation.azimuth, azimuth)
         ]  # fmt: skip
-        added += [] if same else [component]
-        for i in same:
+        added += [] if replaced else [component]
+        for i in replaced:
             note = f"used instead of {component.name} of {component.source}"
             components[i] = replace(components[i], notes=(*components[i].notes, note))
     return components + added
@@ -161,7 +161,7 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
     """Return which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
-    refused = [(v, why) for v in together if (why := too_unlike(h, v))]
+    refused = [(v, obstacle) for v in together if (obstacle := too_unlike(h, v))]
     fitting = [v for v in together if not too_unlike(h, v)]
     if len(fitting) < 2:
         return (fitting[0] if fitting else None), refused
@@ -172,24 +172,26 @@ def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | N
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
     """Return the motion of a horizontal component and its vertical one."""
-    said = list(notes)
+    remarks = list(notes)
     dt, horizontal, vertical, initial, start = h.dt, h.acceleration, None, h.initial, h.start
     if v is not None:
         common = on_common_samples(h, replace(v, acceleration=v.upward), ("horizontal", "vertical"))
         if len(common.first) < 2 or np.abs(common.first).max() < _MOST_OF_IT * h.pga:
-            said.append(f"no vertical: {v.source} does not last over the horizontal peak")
+            remarks.append(f"no vertical: {v.source} does not last over the horizontal peak")
             v = None
         else:
             dt, horizontal, vertical = common.dt, common.first, common.second
             initial = h.initial and state_at(h.acceleration, h.dt, h.initial, common.begins[0])
             start = h.start if h.start is None else h.start + common.begins[0]
-            said += common.notes
-    odd: tuple[Finding, ...] = ()
+            remarks += common.notes
+    gross: tuple[Finding, ...] = ()
     if v is not None:
-        odd = tuple(replace(f, text=f"vertical: {f.text}") for f in v.odd if f.gross and "confirm" not in v.confirmed)
-        said += [f"vertical: {note}" for note in (*v.notes, *(f.text for f in v.odd if not f.gross))]
+        gross = tuple(
+            replace(f, text=f"vertical: {f.text}") for f in v.findings if f.gross and "confirm" not in v.confirmed
+        )
+        remarks += [f"vertical: {note}" for note in (*v.notes, *(f.text for f in v.findings if not f.gross))]
         if v.orientation.down:
-            said.append(f"vertical: {v.orientation.label or 'component'} is positive down, sign reversed")
+            remarks.append(f"vertical: {v.orientation.label or 'component'} is positive down, sign reversed")
     return Motion(
         name=h.name,
         dt=dt,
@@ -197,13 +199,13 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         vertical=vertical,
         source=h.source,
         vertical_source=v.source if v is not None else "",
-        notes=tuple(said),
+        notes=tuple(remarks),
         azimuth=h.orientation.azimuth,
         magnitude=h.magnitude,
         distance_km=h.distance_km,
         initial=initial,
         processed=h.processed,
-        findings=odd,
+        findings=gross,
         origin=directed(h.origin, h.orientation),
         start=start,
     )

@@ -131,8 +131,8 @@ def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: 
     """
     lone = motions[0]
     samples = aligned(*square_pair(motions)) if lone.across is None else (lone.horizontal, lone.across)
-    both = (responses(a, lone.dt, periods, damping) for a in samples)
-    rows = [measured(u, v) for u, v in zip(*both, strict=True)]
+    histories = (responses(a, lone.dt, periods, damping) for a in samples)
+    rows = [measured(u, v) for u, v in zip(*histories, strict=True)]
     return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
 
 

@@ -92,16 +92,16 @@ def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
 
 def no_zero_line(judged: Judged) -> Finding | None:
     """Find a series that does not swing about zero: a spectrum, an envelope, an offset."""
-    both = (("", judged.motion.horizontal), ("its vertical component ", judged.motion.vertical))
-    moving = [(what, a) for what, a in both if a is not None and len(a) >= _ENOUGH and np.any(a)]
-    for what, a in moving:
+    components = (("", judged.motion.horizontal), ("its vertical component ", judged.motion.vertical))
+    moving = [(name, a) for name, a in components if a is not None and len(a) >= _ENOUGH and np.any(a)]
+    for name, a in moving:
         if a.min() >= 0 or a.max() <= 0:
-            return Finding("zero line", f"{what}never changes sign, as spectra do and records do not", gross=True)
-    for what, a in moving:
+            return Finding("zero line", f"{name}never changes sign, as spectra do and records do not", gross=True)
+    for name, a in moving:
         share = abs(float(a.mean())) / float(np.abs(a).max())
         if share > FARTHEST_MEAN:
             text = (
-                f"{what}has a mean of {share:.0%} of its peak, where a record's is near 0: if an offset is in it, write "
+                f"{name}has a mean of {share:.0%} of its peak, where a record's is near 0: if an offset is in it, write "
                 'offset = "mean" under [motions]'
             )
             return Finding("zero line", text, gross=True)
@@ -110,13 +110,13 @@ def no_zero_line(judged: Judged) -> Finding | None:
 
 def alternation(judged: Judged) -> Finding | None:
     """Find samples that swing to and fro: the recorder, or its file, and not the ground."""
-    for what, samples in (("", judged.motion.horizontal), ("vertical: ", judged.motion.vertical)):
+    for name, samples in (("", judged.motion.horizontal), ("vertical: ", judged.motion.vertical)):
         if samples is None:
             continue
         swing, peak = alternating(samples), float(np.abs(samples).max())
         if swing > ALTERNATION * peak:
             text = (
-                f"{what}it alternates from sample to sample by {swing / judged.gravity:.3g} g, {swing / peak:.0%} of its "
+                f"{name}it alternates from sample to sample by {swing / judged.gravity:.3g} g, {swing / peak:.0%} of its "
                 "PGA: check the file"
             )
             return Finding("alternates", text, gross=True)
@@ -187,11 +187,11 @@ def unprocessed(judged: Judged) -> Finding | None:
 
 
 def differing_copies(judged: Judged) -> Finding | None:
-    """Return what its header or its copies that are left out have otherwise, and those of its vertical component."""
-    odd = (*judged.component.odd, *judged.motion.findings)
-    if not odd:
+    """Return how its header, or copies of it that are left out, differ; those of its vertical component too."""
+    both = (*judged.component.findings, *judged.motion.findings)
+    if not both:
         return None
-    return Finding(odd[0].what, "; ".join(finding.text for finding in odd), any(finding.gross for finding in odd))
+    return Finding(both[0].what, "; ".join(finding.text for finding in both), any(finding.gross for finding in both))
 
 
 JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
@@ -217,15 +217,15 @@ def gross_findings(component: Component) -> list[Finding]:
     alone = Motion(
         component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
     )
-    odd = findings(Judged(alone, component, (), GRAVITY))
+    of_it = findings(Judged(alone, component, (), GRAVITY))
     return [
-        finding for finding in odd if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
+        finding for finding in of_it if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
     ]
 
 
-def doubt(name: str, odd: Sequence[Finding], confirmed: Collection[str]) -> str:
+def doubt(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
     """Return why the motion ``name`` has to be confirmed, and how; empty where it need not be, or ``confirmed`` has the key."""
-    open_ones = [f for f in odd if f.gross and not {"confirm", f.key}.intersection(confirmed)]
+    open_ones = [f for f in findings if f.gross and not {"confirm", f.key}.intersection(confirmed)]
     if not open_ones:
         return ""
     key = open_ones[0].key if len(open_ones) == 1 else "confirm"

@@ -90,10 +90,10 @@ def pulse(
     if not name.strip():
         problems.append("name is empty: write the name that the pulse shall have in tables")
     if not problems:
-        odd = unlikely(abs(amplitude) / GRAVITY, period, dt)
+        doubts = unlikely(abs(amplitude) / GRAVITY, period, dt)
         typed = {"amplitude": f"{amplitude:g} m/s², "}
         problems = [
-            f"{key} = {typed.get(key, '')}{text}; {remedy(key)}" for key, text in odd.items() if key not in confirm
+            f"{key} = {typed.get(key, '')}{text}; {remedy(key)}" for key, text in doubts.items() if key not in confirm
         ]
     if problems:
         raise InputError(*problems)
@@ -110,16 +110,16 @@ def pulse(
 
 def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
     """Return what is odd about the "amplitude" [g] of a pulse, and about its "dt" [s] for its period [s], by these names."""
-    odd = {}
+    doubts = {}
     if amplitude_g > MOST_PULSE:
-        odd["amplitude"] = (
+        doubts["amplitude"] = (
             f"{amplitude_g:.3g} g: more than {MOST_PULSE:g} g, where pulses of near-fault records have 0.1 to 1 g"
         )
     if dt * LEAST_SAMPLES > period * (1.0 + _ON_A_SAMPLE):
-        odd["dt"] = (
+        doubts["dt"] = (
             f"{dt:g} s: {period / dt:.2g} samples in a period of {period:g} s, which miss the pulse's peak; 50 do well"
         )
-    return odd
+    return doubts
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:

@@ -38,8 +38,8 @@ class Target:
     pairs: str = "apart"
 
     def __post_init__(self) -> None:
-        given = [value for value in (self.pga_g, self.pgv_m_s, self.sa_g) if value is not None]
-        if len(given) != 1 or not given[0] > 0 or (self.sa_g is None) != (self.period_s is None):
+        targets = [value for value in (self.pga_g, self.pgv_m_s, self.sa_g) if value is not None]
+        if len(targets) != 1 or not targets[0] > 0 or (self.sa_g is None) != (self.period_s is None):
             raise InputError("a target is one of pga_g, pgv_m_s, or sa_g with period_s, above 0")
         if self.pairs != "apart" and (self.sa_g is None or self.pairs not in DIRECTIONS):
             raise InputError(
@@ -73,15 +73,15 @@ class Target:
 
     def _factor(self, motion: Motion, gravity: float) -> float:
         if self.pga_g is not None:
-            wanted, present = self.pga_g * gravity, motion.pga
+            target, present = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
-            wanted, present = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt, motion.initial)
+            target, present = self.pgv_m_s, measures.pgv(motion.horizontal, motion.dt, motion.initial)
         else:
             assert self.sa_g is not None
             assert self.period_s is not None
-            wanted = self.sa_g * gravity
+            target = self.sa_g * gravity
             present = float(spectral_acceleration(motion.horizontal, motion.dt, [self.period_s], self.damping)[0])
-        return wanted / present if present > 0 else math.inf
+        return target / present if present > 0 else math.inf
 
 
 MOST_FACTOR = 4.0
@@ -155,18 +155,18 @@ def with_vertical(
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for motion in motion_set.motions:
-        station, before = motion.of_station, recorded[motion.name]
-        if motion.vertical is None or before is None:
+        station, unscaled = motion.of_station, recorded[motion.name]
+        if motion.vertical is None or unscaled is None:
             motions.append(motion)
         elif station in reasons:
-            why = reasons[station].replace(f'["{station}"]', f'["{motion.name}"]')
-            unusable.append(Unusable(motion.name, motion.files, f"its vertical component {why}"))
+            reason = reasons[station].replace(f'["{station}"]', f'["{motion.name}"]')
+            unusable.append(Unusable(motion.name, motion.files, f"its vertical component {reason}"))
         else:
             factor = factors.get(station, motion.factor) * scale
             words = [f"vertical scaled by {factors[station]:.4g} to {target}"] if station in factors else []
             words += [f"vertical times {scale:g}"] if scale != 1.0 else []
             motions.append(replace(
-                motion, vertical=before * factor, vertical_factor=factor, notes=(*motion.notes, *words),
+                motion, vertical=unscaled * factor, vertical_factor=factor, notes=(*motion.notes, *words),
             ))  # fmt: skip
     return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
 
@@ -180,10 +180,10 @@ def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Un
         Unusable(
             motion.name,
             motion.files,
-            f'{lacks}: {why}; write pairs = "apart", or leave it out',
+            f'{lacks}: {reason}; write pairs = "apart", or leave it out',
         )
         for of_station in stations.values()
-        if (why := unpaired(of_station))
+        if (reason := unpaired(of_station))
         for motion in of_station
     ]
 

@@ -37,7 +37,7 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 
 def selected(motion_set: MotionSet, selection: Selection, gravity: float) -> MotionSet:
     """Return the motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
-    kept: list[Motion] = []
+    chosen: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []
     ranges = {key: limits for key in _MEASURES if (limits := getattr(selection, key)) is not None}
@@ -55,7 +55,10 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float) -> Mot
         if outside:
             left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
         else:
-            kept.append(motion)
+            chosen.append(motion)
     return replace(
-        motion_set, motions=kept, unusable=[*motion_set.unusable, *unusable], left_out=[*motion_set.left_out, *left_out]
+        motion_set,
+        motions=chosen,
+        unusable=[*motion_set.unusable, *unusable],
+        left_out=[*motion_set.left_out, *left_out],
     )

@@ -56,7 +56,7 @@ class ShockSequence:
         if wrong:
             raise InputError(*wrong)
 
-    def of(self, parts: Sequence[Motion]) -> Motion:
+    def joined(self, parts: Sequence[Motion]) -> Motion:
         """Return the sequence of its records, in their order."""
         n = len(parts)
         factors = self.factors * (n if len(self.factors) == 1 else 1) or (1.0,) * n
@@ -149,27 +149,27 @@ def sequence(
     ]
     dt = min(part.dt for part in parts)
     _check_size(parts, dt, name, pause)
-    said = [f"shock {i}, {m.name}: {note}" for i, m in enumerate(parts, 1) for note in m.notes]
-    said += [
+    notes = [f"shock {i}, {m.name}: {note}" for i, m in enumerate(parts, 1) for note in m.notes]
+    notes += [
         f"shock {i}, {m.name}: times {f:g}{', reversed' * (s == '-')}"
         for i, (m, f, s) in enumerate(zip(parts, times, signs, strict=True), 1)
         if (f, s) != (1.0, "+")
     ]
-    parts = [_resampled(part, dt, said) for part in parts]
-    rest = max(2, round(pause / dt))
-    starts = np.cumsum([0, *(part.npts - 1 + rest for part in parts[:-1])])
+    parts = [_resampled(part, dt, notes) for part in parts]
+    pause_steps = max(2, round(pause / dt))
+    starts = np.cumsum([0, *(part.npts - 1 + pause_steps for part in parts[:-1])])
     vertical = None
     if any(part.vertical is not None for part in parts):
         lacking = [part.name for part in parts if part.vertical is None]
-        said += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
+        notes += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
         vertical = _joined([part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts],
-                           [Initial()] * len(parts), dt, rest, name, "vertical: ", said)  # fmt: skip
+                           [Initial()] * len(parts), dt, pause_steps, name, "vertical: ", notes)  # fmt: skip
     initial = [part.initial or Initial() for part in parts]
-    horizontal = _joined([part.horizontal for part in parts], initial, dt, rest, name, "", said)
+    horizontal = _joined([part.horizontal for part in parts], initial, dt, pause_steps, name, "", notes)
     return _described(parts, name, replace(
-        parts[0], name=name, dt=dt, across=None, horizontal=horizontal, vertical=vertical, notes=tuple(said),
+        parts[0], name=name, dt=dt, across=None, horizontal=horizontal, vertical=vertical, notes=tuple(notes),
         shocks=tuple(
-            Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + rest) * dt)
+            Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + pause_steps) * dt)
             for i, part in zip(map(int, starts), parts, strict=True)
         ),
     ))  # fmt: skip
@@ -204,11 +204,11 @@ def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> 
         )
 
 
-def _resampled(motion: Motion, dt: float, said: list[str]) -> Motion:
-    """Return a motion with a sampling interval [s], its samples interpolated linearly, with a note in ``said``."""
+def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
+    """Return a motion with a sampling interval [s], its samples interpolated linearly, with a note in ``notes``."""
     if abs(motion.dt - dt) <= _SAME * dt:
         return motion
-    said.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
+    notes.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
     positions, samples = (
         np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt,
         np.arange(motion.npts),
@@ -218,27 +218,27 @@ def _resampled(motion: Motion, dt: float, said: list[str]) -> Motion:
 
 
 def _joined(
-    series: Sequence[Samples], initial: Sequence[Initial], dt: float, rest: int, name: str, what: str, said: list[str]
+    series: Sequence[Samples], initial: Sequence[Initial], dt: float, gap: int, name: str, part: str, notes: list[str]
 ) -> Samples:
-    """Return accelerations one after the other, ``rest`` steps apart, each beginning with the velocity of its ``initial``."""
+    """Return accelerations one after the other, ``gap`` steps apart, each beginning with the velocity of its ``initial``."""
     if len(series) == 1:
         return series[0]
     joined = []
-    bell = 1.0 - np.cos(2.0 * math.pi * np.arange(1, rest) / rest)
+    bell = 1.0 - np.cos(2.0 * math.pi * np.arange(1, gap) / gap)
     most = 0.0
     for a, b, before, after in zip(series, series[1:], initial, initial[1:], strict=False):
         ends = float(measures.velocity(a, dt, before)[-1]) + 0.5 * dt * (a[-1] + b[0])
-        height = (after.velocity - ends) / (rest * dt)
+        height = (after.velocity - ends) / (gap * dt)
         most = max(most, 2.0 * abs(height))
-        joined += [a, height * bell if 2.0 * abs(height) > 1e-12 * np.abs(a).max() else np.zeros(rest - 1)]
+        joined += [a, height * bell if 2.0 * abs(height) > 1e-12 * np.abs(a).max() else np.zeros(gap - 1)]
     if most > MOST_IN_PAUSE:
         raise InputError(
-            f"{name}: {what}it takes {most / GRAVITY:.2g} g to bring the ground to rest in a pause of {rest * dt:g} s, more than "
+            f"{name}: {part}it takes {most / GRAVITY:.2g} g to bring the ground to rest in a pause of {gap * dt:g} s, more than "
             f'{MOST_IN_PAUSE / GRAVITY:g} g: a record ends with a velocity, as with an offset; write offset = "mean" under '
             "[motions], or a longer pause_s"
         )
     if most > _NOTED:
-        said.append(f"{what}the ground is brought to rest in the pauses by {most / GRAVITY:.1e} g at most")
+        notes.append(f"{part}the ground is brought to rest in the pauses by {most / GRAVITY:.1e} g at most")
     return np.concatenate([*joined, series[-1]])
 
 
@@ -267,75 +267,75 @@ def _described(parts: Sequence[Motion], name: str, whole: Motion) -> Motion:
 
 
 def with_sequences(
-    motions: MotionSet, wanted: Sequence[ShockSequence], pulses: Sequence[Motion] = (), where: str = ""
+    motions: MotionSet, sequences: Sequence[ShockSequence], pulses: Sequence[Motion] = (), source: str = ""
 ) -> tuple[MotionSet, list[Motion]]:
     """Return records and pulses with sequences of them behind them, in place of those that are not run ``alone``, too.
 
     A sequence of pulses alone is a pulse, which no target scales. A sequence is unusable if one of its records is, or if it
     cannot be joined. Raises ``InputError`` for sequences with the name of a record, and for names of no record, unless they stand
-    in a manifest, ``where``: then the sequence is unusable, or left out if none of its records is read.
+    in a manifest, ``source``: then the sequence is unusable, or left out if none of its records is read.
     """
-    if not wanted:
+    if not sequences:
         return motions, list(pulses)
     by_name = {motion.name: motion for motion in (*motions.motions, *pulses)}
-    without: tuple[Unusable | LeftOut, ...] = (*motions.unusable, *motions.left_out)
-    reasons = {file.name: file.reason for file in without}
-    made: list[Motion] = []
-    others: list[Unusable | LeftOut] = []
+    not_used: tuple[Unusable | LeftOut, ...] = (*motions.unusable, *motions.left_out)
+    reasons = {file.name: file.reason for file in not_used}
+    joined_motions: list[Motion] = []
+    refused: list[Unusable | LeftOut] = []
     wrong = [
-        f"{where}{entry.name}: a record has this name; give the sequence one of its own"
-        for entry in wanted
+        f"{source}{entry.name}: a record has this name; give the sequence one of its own"
+        for entry in sequences
         if entry.name in by_name
     ]
-    for entry in wanted:
+    for entry in sequences:
         try:
-            joined = _one(entry, by_name, reasons, where)
+            joined = _sequence_or_refusal(entry, by_name, reasons, source)
         except InputError as error:
             wrong += error.problems
         else:
-            (made if isinstance(joined, Motion) else others).append(joined)  # type: ignore[arg-type]
+            (joined_motions if isinstance(joined, Motion) else refused).append(joined)  # type: ignore[arg-type]
     if wrong:
         raise InputError(*wrong)
-    there = {motion.name for motion in made}
-    parts = {name: entry.name for entry in reversed(wanted) if entry.name in there for name in entry.records}
-    alone = {name for entry in wanted if entry.alone for name in entry.records}
+    names = {motion.name for motion in joined_motions}
+    parts = {name: entry.name for entry in reversed(sequences) if entry.name in names for name in entry.records}
+    alone = {name for entry in sequences if entry.alone for name in entry.records}
     for name, whole in parts.items():
         if name not in alone:
             reason = f"a shock of the sequence {shown(whole)}; alone = true there runs it on its own, too"
-            others.append(LeftOut(name, by_name[name].files, reason))
-    gone = parts.keys() - alone
+            refused.append(LeftOut(name, by_name[name].files, reason))
+    parts_only = parts.keys() - alone
     of_pulses = {pulse.name for pulse in pulses}
-    as_pulses = [motion for motion in made if of_pulses.issuperset(shock.name for shock in motion.shocks)]
-    records = [motion for motion in motions.motions if motion.name not in gone]
-    records += [motion for motion in made if motion not in as_pulses]
-    unusable = [*motions.unusable, *(file for file in others if isinstance(file, Unusable))]
-    left_out = [*motions.left_out, *(file for file in others if isinstance(file, LeftOut))]
-    kept = [pulse for pulse in pulses if pulse.name not in gone]
-    return replace(motions, motions=records, unusable=unusable, left_out=left_out), kept + as_pulses
+    as_pulses = [motion for motion in joined_motions if of_pulses.issuperset(shock.name for shock in motion.shocks)]
+    records = [motion for motion in motions.motions if motion.name not in parts_only]
+    records += [motion for motion in joined_motions if motion not in as_pulses]
+    unusable = [*motions.unusable, *(file for file in refused if isinstance(file, Unusable))]
+    left_out = [*motions.left_out, *(file for file in refused if isinstance(file, LeftOut))]
+    pulses_alone = [pulse for pulse in pulses if pulse.name not in parts_only]
+    return replace(motions, motions=records, unusable=unusable, left_out=left_out), pulses_alone + as_pulses
 
 
-def _one(
-    wanted: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], where: str
+def _sequence_or_refusal(
+    entry: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], source: str
 ) -> Motion | Unusable | LeftOut:
     """Return a sequence, or why there is none; ``reasons`` says by name why records cannot be used."""
-    missing = [name for name in wanted.records if name not in by_name]
-    why = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
+    missing = [name for name in entry.records if name not in by_name]
+    reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
     unknown = [_unknown(name, by_name) for name in missing if name not in reasons]
-    if unknown and not where:
-        raise InputError(*(f"[[motions.sequence]] {shown(wanted.name)}: {message}" for message in unknown))
-    if len(unknown) == len(wanted.records):  # a file beside the manifest, or records that are turned
-        return LeftOut(wanted.name, where, f"none of its records is read: {unknown[0]}")
+    if unknown and not source:
+        raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in unknown))
+    if len(unknown) == len(entry.records):  # a file beside the manifest, or records that are turned
+        return LeftOut(entry.name, source, f"none of its records is read: {unknown[0]}")
     if not missing:
         try:
-            return wanted.of([by_name[name] for name in wanted.records])
+            return entry.joined([by_name[name] for name in entry.records])
         except InputError as error:
-            why = list(error.problems)
-    reason = f"sequence {shown(wanted.name)}: {'; '.join((*why, *unknown))}"
-    return Unusable(wanted.name, where or "[[motions.sequence]]", reason)
+            reasons_of_parts = list(error.problems)
+    reason = f"sequence {shown(entry.name)}: {'; '.join((*reasons_of_parts, *unknown))}"
+    return Unusable(entry.name, source or "[[motions.sequence]]", reason)
 
 
-def _unknown(name: str, known: Mapping[str, Motion]) -> str:
-    meant = closest(name, known)
+def _unknown(name: str, records: Mapping[str, Motion]) -> str:
+    nearest = closest(name, records)
     return f"records: there is no record {shown(name)}; " + (
-        f"did you mean {shown(meant)}?" if meant else "`rockbatch motions PATH` lists them"
+        f"did you mean {shown(nearest)}?" if nearest else "`rockbatch motions PATH` lists them"
     )

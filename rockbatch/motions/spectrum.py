@@ -69,11 +69,11 @@ def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping:
     every: dict[int, Samples] = {}
     for among, finer, step in _sampled(acceleration, dt, periods, damping):
         places = np.flatnonzero(among)
-        for some in np.array_split(places, -(-len(places) // _TOGETHER)):
-            omega = 2.0 * math.pi / periods[some]
+        for block in np.array_split(places, -(-len(places) // _TOGETHER)):
+            omega = 2.0 * math.pi / periods[block]
             blocks = np.stack(list(_march(finer, step, omega, damping, whole=True)), axis=1)
-            histories = blocks.reshape(-1, len(some))[: len(finer)] * (omega / math.sqrt(1.0 - damping**2))
-            every |= zip(map(int, some), np.ascontiguousarray(histories.T), strict=True)
+            histories = blocks.reshape(-1, len(block))[: len(finer)] * (omega / math.sqrt(1.0 - damping**2))
+            every |= zip(map(int, block), np.ascontiguousarray(histories.T), strict=True)
     return [every[i] for i in range(len(periods))]
 
 
@@ -102,9 +102,9 @@ def _sampled(
 
 def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
     """``PERIODS``, and as many a decade beyond them as it takes to reach from ``low`` to ``high`` [s]."""
-    before = max(0, math.ceil(50 * math.log10(PERIODS[0] / low) - 1e-9))
-    after = max(0, math.ceil(50 * math.log10(high / PERIODS[-1]) - 1e-9))
-    return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-before, len(PERIODS) + after) / 50.0), dtype=np.float64)
+    below = max(0, math.ceil(50 * math.log10(PERIODS[0] / low) - 1e-9))
+    above = max(0, math.ceil(50 * math.log10(high / PERIODS[-1]) - 1e-9))
+    return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-below, len(PERIODS) + above) / 50.0), dtype=np.float64)
 
 
 def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float) -> npt.NDArray[np.float64]:

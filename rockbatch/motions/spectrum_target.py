@@ -106,8 +106,8 @@ class SpectrumTarget:
         if self.factors != "suite":
             row_of = {place: row for row, places in enumerate(members) for place in places}
             for station in stations:
-                own = rows[sorted({row_of[place] for place in station})]
-                factors[station] = math.exp(float(np.log(target / own).mean()))
+                rows_of_station = rows[sorted({row_of[place] for place in station})]
+                factors[station] = math.exp(float(np.log(target / rows_of_station).mean()))
         if self.factors != "each":
             scaled = rows * np.array([factors[places[0]] for places in members])[:, None]
             common = float((self.share * target / scaled.mean(axis=0)).max())

@@ -41,21 +41,21 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
     """
     by_header = grouped(components, lambda c: (c.folder, c.station or id(c)))
     stations: list[list[Component]] = []
-    known: dict[tuple[str, str, bool], list[Component]] = {}
+    by_name: dict[tuple[str, str, bool], list[Component]] = {}
     for group in (part for whole in by_header.values() for record in _by_time(whole) for part in _by_file(record)):
         folder, headed = group[0].folder, bool(group[0].station)
         sites = list(dict.fromkeys(component.site for component in group if component.site))
-        of_name = (known.get((folder, site, headed and not is_numbered(site))) for site in sites)
-        station = next((other for other in of_name if other and _may_join(other, group)), None)
+        of_name = (by_name.get((folder, site, headed and not is_numbered(site))) for site in sites)
+        station = next((candidate for candidate in of_name if candidate and _may_join(candidate, group)), None)
         if station is None:
             station = group
             stations.append(group)
         else:
             station += group
         for site in sites:
-            known.setdefault((folder, site, False), station)
+            by_name.setdefault((folder, site, False), station)
             if not headed:
-                known.setdefault((folder, site, True), station)
+                by_name.setdefault((folder, site, True), station)
     return stations
 
 
@@ -66,8 +66,8 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
     each name of a station, is one.
     """
     if not all(component.dated for component in group):
-        ways = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
-        if all(component.event for component in group) or len(ways) == len(group):
+        directions = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
+        if all(component.event for component in group) or len(directions) == len(group):
             return [group]
         files = Counter(file_of(component.source) for component in group)
         return list(grouped(group, lambda c: (f, "") if files[f := file_of(c.source)] > 1 else ("", c.site)).values())
@@ -89,16 +89,16 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
         yield record
         return
     yield from whole
-    rest = [component for components in files.values() if not _is_whole(components) for component in components]
-    if rest:
-        yield rest
+    remainder = [component for components in files.values() if not _is_whole(components) for component in components]
+    if remainder:
+        yield remainder
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
     """Return whether two sets of one name may be one recording: not if both are complete, nor if they do not overlap in time."""
     if _is_whole(station) and _is_whole(group):
         return False
-    return any(overlap(member, other) for member in station for other in group)
+    return any(overlap(member, component) for member in station for component in group)
 
 
 def _is_whole(station: Sequence[Component]) -> bool:
@@ -121,9 +121,9 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
 
     keyed = [(key, (i, c)) for i, station in enumerate(stations) for c in station for key in _keys(c)]
     for group in grouped(keyed, lambda pair: pair[0]).values():
-        same = [of_station for _, of_station in group]
-        for pairs in (pairwise(same), combinations(same, 2)):  # neighbours first: mostly, that is all
-            if len({first_of(i) for i, _ in same}) > 1:
+        namesakes = [of_station for _, of_station in group]
+        for pairs in (pairwise(namesakes), combinations(namesakes, 2)):  # neighbours first: mostly, that is all
+            if len({first_of(i) for i, _ in namesakes}) > 1:
                 for (i, a), (j, b) in pairs:
                     low, high = sorted((first_of(i), first_of(j)))
                     if low != high and (_together(a, b) or _copies(a, b)):

@@ -144,9 +144,9 @@ class RigidBase(_Traits):
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
-        own: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
-        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
-        return own | _interface(self) | described_restraints(self.restraints)
+        values: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
+        values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
+        return values | _interface(self) | described_restraints(self.restraints)
 
 
 @checked
@@ -198,11 +198,11 @@ class ElasticBase(_Traits):
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""
         landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
-        own: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
-        own |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
-        own |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
-        own |= in_kilonewtons(pier, self)
-        return own | _interface(self) | described_restraints(self.restraints)
+        values: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
+        values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
+        values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
+        values |= in_kilonewtons(pier, self)
+        return values | _interface(self) | described_restraints(self.restraints)
 
     @classmethod
     @checked
@@ -260,10 +260,10 @@ class YieldingBase(ElasticBase):
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""
-        own = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
+        values = super().parameters(pier) | {"eta": self.eta, "spring": self.spring}
         if self.has_exponent:
-            own["n"] = self.n
-        return own | {"delta_y_m": yield_deflection(pier, self)}
+            values["n"] = self.n
+        return values | {"delta_y_m": yield_deflection(pier, self)}
 
     @classmethod
     @checked
@@ -279,8 +279,8 @@ Base = RigidBase | ElasticBase | YieldingBase
 
 def _interface(base: Base) -> dict[str, float]:
     """Return friction and area of the interface by the keys of run.json, if they are known."""
-    known = {"friction": base.friction, "area_m2": base.area_m2}
-    return {name: value for name, value in known.items() if value is not None}
+    values = {"friction": base.friction, "area_m2": base.area_m2}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
@@ -396,7 +396,7 @@ def problems(pier: Pier, base: Base) -> list[str]:
             'write base = "rigid", or leave columns out for a single pier'
         ]
     wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
-    for name in (own.name for own in fields(base)):
+    for name in (attribute.name for attribute in fields(base)):
         value = getattr(base, name)
         if name in BOUNDS:
             wrong += BOUNDS[name].problems(name, value)

@@ -35,16 +35,16 @@ ONSET = 1e-12
 @cache
 def _curve(exponent: float) -> tuple[Array, Array, Array]:
     """Return deflections, forces and stiffnesses of the first loading ∫ dz/(1 − zⁿ), in ever smaller steps towards z = 1."""
-    left = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
+    deficit = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
     nodes, weights = np.polynomial.legendre.leggauss(8)
-    half, middle = 0.5 * -np.diff(left), 0.5 * (left[1:] + left[:-1])
+    half, middle = 0.5 * -np.diff(deficit), 0.5 * (deficit[1:] + deficit[:-1])
 
-    def stiffness(left: Array) -> Array:
+    def stiffness(deficit: Array) -> Array:
         with np.errstate(divide="ignore"):
-            return -np.expm1(exponent * np.log1p(-left))
+            return -np.expm1(exponent * np.log1p(-deficit))
 
     steps = half * (weights / stiffness(middle[:, None] + half[:, None] * nodes)).sum(axis=1)
-    return np.concatenate(([0.0], np.cumsum(steps))), 1.0 - left, stiffness(left)
+    return np.concatenate(([0.0], np.cumsum(steps))), 1.0 - deficit, stiffness(deficit)
 
 
 def first_loading(deflection: Array, exponent: float, give: float = 0.0) -> Array:
@@ -105,15 +105,15 @@ def _bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: 
     """
     below, above = excess(low), excess(high)
     for step in range(MOST_STEPS):
-        done = (np.minimum(np.abs(below), np.abs(above)) < BALANCED) | (high - low < near)
-        if done.all():
+        converged = (np.minimum(np.abs(below), np.abs(above)) < BALANCED) | (high - low < near)
+        if converged.all():
             break
         share = _share(below, above) if step % 2 else 0.5
         middle = low + share * (high - low)
-        there = excess(middle)
-        up = there > 0.0
-        low, below = np.where(up, low, middle), np.where(up, below, there)
-        high, above = np.where(up, middle, high), np.where(up, there, above)
+        excess_at_middle = excess(middle)
+        up = excess_at_middle > 0.0
+        low, below = np.where(up, low, middle), np.where(up, below, excess_at_middle)
+        high, above = np.where(up, middle, high), np.where(up, excess_at_middle, above)
     return low, high, _share(below, above)
 
 
@@ -163,13 +163,15 @@ class Place:
             return self.stiffness * np.maximum(elongation - device.gap_m, 0.0)
         if device.kind == "friction":
             return device.f * np.sign(elongation - since)
-        give = device.f / (self.stiffness * device.yield_m)
+        compliance = device.f / (self.stiffness * device.yield_m)
         total = elongation / device.yield_m
-        start = math.copysign(float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT, give)[0]), since)
-        back = start + (elongation - since) / (device.yield_m * (1.0 + give))
+        start = math.copysign(
+            float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT, compliance)[0]), since
+        )
+        back = start + (elongation - since) / (device.yield_m * (1.0 + compliance))
         turned = (elongation - since) * since < 0.0
         x = np.where(turned, back, total)
-        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT, give)
+        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT, compliance)
         return device.f * np.where(turned & (back * start > 0.0), back, loaded)  # unloading is elastic
 
 
@@ -406,13 +408,13 @@ class SlowTurn:
         """Return the equilibria at rotations ``theta`` > 0 [rad]; at that of lift-off the pier still stands on both supports."""
         if self.spring is None:
             return self._parts(theta, False)
-        before = theta <= (math.inf if self.lift_off is None else self.lift_off)
-        if before.all() or not before.any():
-            return self._parts(theta, bool(before.all()))
-        first, second = self._parts(theta[before], True), self._parts(theta[~before], False)
+        in_contact = theta <= (math.inf if self.lift_off is None else self.lift_off)
+        if in_contact.all() or not in_contact.any():
+            return self._parts(theta, bool(in_contact.all()))
+        first, second = self._parts(theta[in_contact], True), self._parts(theta[~in_contact], False)
         joined = {name: np.empty_like(theta) for name in vars(first)}
         for name, values in joined.items():
-            values[before], values[~before] = getattr(first, name), getattr(second, name)
+            values[in_contact], values[~in_contact] = getattr(first, name), getattr(second, name)
         return Equilibria(**joined)
 
     # Where something changes
@@ -433,8 +435,8 @@ class SlowTurn:
                 return None
             i, step, parts = int(negative[0]), (high - low) / parts, 16
             low, high = float(grid[i]) - step, float(grid[i])
-            before = float(moments[i - 1]) if i else math.inf
-        return high - step * float(moments[i] / (moments[i] - before))
+            previous = float(moments[i - 1]) if i else math.inf
+        return high - step * float(moments[i] / (moments[i] - previous))
 
     def curve(self, until: float, before: int = 12, after: int = 100) -> Equilibria:
         """Return the equilibria from the first rotation to ``until`` [rad], and on both sides of lift-off."""
@@ -454,10 +456,10 @@ class SlowTurn:
         for _ in range(5):
             values = getattr(curve, quantity)
             i = int(np.argmax(values))
-            beside = max(i - 1, 0), min(i + 1, len(values) - 1)
-            if curve.theta[i] in corners or min(values[j] for j in beside) > (1.0 - 1e-7) * values[i]:
+            neighbours = max(i - 1, 0), min(i + 1, len(values) - 1)
+            if curve.theta[i] in corners or min(values[j] for j in neighbours) > (1.0 - 1e-7) * values[i]:
                 break
-            low, high = (float(curve.theta[j]) for j in beside)
+            low, high = (float(curve.theta[j]) for j in neighbours)
             curve = self._from_rest([*np.linspace(low, high, 17), curve.theta[i]])
         values = getattr(curve, quantity)
         i = int(np.argmax(values))

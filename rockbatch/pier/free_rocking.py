@@ -50,8 +50,8 @@ class FreeRocking:
             return Swings(amplitudes, none, none)
         damping = none
         if isinstance(self.base, RigidBase):
-            own = self.pier.restitution if self.base.restitution is None else self.base.restitution
-            damping = self.impact_damping(amplitudes, own)
+            restitution = self.pier.restitution if self.base.restitution is None else self.base.restitution
+            damping = self.impact_damping(amplitudes, restitution)
         return Swings(amplitudes, self.periods(amplitudes), damping)
 
     @property
@@ -152,13 +152,13 @@ class FreeRocking:
         Each of the two impacts leaves e² of the energy: the amplitude after them has e⁴ of it, and ζ = ln(θ_0/θ_2)/(2π), the
         logarithmic decrement. Infinite if the pier stops at its first impact, e = 0.
         """
-        kept = restitution**4 * self._work(np.zeros_like(amplitudes), amplitudes)
+        remaining_energy = restitution**4 * self._work(np.zeros_like(amplitudes), amplitudes)
         low, high = np.zeros_like(amplitudes), amplitudes
         for _ in range(12):
             middle = 0.5 * (low + high)
-            above = self._work(np.zeros_like(middle), middle) > kept
+            above = self._work(np.zeros_like(middle), middle) > remaining_energy
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         least, most = (self._work(np.zeros_like(low), end) for end in (low, high))
-        following = low + (high - low) * (kept - least) / (most - least)
+        following = low + (high - low) * (remaining_energy - least) / (most - least)
         with np.errstate(divide="ignore"):
             return np.log(amplitudes / (following if restitution > 0.0 else 0.0)) / (2.0 * math.pi)

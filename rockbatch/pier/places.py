@@ -27,7 +27,7 @@ def places(pier: Pier, restraint: Restraint) -> tuple[Place, ...]:
         height = pier.deck if restraint.height_m is None else restraint.height_m
         if restraint.linear:
             return (Place(height=height),)
-        return tuple(Place(0.0, height, way) for way in WAYS.get(restraint.side, ()))
+        return tuple(Place(0.0, height, direction) for direction in WAYS.get(restraint.side, ()))
     if restraint.at == "deck":
         return (Place(height=pier.deck),)
     b = pier.half_width
@@ -59,12 +59,12 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
     That is 2 f < 1 + ψ with dampers at both. Dampers count alike with and without a yield deflection.
     """
     for corner in (-pier.half_width, pier.half_width):
-        holds, rights = 0.0, 1.0
+        holding, righting = 0.0, 1.0
         for device in restraints:
             arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
-            holds += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
-            rights += device.psi * arms if isinstance(device, Tendon) else 0.0
-        if holds >= rights:
+            holding += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
+            righting += device.psi * arms if isinstance(device, Tendon) else 0.0
+        if holding >= righting:
             return False
     return True
 

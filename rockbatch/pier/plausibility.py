@@ -56,8 +56,8 @@ def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
     wrong = []
     if restraints and pier.deck_over_columns is not None:
         wrong.append("columns: dampers, tendons and stops of a rocking frame are not solved; leave them or columns out")
-    for each in restraints:
-        wrong += wrong_device(pier, each)
+    for device in restraints:
+        wrong += wrong_device(pier, device)
     return wrong + ([] if wrong else _wrong_friction(pier, restraints))
 
 
@@ -95,18 +95,18 @@ def _wrong_place(pier: Pier, device: Restraint) -> list[str]:
         if device.side not in WAYS:
             wrong.append(f'side = "{device.side}": must be ' + " or ".join(f'"{side}"' for side in WAYS))
         return wrong
-    at, on_deck = device.at, isinstance(device, Damper)
-    if at == "deck" and isinstance(device, Damper) and device.kind == "friction":
+    place, on_deck = device.at, isinstance(device, Damper)
+    if place == "deck" and isinstance(device, Damper) and device.kind == "friction":
         return [
             'at = "deck": friction at the deck is not solved; write kind = "hysteretic" with a small yield_mm, whose limit '
             "friction is"
         ]
-    if isinstance(at, str) and at not in ("left", "right", *(("deck",) if on_deck else ())):
+    if isinstance(place, str) and place not in ("left", "right", *(("deck",) if on_deck else ())):
         return [
-            f'at = "{at}": must be "left", "right"{", " + chr(34) + "deck" + chr(34) if on_deck else ""} or an offset in m'
+            f'at = "{place}": must be "left", "right"{", " + chr(34) + "deck" + chr(34) if on_deck else ""} or an offset in m'
         ]
-    if isinstance(at, float | int) and not abs(at) <= 2.0 * pier.half_width:
-        return [f"at = {at:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"]
+    if isinstance(place, float | int) and not abs(place) <= 2.0 * pier.half_width:
+        return [f"at = {place:g}: must be within the base's width either side, {2 * pier.half_width:.4g} m"]
     return []
 
 
@@ -130,10 +130,10 @@ class Doubt(NamedTuple):
 def doubt(pier: Pier, device: Restraint) -> Doubt | None:
     """Return what is odd about a device of ``pier``; None if nothing is, or if it is confirmed."""
     if isinstance(device, Damper):
-        odd = _of_damper(pier, device)
+        doubts = _of_damper(pier, device)
     else:
-        odd = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_contact(pier, device)
-    return None if odd is None or odd.name in device.confirm else odd
+        doubts = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_contact(pier, device)
+    return None if doubts is None or doubts.name in device.confirm else doubts
 
 
 def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
@@ -152,8 +152,8 @@ def _of_brace(pier: Pier, damper: Damper) -> Doubt | None:
     stiffness = damper.brace * pier.gravity * pier.size / pier.half_width**2
     deflection = pier.gravity / stiffness
     if deflection < FIRMEST:
-        gives = f"the brace gives by {1000.0 * deflection:.2g} mm under the pier's weight"
-        return Doubt("brace", f"{gives}; leave out one that is rigid")
+        message = f"the brace gives by {1000.0 * deflection:.2g} mm under the pier's weight"
+        return Doubt("brace", f"{message}; leave out one that is rigid")
     if damper.kind == "viscous" and damper.nu > 0.0:
         rate = stiffness / (damper.exponent * damper.nu * pier.p) * SPEED ** (1.0 - damper.exponent)
         if rate > QUICKEST:
@@ -164,8 +164,8 @@ def _of_brace(pier: Pier, damper: Damper) -> Doubt | None:
 
 
 def _of_damper(pier: Pier, damper: Damper) -> Doubt | None:
-    if odd := _of_brace(pier, damper):
-        return odd
+    if of_brace := _of_brace(pier, damper):
+        return of_brace
     if damper.kind == "viscous":
         share = damper.nu * pier.p / pier.gravity  # of the weight, at 1 m/s
         if share * SPEED**damper.exponent > 1.0:

@@ -299,7 +299,7 @@ def what_of(values: Mapping[str, Any]) -> str:
 def restraint_of(values: Mapping[str, Any]) -> Restraint:
     """Return the device with these fields, as run.json and histories have them; None is a value that is not given."""
     kind = KINDS[what_of(values)]
-    names = {each.name for each in fields(kind)}
+    names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})
 
 
@@ -332,8 +332,8 @@ def _over_weight(pier: Pier, **values: float) -> dict[str, Any]:
     wrong = [problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)]
     if wrong:
         raise InputError(*wrong)
-    known = fields_of(pier)
-    return {known[name][0]: value / known[name][1] for name, value in values.items()}
+    factors = fields_of(pier)
+    return {factors[name][0]: value / factors[name][1] for name, value in values.items()}
 
 
 def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:

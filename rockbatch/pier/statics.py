@@ -221,10 +221,10 @@ def in_words(sheet: Statics) -> dict[str, str]:
             return otherwise
         return f"{value:.4g} g, at θ/α = {rotation / alpha:.3g}"
 
-    rest = [f"weighs {weight:,.0f} kN" if weight else ""]
-    rest += [f"settles {1000.0 * sheet.settlement_m:.3g} mm" if sheet.settlement_m else ""]
+    at_rest = [f"weighs {weight:,.0f} kN" if weight else ""]
+    at_rest += [f"settles {1000.0 * sheet.settlement_m:.3g} mm" if sheet.settlement_m else ""]
     if sheet.stress_at_rest_MPa is not None:
-        rest.append(
+        at_rest.append(
             f"{sheet.stress_at_rest_MPa:.3g} MPa on each support, {sheet.stress_on_one_MPa:.3g} MPa on one alone"
         )
     moment = "" if sheet.moment_over_weight_m is None else f"{sheet.moment_over_weight_m:.4g} m × weight"
@@ -240,7 +240,7 @@ def in_words(sheet: Statics) -> dict[str, str]:
         damping = ["without end: the pier stops at the first one"]
     balance = "none: tendons or stops hold the pier at any rotation"
     return {
-        "at rest": ", ".join(filter(None, rest)),
+        "at rest": ", ".join(filter(None, at_rest)),
         "lift-off": held(sheet.lift_off_g, sheet.lift_off_rad, "never: the support that bears more yields before"),
         "strength": held(
             sheet.strength_g, sheet.strength_rad, "rises with the rotation, as tendons or stops hold the pier"
@@ -350,8 +350,8 @@ class _Side(NamedTuple):
         curve = turn.curve(min(2.0 * pier.alpha, 0.5 * math.pi) if unstable is None else unstable)
         lift_off, alone = (math.inf, math.inf), float(curve.toe.max())
         if turn.lift_off is not None:
-            there = turn.at(np.array([max(turn.lift_off, ONSET)]))
-            lift_off, alone = (float(there.acceleration[0]), turn.lift_off), float(there.toe[0])
+            at_lift_off = turn.at(np.array([max(turn.lift_off, ONSET)]))
+            lift_off, alone = (float(at_lift_off.acceleration[0]), turn.lift_off), float(at_lift_off.toe[0])
         strength, moment = (turn.strongest(quantity, curve) for quantity in ("acceleration", "moment"))
         if unstable is None:  # what still rises at the end of the curve has no greatest value
             ends = (math.inf, math.inf)

@@ -164,7 +164,7 @@ def report(
     saved = [open_results(folder) for folder in folders]
     path = _write(saved, None if out is None else Path(out))
     tables = [(results.peaks, as_table(read_verdicts(results.directory))) for results in saved]
-    peaks, checks = (_beside(own) for own in zip(*tables, strict=True))
+    peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
@@ -174,7 +174,7 @@ def _write(saved: Sequence[Results], out: Path | None) -> Path:
     return write_report(saved[0].directory, out=out, saved=saved[0])
 
 
-def _beside(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
+def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
     """Return one table as it is, or two stacked, with a first column ``study`` that says which."""
     if len(tables) == 1:
         return tables[0]

@@ -58,14 +58,14 @@ def _better(studies: list[Finished], responses: list[dict[str, Worst]]) -> Marku
         good, bad = (0, 1) if lost[0] < lost[1] else (1, 0)
         lead = f": of {counted(len(studies[0].runs), 'run')} {lost[good]} do not end standing, of {SIDES[bad]} {lost[bad]}."
         return join(tag("strong", f"{SIDES[good]} is better"), lead)
-    both = {name: [own[name] for own in responses] for name in INDEPENDENT if all(name in own for own in responses)}
-    changes = {name: _change(*(own.value for own in pair)) for name, pair in both.items()}
+    in_both = {name: [w[name] for w in responses] for name in INDEPENDENT if all(name in w for w in responses)}
+    changes = {name: _change(*(w.value for w in pair)) for name, pair in in_both.items()}
     smaller, larger = (any(sign * change > LEVEL for change in changes.values()) for sign in (-1, 1))
-    said = []
-    for name, pair in both.items():
-        labels = (study.label(own.run["record"]) for study, own in zip(studies, pair, strict=True))
-        said.append(f"{RESPONSES[name].words} {100 * changes[name]:+.3g} % ({'; then '.join(dict.fromkeys(labels))})")
-    lead = f": from A to B, worst {', '.join(said)}." if said else ": no run ends standing."
+    parts = []
+    for name, pair in in_both.items():
+        labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
+        parts.append(f"{RESPONSES[name].words} {100 * changes[name]:+.3g} % ({'; then '.join(dict.fromkeys(labels))})")
+    lead = f": from A to B, worst {', '.join(parts)}." if parts else ": no run ends standing."
     return join(tag("strong", BETTER[smaller, larger]), lead)
 
 
@@ -77,32 +77,32 @@ def _pairs(pair: Pair) -> str:
     """Report in how many pairs of runs the rotation is smaller, and the greatest changes either way."""
     a, b = pair.runs
     first, second = (runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(float) for runs in (a, b))
-    both = (first > 0) & (second >= 0)
-    if not both.any():
+    comparable = (first > 0) & (second >= 0)
+    if not comparable.any():
         return ""
-    ratio, runs = second[both] / first[both], a[both]
+    ratio, runs = second[comparable] / first[comparable], a[comparable]
     ends = [(float(ratio[place]), runs.iloc[place]) for place in (int(ratio.argmin()), int(ratio.argmax()))]
-    said = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.which(run)})" for value, run in ends]
+    shown = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.case_of(run)})" for value, run in ends]
     return (
         f"From A to B the rotation becomes smaller in {int((ratio < 1.0).sum())} of {counted(len(ratio), 'pair')} of runs, "
-        f"larger in {int((ratio > 1.0).sum())}; it changes to {said[0]} at least and to {said[1]} at most."
+        f"larger in {int((ratio > 1.0).sum())}; it changes to {shown[0]} at least and to {shown[1]} at most."
     )
 
 
 def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]]) -> Markup:
     rows: list[list[object]] = []
     for name, response in RESPONSES.items():
-        both = [own.get(name) for own in responses]
-        if not any(both):
+        pair = [w.get(name) for w in responses]
+        if not any(pair):
             continue
         row: list[object] = [response.words]
-        for study, own in zip(studies, both, strict=True):
-            where = own and f"{study.label(own.run['record'])}, {study.which(own.run)}"
-            row += ["none" if own is None else in_words(own), where]
-        first, second = (math.nan if own is None else own.value for own in both)
+        for study, w in zip(studies, pair, strict=True):
+            place = w and f"{study.label(w.run['record'])}, {study.case_of(w.run)}"
+            row += ["none" if w is None else in_words(w), place]
+        first, second = (math.nan if w is None else w.value for w in pair)
         rows.append([*row, second / first if first > 0 and second == second else None])
     heads = [Head("worst of the runs in common")]
-    heads += [Head(words, over=side) for side in SIDES for words in ("value", "record and case")]
+    heads += [Head(words, group=side) for side in SIDES for words in ("value", "record and case")]
     return table([*heads, Head("B / A", ".3f")], rows, prose=True, name="Worst responses of both")
 
 
@@ -140,9 +140,9 @@ def _inputs(study: Finished, compared: Collection[str]) -> dict[str, list[object
     }
     values["cases"] = names = list(dict.fromkeys(case["case"] for case in info["cases"]))
     for name in filter(compared.__contains__, names):
-        own = [case for case in info["cases"] if case["case"] == name]
-        values[f"{name}: base"] = [case["base"] for case in own]
-        values |= {f"{name}: {symbol(key)}": [case["parameters"].get(key) for case in own] for key in BASE}
+        entries = [case for case in info["cases"] if case["case"] == name]
+        values[f"{name}: base"] = [case["base"] for case in entries]
+        values |= {f"{name}: {symbol(key)}": [case["parameters"].get(key) for case in entries] for key in BASE}
     values |= {
         "ground motions": sorted(records),
         "with the vertical component": [
@@ -153,12 +153,14 @@ def _inputs(study: Finished, compared: Collection[str]) -> dict[str, list[object
         "polarity": study.runs["polarity"].tolist(),
     }
     values |= {words: [info["numerics"].get(key)] for key, words in NUMERICS.items()}
-    return {name: list(dict.fromkeys(value for value in own if value is not None)) for name, own in values.items()}
+    return {
+        name: list(dict.fromkeys(value for value in entries if value is not None)) for name, entries in values.items()
+    }
 
 
-def _shown(values: Sequence[object], both: Iterable[object]) -> str:
+def _shown(values: Sequence[object], all_values: Iterable[object]) -> str:
     """Format values with the digits that distinguish those of both studies."""
-    digits = digits_that_tell(both, least=4)
+    digits = digits_that_tell(all_values, least=4)
     words = [f"{value:.{digits}g}" if isinstance(value, float | int) else str(value) for value in values]
     if len(words) > MOST_VALUES:
         return f"{counted(len(words), 'value')}: {', '.join(words[:MOST_VALUES])}, …"
@@ -172,16 +174,16 @@ def figures(pair: Pair) -> Markup:
         return Markup("")
     worse = []
     for name, runs in zip(SIDES, pair.runs, strict=True):
-        kept = worst_first(runs, len(runs)).drop_duplicates(["record", "series", "pier", "scale", "with_vertical"])
-        worse.append(kept.assign(side=name))
-    both = replace(named, runs=pd.concat(worse, ignore_index=True))
-    lines = both.runs["series"].map(lambda place: named.series[place].rigid).any()
+        chosen = worst_first(runs, len(runs)).drop_duplicates(["record", "series", "pier", "scale", "with_vertical"])
+        worse.append(chosen.assign(side=name))
+    combined = replace(named, runs=pd.concat(worse, ignore_index=True))
+    lines = combined.runs["series"].map(lambda place: named.series[place].rigid).any()
     caption = [
         "Largest rotation over slenderness, ", THETA, ": filled markers A, open markers B",
         "; lines: rigid base, B dashed" if lines else "",
         "; the worse direction of each motion" if pair.runs[0]["polarity"].nunique() > 1 else "", ".",
     ]  # fmt: skip
-    return peak_rotations.figures(both, caption, side="side")
+    return peak_rotations.figures(combined, caption, side="side")
 
 
 def pairs(pair: Pair) -> Markup:
@@ -192,7 +194,7 @@ def pairs(pair: Pair) -> Markup:
     worse = a["theta_max_over_alpha"].fillna(0).to_numpy() < b["theta_max_over_alpha"].fillna(0).to_numpy()
     worst = a.assign(theta_max_over_alpha=a["theta_max_over_alpha"].where(~worse, b["theta_max_over_alpha"].to_numpy()))
     rank = ("ok", "failed", "flight", "overturned").index
-    worst["status"] = [max(both, key=rank) for both in zip(a["status"], b["status"], strict=True)]
+    worst["status"] = [max(pair_of_runs, key=rank) for pair_of_runs in zip(a["status"], b["status"], strict=True)]
     order = a.index.get_indexer(worst_first(worst, MOST_ROWS).index)
     names = [key for key in pair.keys if key in ("record", "case") or a[key].nunique() > 1]
     more = [
@@ -200,15 +202,15 @@ def pairs(pair: Pair) -> Markup:
         for column in COLUMNS.values()
         if column.suite and column.name != "theta_max_over_alpha" and column.name in a and column.name in b
     ]
-    heads = [*(Head(symbol(name)) for name in names), *(Head(side, THETA_FORMAT, over=THETA) for side in SIDES)]
-    heads.append(Head("B / A", ".3f", over=THETA))
-    heads += [Head(side, over=head(column).says, form=head(column).form) for column in more for side in SIDES]
+    heads = [*(Head(symbol(name)) for name in names), *(Head(side, THETA_FORMAT, group=THETA) for side in SIDES)]
+    heads.append(Head("B / A", ".3f", group=THETA))
+    heads += [Head(side, group=head(column).text, form=head(column).form) for column in more for side in SIDES]
     rows = []
-    for both in zip(as_dicts(a.iloc[order]), as_dicts(b.iloc[order]), strict=True):
-        first, second = (run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in both)
+    for pair_of_runs in zip(as_dicts(a.iloc[order]), as_dicts(b.iloc[order]), strict=True):
+        first, second = (run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in pair_of_runs)
         ratio = second / first if first > 0 and second == second else None
-        others = (on_scale(column.name, run[column.name]) for column in more for run in both)
-        rows.append([*(both[0][name] for name in names), *map(outcome, both), ratio, *others])
+        other_values = (on_scale(column.name, run[column.name]) for column in more for run in pair_of_runs)
+        rows.append([*(pair_of_runs[0][name] for name in names), *map(outcome, pair_of_runs), ratio, *other_values])
     return join(shown_of(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
 
 
@@ -219,7 +221,7 @@ def suites(pair: Pair) -> Markup:
     vertical = [any(record["pga_v_g"] is not None for record in study.info["records"]) for study in pair.studies]
     sides = list(SIDES)
     if vertical[0] != vertical[1]:
-        sides = [f"{name}, {'with' if own else 'without'} vertical" for name, own in zip(SIDES, vertical, strict=True)]
+        sides = [f"{name}, {'with' if v else 'without'} vertical" for name, v in zip(SIDES, vertical, strict=True)]
     keys = ["scale", "pier", "series", "with_vertical"]
     names, heads = statistics.rows_of(pair.named, pair.runs[0], keys)
     runs = dict(zip(sides, pair.runs, strict=True))
@@ -231,8 +233,10 @@ def only_in_one(pair: Pair) -> Markup:
     """Return a row for each case that has runs without a counterpart; empty if all have one."""
     rows: list[list[object]] = []
     for name, study, runs in zip(SIDES, pair.studies, pair.only, strict=True):
-        for _, same in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
-            rows.append([name, study.which(same.iloc[0]), len(same), _first(list(dict.fromkeys(same["record"])), 6)])
+        for _, group in runs.groupby(["series", "pier", "scale", "polarity", "with_vertical"], sort=False):
+            rows.append(
+                [name, study.case_of(group.iloc[0]), len(group), _first(list(dict.fromkeys(group["record"])), 6)]
+            )
     heads = [Head("study"), Head("case"), Head("runs"), Head("records")]
     return table(heads, rows, name="Only in one") if rows else Markup("")
 
@@ -256,11 +260,11 @@ def _other_motions(a: Finished, b: Finished) -> Markup:
     """List records of one name that are not the same motion."""
     keys = ("pga_g", "pga_v_g", "npts", "dt_s")
     shared = [name for name in a.records if name in b.records]
-    other = [name for name in shared if any(not _same(a.records[name][key], b.records[name][key]) for key in keys)]
-    if not other:
+    differing = [name for name in shared if any(not _same(a.records[name][key], b.records[name][key]) for key in keys)]
+    if not differing:
         return Markup("")
     lead = tag("span", "Not the same motion in both", class_="alarm")
-    return tag("p", lead, f", though of one name: {_first(other, 8)}.")
+    return tag("p", lead, f", though of one name: {_first(differing, 8)}.")
 
 
 def _same(a: float | None, b: float | None) -> bool:
@@ -272,7 +276,7 @@ def difference(pair: Pair) -> Markup:
     a, b = (study.study["text"].splitlines() for study in pair.studies)
     lines = difflib.unified_diff(a, b, "A", "B", n=1, lineterm="")
     versions = [{"rockbatch": study.info["rockbatch"], **study.info["versions"]}.items() for study in pair.studies]
-    words = [" ".join(f"{name} {version}" for name, version in own) for own in versions]
+    words = [" ".join(f"{name} {version}" for name, version in pairs) for pairs in versions]
     shown = "\n".join(lines)
     return join(
         tag("pre", tag("code", shown)) if shown else tag("p", "The study files are the same."),

@@ -132,7 +132,7 @@ class Finished(Contents):
             words = [self.piers[first["pier"]], scale, first["with_vertical"]]
             yield ", ".join(filter(None, words)), runs
 
-    def which(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
+    def case_of(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run among those of the same record: its foundation, and whatever else identifies it."""
         also = [self.piers[run["pier"]], f"scale {number(float(run['scale']))}" if run["scale"] != 1 else ""]
         also += ["reversed" if run["polarity"] == "-" else "", run["with_vertical"]]
@@ -155,9 +155,9 @@ class Finished(Contents):
             return join(label)
         return tag("span", label, " ", tag("span", record, class_="muted path"), class_="record")
 
-    def where(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
+    def place_of(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run by its record and case."""
-        return f"{self.named(run['record'])}, case {self.which(run)}"
+        return f"{self.named(run['record'])}, case {self.case_of(run)}"
 
 
 def read(directory: Path, responses: Sequence[Response] | None = None, saved: Results | None = None) -> Finished:

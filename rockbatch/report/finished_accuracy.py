@@ -60,5 +60,5 @@ def _number(text: str) -> float | None:
 
 def chosen(levels: Sequence[Level]) -> Level | None:
     """Return the level at the study's own setting; None if it was not measured."""
-    own = next((level for level in levels if level.method == "study"), None)
-    return own if own is not None and own.error_max is not None and own.seconds_per_run else None
+    of_study = next((level for level in levels if level.method == "study"), None)
+    return of_study if of_study is not None and of_study.error_max is not None and of_study.seconds_per_run else None

@@ -52,8 +52,8 @@ class FinishedAnalysis:
             parts.append(f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}{more}")
         if versions:
             parts.append(f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}")
-        said = ". ".join(part[0].upper() + part[1:] for part in parts)
-        return tag("p", said, ".", class_="legend") if parts else Markup("")
+        sentences = ". ".join(part[0].upper() + part[1:] for part in parts)
+        return tag("p", sentences, ".", class_="legend") if parts else Markup("")
 
     def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
         """Return one of its tables; None if NAME.json does not list it, or if it is damaged or lacks a column.
@@ -94,8 +94,8 @@ def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
 
 def digest_of(info: Mapping[str, Any]) -> str:
     """Return the digest of everything in NAME.json but its own ``sha256``."""
-    said = {key: value for key, value in info.items() if key != "sha256"}
-    return hashlib.sha256(json.dumps(said).encode()).hexdigest()
+    content = {key: value for key, value in info.items() if key != "sha256"}
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
 def _warn_edited(path: Path) -> None:
@@ -116,9 +116,9 @@ def of_files(name: str) -> Iterator[None]:
     except InputError:
         raise
     except _DAMAGE as error:
-        what = f"{type(error).__name__}: {error}"
+        reason = f"{type(error).__name__}: {error}"
         raise InputError(
-            f"{name}.json and its tables do not fit each other, or are damaged ({what}); start `rockbatch {name}` again"
+            f"{name}.json and its tables do not fit each other, or are damaged ({reason}); start `rockbatch {name}` again"
         ) from error
 
 

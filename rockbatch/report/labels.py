@@ -120,7 +120,7 @@ def named(
     ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
     study gives for each case, by its name.
     """
-    constants = {key: _constants(same, given.get(str(key[0]), ())) for key, same in cases.items()}
+    constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}
     # The rocking block itself, drawn as a line: on rigid ground and without devices
     rigid = {
         key for key, (case, *_) in cases.items() if case["base"] == "rigid" and not case["parameters"].get("restraints")
@@ -128,18 +128,18 @@ def named(
     shown = dict.fromkeys((*BASE_KEYS, *varied))
     values = {kind: [constants[key] for key in cases if (key in rigid) is kind] for kind in (True, False)}
     differing = {
-        kind: [name for name in shown if len({str(own.get(name)) for own in of_kind}) > 1]
+        kind: [name for name in shown if len({str(constants_of.get(name)) for constants_of in of_kind}) > 1]
         for kind, of_kind in values.items()
     }
-    digits = {name: digits_that_tell(own.get(name) for own in constants.values()) for name in shown}
+    digits = {name: digits_that_tell(constants_of.get(name) for constants_of in constants.values()) for name in shown}
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
     series: dict[Key, Series] = {}
     count = {True: 0, False: 0}
     for key in cases:
         kind = key in rigid
-        own = [name for name in differing[kind] if name in constants[key]]
-        words = [quantity(name, constants[key][name], digits[name]) for name in own]
+        distinguishing = [name for name in differing[kind] if name in constants[key]]
+        words = [quantity(name, constants[key][name], digits[name]) for name in distinguishing]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
         label = f"{case}: {', '.join(words)}" if words else case
@@ -153,10 +153,10 @@ def _constants(cases: Sequence[dict[str, Any]], given: Collection[str]) -> dict[
 
     β of a given stiffness, for example, follows the pier.
     """
-    first, *others = [case["parameters"] | case["columns"] for case in cases]
+    first, *further = [case["parameters"] | case["columns"] for case in cases]
     omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
     return {
         key: value
         for key, value in first.items()
-        if key not in omitted and value is not None and all(other.get(key) == value for other in others)
+        if key not in omitted and value is not None and all(values.get(key) == value for values in further)
     }

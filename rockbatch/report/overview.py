@@ -40,16 +40,16 @@ def by_record(finished: Finished) -> Markup:
         words, comma, end = finished.label(name).rpartition(", ")  # the direction always stays
         return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
 
-    def said(run: dots.Run) -> str:
+    def description(run: dots.Run) -> str:
         words = said_of(finished.series[run["series"]], run, finished.both_directions)
         return f"{finished.label(run['record'])}\n{words}"
 
     rows = _rows(columns, "record", single, label, len(names))
-    marks = dots.Marks(finished.series if len(finished.series) <= MOST_NAMED else None, said, "foundation")
+    marks = dots.Marks(finished.series if len(finished.series) <= MOST_NAMED else None, description, "foundation")
     caption = join(CAPTION, "record, the worst first", _all(finished))
-    limits = [_limits(finished, own) for _, own in columns]
+    limits = [_limits(finished, column) for _, column in columns]
     top = ceiling(runs)
-    within = [limit.theta for own in limits for limit in own if limit.theta < MOST_STRETCH * top]
+    within = [limit.theta for column in limits for limit in column if limit.theta < MOST_STRETCH * top]
     top = max([top, *(1.03 * theta for theta in within)])
     return figure(dots.draw(rows, [words for words, _ in columns], top, marks, limits), caption)
 
@@ -69,10 +69,10 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
         words = f"limit of {verdict.check}, {wording.number(verdict.limit)} {verdict.unit}".rstrip()
         if verdict.statistic != "max":  # a mean, say, that single records may exceed
             words += f" ({STATISTICS[verdict.statistic].words})"
-        cases_of.setdefault(dots.Limit(words, verdict.limit / most.of(cases[0])), set()).add(verdict.case)
+        cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), set()).add(verdict.case)
     return [
-        limit if own == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(own))})")
-        for limit, own in sorted(cases_of.items(), key=lambda item: item[0].theta)
+        limit if of_limit == names else limit._replace(words=f"{limit.words} ({', '.join(sorted(of_limit))})")
+        for limit, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta)
     ]
 
 
@@ -86,10 +86,10 @@ def by_foundation(finished: Finished) -> Markup:
     def label(place: int) -> tuple[str, str, str]:
         return finished.series[place].label, "", finished.series[place].label
 
-    def said(run: dots.Run) -> str:
+    def description(run: dots.Run) -> str:
         return said_of(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
 
-    marks = dots.Marks(None, said, "record")
+    marks = dots.Marks(None, description, "record")
     order = "foundation, the best first: those that overturn, fly or fail the least often, then by their peaks"
     first = "All" if len(every) == len(best) else f"The first {len(every)} of"
     summary = tag("summary", f"{first} {len(best):,} foundations, in the order of the study")
@@ -118,9 +118,9 @@ def _all(finished: Finished) -> str:
 
 def worst_first(runs: "pd.DataFrame", by: str) -> list[Any]:
     """Sort records or foundations by how many runs overturn, end in flight or fail, then by the largest rotation."""
-    which = runs[by]
-    ended = [(runs["status"] == status).groupby(which).sum() for status in ("overturned", "flight", "failed")]
-    stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(which).max().fillna(0.0)
+    groups = runs[by]
+    ended = [(runs["status"] == status).groupby(groups).sum() for status in ("overturned", "flight", "failed")]
+    stood = runs["theta_max_over_alpha"].where(runs["status"] == "ok").groupby(groups).max().fillna(0.0)
     return sorted(stood.index, key=lambda row: (*(-int(count[row]) for count in ended), -float(stood[row]), row))
 
 
@@ -136,7 +136,7 @@ def _rows(
     places = [(runs[SHOWN], runs.groupby(by).indices) for _, runs in columns]
     rows = [dots.Row(*label(group), [runs.iloc[index.get(group, [])] for runs, index in places]) for group in single]
     if len(single) < all_ or always:
-        what = {"record": "records", "series": "foundations"}[by]
-        rest = [runs.loc[~runs[by].isin(single), SHOWN] for _, runs in columns]
-        rows.append(dots.Row(f"the other {all_ - len(single):,} {what}", "", "", rest))
+        plural = {"record": "records", "series": "foundations"}[by]
+        remaining = [runs.loc[~runs[by].isin(single), SHOWN] for _, runs in columns]
+        rows.append(dots.Row(f"the other {all_ - len(single):,} {plural}", "", "", remaining))
     return rows

@@ -43,7 +43,7 @@ class Part(NamedTuple):
     anchor: str
     content: Callable[[Any], Markup]
     """Function that returns what stands under the heading; empty if the section does not apply, which is then left out."""
-    of: type = Finished
+    kind: type = Finished
     """Argument of ``content``: the results of a run, or the contents of any folder."""
 
 
@@ -101,23 +101,23 @@ PARTS_OF_TWO = (
 def sections(contents: Contents) -> list[Section]:
     """Return the sections of one folder that apply."""
     parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
-    made = [
-        Section(part.heading, part.anchor, part.content(contents)) for part in parts if isinstance(contents, part.of)
+    drawn = [
+        Section(part.heading, part.anchor, part.content(contents)) for part in parts if isinstance(contents, part.kind)
     ]
-    return [section for section in made if section.content]
+    return [section for section in drawn if section.content]
 
 
 def page(contents: Contents) -> str:
     """Return the report of one folder as HTML."""
-    made = contents.info["rockbatch"] if isinstance(contents, Finished) else __version__
+    version = contents.info["rockbatch"] if isinstance(contents, Finished) else __version__
     title = contents.study["title"] or "Rocking piers"
-    return document("Rocking response of stepping piers", title, sections(contents), made)
+    return document("Rocking response of stepping piers", title, sections(contents), version)
 
 
 def comparison(pair: Pair) -> str:
     """Return the page that compares two studies as HTML."""
     a, b = (study.study["title"] or study.directory.name for study in pair.studies)
-    made = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
+    versions = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
     shown = [Section(part.heading, part.anchor, part.content(pair)) for part in PARTS_OF_TWO]
     title = f"{a} against {b}" if a != b else f"{a}: two studies"
-    return document("Rocking response of stepping piers, two studies", title, shown, made)
+    return document("Rocking response of stepping piers, two studies", title, shown, versions)

@@ -37,13 +37,13 @@ class Pair:
 
 def pair(a: Finished, b: Finished) -> Pair:
     """Match the runs of two studies by record, polarity, scale, case and the values of the keys that both vary."""
-    both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]
-    keys = ["record", "polarity", "scale", "case", *both]
+    in_both = [key for key in a.info["varied"] if key in b.info["varied"] and key != "vertical"]
+    keys = ["record", "polarity", "scale", "case", *in_both]
     if "" not in {*a.runs["with_vertical"], *b.runs["with_vertical"]}:
         keys.append("with_vertical")
 
     def places(study: Finished, name: str) -> "pd.DataFrame":
-        keyed = study.runs[keys].astype({key: object for key in both}).fillna({key: "" for key in both})
+        keyed = study.runs[keys].astype({key: object for key in in_both}).fillna({key: "" for key in in_both})
         keyed[name] = range(len(keyed))
         return keyed.drop_duplicates(keys, keep=False)
 
@@ -58,7 +58,7 @@ def _named(study: Finished, keys: list[str]) -> Finished:
     varied = [key for key in study.info["varied"] if key not in PIER_KEYS and key != "vertical"]
     series = []
     for (case, *values), place in study.places.items():
-        own = [(name, value) for name, value in zip(varied, values, strict=True) if name in keys and value != ""]
-        words = ", ".join(quantity(name, value) for name, value in own)
+        pairs = [(name, value) for name, value in zip(varied, values, strict=True) if name in keys and value != ""]
+        words = ", ".join(quantity(name, value) for name, value in pairs)
         series.append(replace(study.series[place], label=f"{case}: {words}" if words else str(case)))
     return replace(study, series=series)

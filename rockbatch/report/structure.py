@@ -90,7 +90,7 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
     names = _WORDS | _OF_STOP if restraint.what in _NAMED else _WORDS
     numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
-    return ", ".join([f"{words} {_where(restraint)}", *numbers])
+    return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 
 def _number(symbol: str, unit: str, value: float, power: float) -> str:
@@ -99,7 +99,7 @@ def _number(symbol: str, unit: str, value: float, power: float) -> str:
     return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
 
 
-def _where(restraint: Restraint) -> str:
+def _place(restraint: Restraint) -> str:
     if isinstance(restraint, DeckSpring):
         height = "" if restraint.height_m is None else f", {restraint.height_m:g} m high"
         return ("on both sides" if restraint.side == "both" else f"on the {restraint.side}") + height

@@ -15,14 +15,14 @@ MOST_OPEN = 60
 class Head(NamedTuple):
     """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns.
 
-    ``of`` is the key of its values in the items of :func:`listed`, or a function of such an item.
+    ``value`` is the key of its values in the items of :func:`listed`, or a function of such an item.
     """
 
-    says: str
+    text: str
     form: str = WHOLE
     note: str | None = None
-    over: str = ""
-    of: str | Callable[[Any], object] = ""
+    group: str = ""
+    value: str | Callable[[Any], object] = ""
 
 
 def table(
@@ -45,11 +45,11 @@ def table(
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
 
     classes = {i: "n" if i in numeric else None for i in used}
-    top = [tag("tr", *(tag("th", heads[i].says, class_=classes[i], scope="col", title=heads[i].note) for i in used))]
-    if any(heads[i].over for i in used):
-        spans = [(over, len(list(same))) for over, same in groupby(used, key=lambda i: heads[i].over)]
-        over = (tag("th", says, scope="colgroup" if says else None, colspan=wide) for says, wide in spans)
-        top.insert(0, tag("tr", *over, class_="over"))
+    top = [tag("tr", *(tag("th", heads[i].text, class_=classes[i], scope="col", title=heads[i].note) for i in used))]
+    if any(heads[i].group for i in used):
+        spans = [(spanning, len(list(group))) for spanning, group in groupby(used, key=lambda i: heads[i].group)]
+        spanning = (tag("th", label, scope="colgroup" if label else None, colspan=wide) for label, wide in spans)
+        top.insert(0, tag("tr", *spanning, class_="over"))
     columns = [
         _cells(
             "td" if i else "th", [row[i] for row in rows], heads[i].form, class_=classes[i], scope=None if i else "row"
@@ -68,7 +68,9 @@ def table(
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
     """Return a :func:`table` with a row for each item, whose cells are what each of ``heads`` is ``of``."""
-    rows = ([item.get(head.of) if isinstance(head.of, str) else head.of(item) for head in heads] for item in items)
+    rows = (
+        [item.get(head.value) if isinstance(head.value, str) else head.value(item) for head in heads] for item in items
+    )
     return table(heads, rows, **options)
 
 
@@ -83,11 +85,11 @@ def _cells(kind: str, values: Iterable[object], form: str, **attributes: object)
 _HERE = Markup("\0")
 
 
-def shown_of(shown: int, all_: int, which: str = "first") -> Markup:
+def shown_of(shown: int, all_: int, chosen_by: str = "first") -> Markup:
     """Return the sentence that not all rows are shown; empty if they are."""
     if shown >= all_:
         return Markup("")
-    return tag("p", f"The {which} {shown:,} of {all_:,} rows are shown.", class_="muted")
+    return tag("p", f"The {chosen_by} {shown:,} of {all_:,} rows are shown.", class_="muted")
 
 
 def alarm(words: str) -> Markup:
@@ -95,9 +97,9 @@ def alarm(words: str) -> Markup:
     return tag("span", words, class_="alarm")
 
 
-def sub(base: str, index: str, rest: str = "") -> Markup:
+def sub(base: str, index: str, remainder: str = "") -> Markup:
     """Return a symbol with its subscript: θ_max."""
-    return join(base, tag("sub", index), rest)
+    return join(base, tag("sub", index), remainder)
 
 
 THETA = sub("θ", "max", "/α")

@@ -38,8 +38,8 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
     """Yield the runs of ``peaks``, without mirror images."""
     by_name = {motion.name: motion for motion in motions}
     piers = {case_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
-    kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
-    table = simulated(peaks[peaks["case"] != ""])[kept]
+    columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
+    table = simulated(peaks[peaks["case"] != ""])[columns_kept]
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
         pier = piers[case_key(row["case"], row, study.varied)]
@@ -81,7 +81,7 @@ def _comma(cell: str) -> str:
 
 
 def case_key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
-    """Return what distinguishes a case; numbers as peaks.csv has them, in ten digits."""
+    """Return the key that distinguishes a case; numbers with the ten digits of peaks.csv."""
     return (case, *(_plain(columns.get(name)) for name in varied))
 
 

@@ -1,4 +1,4 @@
-"""Design checks on finished results: the door to :mod:`rockbatch.checks`."""
+"""Design checks on finished results by :mod:`rockbatch.checks`."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,7 +25,7 @@ def check(
     *,
     study: PathLike | Study | None = None,
 ) -> "pd.DataFrame":
-    """Hold results against rules.
+    """Check results against rules.
 
     Parameters
     ----------
@@ -65,32 +65,30 @@ def verdicts(
     study: PathLike | Study | None = None,
 ) -> list[Verdict]:
     """Return the verdicts of :func:`check`, one for each row."""
-    given = _given(rules)
+    given_rules = _rules_of(rules)
     records: Mapping[str, str] | None = None
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
-        own, count, _ = _own_checks(saved.info["study"], judged=given is None)
+        own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
     else:
         if study is None:
-            raise InputError(
-                "check: a table does not say which piers it is about; give study = the study it was run from"
-            )
+            raise InputError("check: a table does not name its piers; give study = the study it was run from")
         study = study if isinstance(study, Study) else load_study(study)
-        own, count = study.checks, study.count
+        own_rules, count = study.checks, study.count
         table, cases = results, [describe_case(case) for case in study.cases]
-    rules = own if given is None else given
+    rules = own_rules if given_rules is None else given_rules
     if not rules:
         raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
-    if given is not None:  # the study's own are held against its piers when it is read
-        wrong = [f"check {shown(rule.name)}: {problem}" for rule in given for problem in implausible(rule, cases)]
+    if given_rules is not None:  # the study's own are held against its piers when it is read
+        wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
     return judge(rules, table, cases, records, count)
 
 
-def _given(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
+def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
     if rules is None:
         return None
     return load_rules(rules) if isinstance(rules, str | os.PathLike) else tuple(rules)
@@ -100,8 +98,8 @@ def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:
     """Return the checks of a study by its text and that of its file of checks, as in run.json; sound ones if ``judged``."""
 
     def opened(path: Path) -> TomlFile:
-        for kept in study.get("checks", ()):
-            return TomlFile.parse(Path(kept["path"]), kept["text"])
+        for check in study.get("checks", ()):
+            return TomlFile.parse(Path(check["path"]), check["text"])
         raise InputError(f"{INFO} does not keep {path}; run the study again, or give the file of rules")
 
     file = TomlFile.parse(Path(study["path"]), study["text"])

@@ -1,4 +1,4 @@
-"""The columns of peaks.csv: each is one row of a table here, from which all that describes it is made.
+"""The columns of peaks.csv: each is one row of a table here, from which its descriptions follow.
 
 The file, its types and units, the report's tables and tooltips, the comparison of two studies and docs/columns.md follow from
 :data:`COLUMNS`. A new column is a row at the end of :data:`MORE`, and a number in :class:`Outcome` for it.
@@ -86,7 +86,7 @@ class Column:
         With its unit, if any; fixed, since users' scripts read it.
     meaning : str
         Its meaning, in a sentence; the same for columns that are explained together.
-    of : str, function or None
+    source : str, function or None
         Field of :class:`Outcome`, or function of :class:`Ran`; None for names of the run.
     unit : str
         Of a number, as pint reads it; "1" is none.
@@ -106,13 +106,13 @@ class Column:
         True if only some of the runs to which it applies have one: a flight, a reason.
     suite : OfSuite or None
         Its statistics, if it has any; two studies are compared by it, too.
-    asked : function or None
+    requested : function or None
         True for a study that asks for it; None: it is always there.
     """
 
     name: str
     meaning: str
-    of: str | Callable[[Ran], Any] | None = None
+    source: str | Callable[[Ran], Any] | None = None
     unit: str = "1"
     page: OnPage | None = None
     kind: Literal["number", "count", "text"] = "number"
@@ -122,10 +122,10 @@ class Column:
     unbounded: bool = False
     sometimes: bool = False
     suite: OfSuite | None = None
-    asked: Callable[[Study], bool] | None = None
+    requested: Callable[[Study], bool] | None = None
 
     @property
-    def where(self) -> str:
+    def applies(self) -> str:
         """Runs to which it applies, in words; empty for all."""
         base = _BASES_IN_WORDS[self.bases]
         run = "where the pier stood" if self.stood else "if it occurs" if self.sometimes else ""
@@ -133,16 +133,16 @@ class Column:
 
 
 def _energy(term: str) -> Column:
-    def of(ran: Ran) -> float | None:
+    def value(ran: Ran) -> float | None:
         return None if ran.outcome.energies is None else ran.outcome.energies[term]
 
     return Column(
         f"energy_{term}_J_kg",
         "energy ledger at the end, per unit mass, and the greatest remainder on the way; with [output] ledger = true",
-        of,
+        value,
         "J/kg",
         OnPage(f"{term.replace('_', '-')} [J/kg]", ".0e" if term == "remainder" else ".4f"),
-        asked=lambda study: study.output.ledger,
+        requested=lambda study: study.output.ledger,
     )
 
 
@@ -152,7 +152,7 @@ def _force(
 ) -> Column:  # fmt: skip
     """Return a column of a ``field`` of PeakForces; ``per`` "g", or times the "mass" or "half the weight" if known."""
 
-    def of(ran: Ran) -> float | None:
+    def greatest(ran: Ran) -> float | None:
         value = None if ran.outcome.forces is None else getattr(ran.outcome.forces, field)
         times = {"g": 1.0 / ran.pier.gravity, "mass": ran.pier.mass_t, "half the weight": _half_weight(ran.pier)}
         factor = times.get(per, 1.0)
@@ -162,7 +162,7 @@ def _force(
     if per in ("mass", "half the weight"):
         more["sometimes"] = True
     meaning = f"{meaning}; with [output] forces = true"
-    return Column(name, meaning, of, unit, page, asked=lambda study: study.output.forces, **more)
+    return Column(name, meaning, greatest, unit, page, requested=lambda study: study.output.forces, **more)
 
 
 def _half_weight(pier: Pier) -> float | None:
@@ -310,15 +310,16 @@ MORE = (
 def _in_kilonewtons(field: str) -> Callable[[Ran], float | None]:
     """Return a force of :class:`Outcome` over the weight in kN, if the pier's mass is known."""
 
-    def of(ran: Ran) -> float | None:
+    def value(ran: Ran) -> float | None:
         force, mass = getattr(ran.outcome, field), ran.pier.mass_t
         return None if force is None or mass is None else force * mass * ran.pier.gravity
 
-    return of
+    return value
 
 
 def _device(
-    name: str, meaning: str, of: str | Callable[[Ran], Any], unit: str, head: str, form: str, factor: int = 1, behind: str = ""
+    name: str, meaning: str, source: str | Callable[[Ran], Any], unit: str, head: str, form: str, factor: int = 1,
+    behind: str = "",
 ) -> Column:  # fmt: skip
     """Return a column of studies that have devices of the kind with which its name begins."""
 
@@ -326,9 +327,11 @@ def _device(
         return any(name.startswith(f"{device.what}_") for case in study.cases for device in case.base.restraints)
 
     number: Literal["number", "count"] = (
-        "count" if of in ("tendon_slack", "stop_blows", "deck_spring_blows") else "number"
+        "count" if source in ("tendon_slack", "stop_blows", "deck_spring_blows") else "number"
     )
-    return Column(name, meaning, of, unit, OnPage(head, form, factor, behind), number, sometimes=True, asked=in_study)
+    return Column(
+        name, meaning, source, unit, OnPage(head, form, factor, behind), number, sometimes=True, requested=in_study
+    )
 
 
 _DAMPER, _TENDON, _STOP = (f"greatest force of a {device}" for device in ("damper", "tendon", "stop"))
@@ -475,7 +478,7 @@ _FORCES = (
 ASKED = (
     Column(
         MIRROR_OF, 'with both polarities, "+" in the rows of "-": the run whose mirror image this is', kind="text",
-        sometimes=True, asked=lambda study: len(study.motions.polarity) > 1,
+        sometimes=True, requested=lambda study: len(study.motions.polarity) > 1,
     ),
     Column(
         OTHER_LAW,
@@ -483,19 +486,19 @@ ASKED = (
         "both_laws = false",
         "settlement_other_law", "m", OnPage("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
-        asked=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),
+        requested=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),
     ),
     Column(
         ROCKING,
         "greatest rotation over α about where the pier would rest on its base as it then is; with [output] rocking = true",
         "theta_rocking", page=OnPage("rocking/α", ".5f", behind="theta_max_is"), over_alpha=True,
-        asked=lambda study: study.output.rocking,
+        requested=lambda study: study.output.rocking,
     ),
     Column(
         "theta_lean_over_alpha", "rotation over α at which it would rest at the time of the greatest rotation, to its side; with "
         "[output] rocking = true",
         "theta_lean", page=OnPage("lean/α", ".5f", behind=ROCKING), over_alpha=True, bases=YIELDING, stood=True,
-        asked=lambda study: study.output.rocking,
+        requested=lambda study: study.output.rocking,
     ),
     *DEVICES,
     *map(_energy, TERMS),
@@ -505,17 +508,17 @@ ASKED = (
         "estimated error of rocking, and of lean, over α: what halving the step still changed; empty with a fixed step; with "
         "[output] rocking = true",
         "theta_rocking_error", page=OnPage("±", ".0e", behind=ROCKING), over_alpha=True, stood=True,
-        asked=lambda study: study.output.rocking,
+        requested=lambda study: study.output.rocking,
     ),
     Column(
         "theta_lean_error",
         "estimated error of rocking, and of lean, over α: what halving the step still changed; empty with a fixed step; with "
         "[output] rocking = true",
         "theta_lean_error", page=OnPage("±", ".0e", behind="theta_lean_over_alpha"), over_alpha=True, bases=YIELDING,
-        stood=True, asked=lambda study: study.output.rocking,
+        stood=True, requested=lambda study: study.output.rocking,
     ),
 )  # fmt: skip
-"""Columns at the end of a table whose study asks for them."""
+"""Columns at the end of a table, on request of the study."""
 
 COLUMNS = {column.name: column for column in (*STAYING, *MORE, *ASKED)}
 """All of them, by name, in the order of the file."""
@@ -524,16 +527,16 @@ TEXTS = tuple(column.name for column in COLUMNS.values() if column.kind == "text
 COUNTS = tuple(column.name for column in COLUMNS.values() if column.kind == "count")
 UNBOUNDED = tuple(column.name for column in COLUMNS.values() if column.unbounded)
 
-_FIELDS = {column.name: column.of for column in COLUMNS.values() if isinstance(column.of, str)}
-_FUNCTIONS = {column.name: column.of for column in COLUMNS.values() if callable(column.of)}
+_FIELDS = {column.name: column.source for column in COLUMNS.values() if isinstance(column.source, str)}
+_FUNCTIONS = {column.name: column.source for column in COLUMNS.values() if callable(column.source)}
 _OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_alpha)
 _read_fields = attrgetter(*_FIELDS.values())
 
 
-def cells(runs: Sequence[Ran], wanted: Container[str] = COLUMNS) -> dict[str, list[Any]]:
+def cells(runs: Sequence[Ran], requested: Container[str] = COLUMNS) -> dict[str, list[Any]]:
     """Return the columns of peaks.csv of ``runs``, each shape (n,): their names, and their outcomes over α.
 
-    Numbers that functions give are only those of ``wanted`` columns. None where a column does not apply.
+    Numbers that functions give are only those of ``requested`` columns. None where a column does not apply.
     """
     table: dict[str, list[Any]] = {
         "record": [ran.motion.name for ran in runs],
@@ -546,7 +549,7 @@ def cells(runs: Sequence[Ran], wanted: Container[str] = COLUMNS) -> dict[str, li
     varied = dict.fromkeys(name for case in {id(ran.case): ran.case for ran in runs}.values() for name in case.columns)
     table |= {name: [ran.case.columns.get(name) for ran in runs] for name in varied}
     table |= zip(_FIELDS, map(list, zip(*(_read_fields(ran.outcome) for ran in runs), strict=True)), strict=True)
-    table |= {name: [of(ran) for ran in runs] for name, of in _FUNCTIONS.items() if name in wanted}
+    table |= {name: [function(ran) for ran in runs] for name, function in _FUNCTIONS.items() if name in requested}
     alpha = [ran.case.pier.alpha for ran in runs]
     for name in _OVER_ALPHA:
         table[name] = [None if x is None else x / a for x, a in zip(table[name], alpha, strict=True)]
@@ -559,7 +562,7 @@ def row(ran: Ran) -> dict[str, Any]:
 
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
-    """Return one row for each file that could not be used, with the reason."""
+    """Return a row for each file that could not be used, with the reason."""
     return [
         {"record": file.name, "status": "failed", "reason": f"{file.source}: {file.reason}"}
         for file in motions.unusable
@@ -568,8 +571,8 @@ def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
 
 def columns(study: Study) -> list[str]:
     """Return the columns of the table of ``study``: those that stay, its varied keys, more, and what it asks for."""
-    asked = [column for column in ASKED if column.asked and column.asked(study)]
-    return [*names(STAYING), *study.varied, *names(MORE), *names(asked)]
+    requested = [column for column in ASKED if column.requested and column.requested(study)]
+    return [*names(STAYING), *study.varied, *names(MORE), *names(requested)]
 
 
 def names(table: Iterable[Column]) -> list[str]:
@@ -579,8 +582,8 @@ def names(table: Iterable[Column]) -> list[str]:
 
 def units(study: Study) -> dict[str, str]:
     """Return the units of the numbers in the table of ``study``, but for its varied keys; "1" is none."""
-    known = (COLUMNS[name] for name in columns(study) if name in COLUMNS)
-    return {column.name: column.unit for column in known if column.kind != "text"}
+    described = (COLUMNS[name] for name in columns(study) if name in COLUMNS)
+    return {column.name: column.unit for column in described if column.kind != "text"}
 
 
 def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
@@ -590,8 +593,8 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
 
 def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     """Return a row on its own, as it stands in a table, with those columns on request that it has."""
-    there = [column for column in ASKED if cells.get(column.name) is not None]
-    table = pd.DataFrame([cells], columns=names((*STAYING, *MORE, *there)))
+    present = [column for column in ASKED if cells.get(column.name) is not None]
+    table = pd.DataFrame([cells], columns=names((*STAYING, *MORE, *present)))
     return _typed(table, ()).iloc[0].rename(cells["record"])
 
 
@@ -626,8 +629,8 @@ def on_page(shown: str = "peaks") -> list[Column]:
 def as_markdown() -> str:
     """Return the table of docs/columns.md; columns with one meaning share a line."""
     lines = ["| column | unit | meaning | where |", "| --- | --- | --- | --- |"]
-    for meaning, same in groupby(COLUMNS.values(), key=lambda column: column.meaning):
-        first, *others = same
+    for meaning, alike in groupby(COLUMNS.values(), key=lambda column: column.meaning):
+        first, *further = alike
         unit = "" if first.kind == "text" or first.unit == "1" else first.unit
-        lines.append(f"| {', '.join(names([first, *others]))} | {unit} | {meaning} | {first.where} |")
+        lines.append(f"| {', '.join(names([first, *further]))} | {unit} | {meaning} | {first.applies} |")
     return "\n".join(lines) + "\n"

@@ -1,7 +1,7 @@
-"""The one door to HDF5 files, which may come from anybody: what lies in the file itself, in the shapes that it has room for.
+"""The only access to HDF5 files, which may be untrusted: data in the file itself, in shapes that fit into it.
 
 HDF5 can lead elsewhere: links into other files, datasets whose bytes are in other files (external storage) or in other
-datasets (virtual ones), and sizes without bytes behind them. Whoever reads here gets a ``ValueError`` instead.
+datasets (virtual ones), and sizes without bytes behind them. All these raise ``ValueError`` here.
 """
 
 from typing import Any

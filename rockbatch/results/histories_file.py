@@ -87,8 +87,8 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
     """
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
         study = info["study"]
-        own = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
-        _set(file, own | {"title": study["title"], "study": study["text"], "sha256": study["sha256"]})
+        attributes = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
+        _set(file, attributes | {"title": study["title"], "study": study["text"], "sha256": study["sha256"]})
         _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
         runs = file.create_group("runs")
         for number, response in enumerate(responses):
@@ -120,16 +120,16 @@ def _write(group: "h5py.Group", response: Response) -> None:
     base = {"name": response.base.name} | asdict(response.base)
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
-    _put(group, response.history, [name for name in UNITS if response.base.on_springs or name not in OF_SPRINGS])
-    _put(group.create_group("events"), response.events, _EVENTS)
+    _write_all(group, response.history, [name for name in UNITS if response.base.on_springs or name not in OF_SPRINGS])
+    _write_all(group.create_group("events"), response.events, _EVENTS)
     if response.impacts is not None:
-        _put(group.create_group("impacts"), response.impacts, _IMPACTS)
+        _write_all(group.create_group("impacts"), response.impacts, _IMPACTS)
     for name, columns in _BESIDE.items():
         if (table := getattr(response, name)) is not None:
-            _put(group.create_group(name), table, columns or table.columns.drop("t"))
+            _write_all(group.create_group(name), table, columns or table.columns.drop("t"))
 
 
-def _put(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
+def _write_all(group: "h5py.Group", table: "pd.DataFrame", columns: Iterable[str]) -> None:
     """Write columns of a table: texts, or numbers with their unit."""
     for name in columns:
         if name in ("kind", "pivot"):
@@ -234,10 +234,10 @@ def _read(group: "h5py.Group") -> Response:
     tables: dict[str, Any] = {}
     for name, columns in _BESIDE.items():
         if name in group:
-            beside = group_in(group, name)
+            datasets = group_in(group, name)
             # Earlier versions had no base moment
-            there = [column for column in columns or beside if column in beside or column != "base_moment"]
-            tables[name] = _table(beside, dict.fromkeys(there, "f"), len(t))
+            present = [column for column in columns or datasets if column in datasets or column != "base_moment"]
+            tables[name] = _table(datasets, dict.fromkeys(present, "f"), len(t))
             tables[name].insert(0, "t", t)
     if "forces" in group:
         tables["impacts"] = _table(group_in(group, "impacts"), _IMPACTS).astype({"pivot": "str"})
@@ -263,12 +263,12 @@ def _table(group: "h5py.Group", kinds: Mapping[str, str], rows: int | None = Non
 def _row_of(response: Response, peaks: "pd.DataFrame") -> "pd.Series[Any] | None":
     """Return the row of a response: that with its names, whose numbers have ten digits there; None without one."""
     names = {name: getattr(response, name) for name in ("record", "case", "polarity", "scale")} | response.columns
-    same = np.ones(len(peaks), dtype=bool)
+    matches = np.ones(len(peaks), dtype=bool)
     for name, value in names.items():
-        same &= (peaks[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)).to_numpy(
+        matches &= (peaks[name] == (float(f"{value:.10g}") if isinstance(value, float) else value)).to_numpy(
             bool, na_value=False
         )
-    return peaks.iloc[int(same.argmax())].rename(response.record) if same.any() else None
+    return peaks.iloc[int(matches.argmax())].rename(response.record) if matches.any() else None
 
 
 def _run(group: "h5py.Group") -> dict[str, Any]:

@@ -108,13 +108,13 @@ def measures_of(table: "pd.DataFrame") -> list[str]:
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
     """Return how well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
     kinds = np.asarray(status, dtype=object)
-    gone = np.isin(kinds, NO_PEAK)
-    peaks = np.where(gone, math.inf, theta)
+    overturned = np.isin(kinds, NO_PEAK)
+    peaks = np.where(overturned, math.inf, theta)
     counts = (kinds != "failed") & ~np.isnan(peaks) & ~np.isnan(measure)
-    peaks, measure, gone = peaks[counts], measure[counts], gone[counts]
+    peaks, measure, overturned = peaks[counts], measure[counts], overturned[counts]
     drawn = np.isfinite(peaks) & (peaks > 0) & (measure > 0)
     slope, dispersion = _line(np.log(measure[drawn]), np.log(peaks[drawn]))
-    return Order(len(peaks), int(gone.sum()), _spearman(measure, peaks), int(drawn.sum()), slope, dispersion)
+    return Order(len(peaks), int(overturned.sum()), _spearman(measure, peaks), int(drawn.sum()), slope, dispersion)
 
 
 def _spearman(x: Array, y: Array) -> float:
@@ -149,12 +149,12 @@ def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
             **dict(zip(keys, key, strict=True)),
             "measure": name,
             **order_of(
-                same[name].to_numpy(dtype=np.float64),
-                same["theta_max_over_alpha"].to_numpy(dtype=np.float64),
-                same["status"].to_list(),
+                group[name].to_numpy(dtype=np.float64),
+                group["theta_max_over_alpha"].to_numpy(dtype=np.float64),
+                group["status"].to_list(),
             )._asdict(),
         }
-        for key, same in table.groupby(keys, sort=False, dropna=False)
+        for key, group in table.groupby(keys, sort=False, dropna=False)
         for name in measures_of(table)
     ]
     return pd.DataFrame(rows, columns=[*keys, "measure", *Order._fields])

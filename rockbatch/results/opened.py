@@ -91,7 +91,7 @@ class Results(Shown, Saved):
             Of which ground motion and case, or how the name of one of them begins; whatever the kept histories leave no
             choice about can be left out.
         **more
-            Its ``polarity``, ``scale`` and values of the study's varied keys, where that takes a choice.
+            Its ``polarity``, ``scale`` and values of the study's varied keys, where these differ.
 
         Raises
         ------
@@ -105,10 +105,10 @@ class Results(Shown, Saved):
                 f'{self.directory}: no histories; write [output] histories = "worst" or "all" in the study, and '
                 "start `rockbatch run` again"
             )
-        known = [name for name in index.columns if name != "status"]
-        strange = [name for name in wanted if name not in known]
+        keys = [name for name in index.columns if name != "status"]
+        strange = [name for name in wanted if name not in keys]
         if strange:
-            raise InputError(*(f"{name}: not what tells runs apart; choose by {', '.join(known)}" for name in strange))
+            raise InputError(*(f"{name}: does not distinguish runs; choose by {', '.join(keys)}" for name in strange))
         fitting = index
         for name, value in wanted.items():
             remaining = fitting[fitting[name] == value]
@@ -120,7 +120,7 @@ class Results(Shown, Saved):
             fitting = remaining
         if len(fitting) > 1:
             raise InputError(
-                f"{self.directory}: {len(fitting)} histories fit; say which: {_candidates(fitting, wanted)}"
+                f"{self.directory}: {len(fitting)} histories fit; choose one: {_candidates(fitting, wanted)}"
             )
         return self.responses[int(fitting.index[0])]
 
@@ -157,8 +157,8 @@ class Results(Shown, Saved):
         if not stood.empty:
             worst = stood.iloc[int(stood["theta_max_over_alpha"].argmax())]
             also = [f"{name} = {shown(worst[name])}" for name in self.info["varied"] if worst[name] == worst[name]]
-            where = ", ".join([f"{worst['record']} on {worst['case']}", *also])
-            facts["largest"] = f"θ_max/α = {in_words('theta_max_over_alpha', worst['theta_max_over_alpha'])}, {where}"
+            place = ", ".join([f"{worst['record']} on {worst['case']}", *also])
+            facts["largest"] = f"θ_max/α = {in_words('theta_max_over_alpha', worst['theta_max_over_alpha'])}, {place}"
         facts["not used"] = several(int((self.peaks["case"] == "").sum()), "file")
         facts["histories"] = HISTORIES if (self.directory / HISTORIES).exists() else ""
         return f"results of {self.info['study']['title']!r} in {self.directory}", facts
@@ -177,11 +177,11 @@ class Results(Shown, Saved):
         return simulated(self.peaks)[columns]
 
     def _none(self, name: str, value: float | str, among: "pd.DataFrame") -> str:
-        there = among[name].dropna().unique().tolist()
-        meant = closest(value, map(str, there)) if isinstance(value, str) else None
-        hint = f"there are {_listed(map(shown, there))}" if there else "it applies to none of them"
-        if meant:
-            hint = f"did you mean {shown(meant)}?"
+        values = among[name].dropna().unique().tolist()
+        nearest = closest(value, map(str, values)) if isinstance(value, str) else None
+        hint = f"there are {_listed(map(shown, values))}" if values else "it applies to none of them"
+        if nearest:
+            hint = f"did you mean {shown(nearest)}?"
         return f"{self.directory}: no history with {name} = {shown(value)}; {hint}"
 
 
@@ -216,9 +216,9 @@ def open_results(directory: str | os.PathLike[str]) -> Results:
     return Results(saved.directory, saved.info, saved.peaks, saved.missing)
 
 
-def _candidates(fitting: "pd.DataFrame", wanted: dict[str, float | str]) -> str:
-    """Return the runs that fit, by what distinguishes them."""
-    apart = [name for name in fitting.columns if name not in ("status", *wanted) and fitting[name].nunique() > 1]
+def _candidates(fitting: "pd.DataFrame", criteria: dict[str, float | str]) -> str:
+    """Return the runs that fit, by the values that distinguish them."""
+    apart = [name for name in fitting.columns if name not in ("status", *criteria) and fitting[name].nunique() > 1]
     runs = fitting[apart].to_dict("records")
     return _listed(
         ", ".join(f"{name} = {shown(value)}" for name, value in run.items() if value == value) for run in runs

@@ -61,12 +61,12 @@ class _Panels:
         axes.set_xticks(list(self.places.values()), list(self.places), rotation=90 if self.crowded else 0)
         for group, of_group in runs.groupby("group", sort=False):
             place = self.groups.index(str(group))
-            beside = SPREAD * ((place + 0.5) / len(self.groups) - 0.5)
+            shift = SPREAD * ((place + 0.5) / len(self.groups) - 0.5)
             style = marks(place)
             stood = of_group[of_group["status"] == "ok"]
             springs = stood[~stood["rigid"]]
             x, error = (
-                springs["foundation"].map(self.places) + beside,
+                springs["foundation"].map(self.places) + shift,
                 springs["theta_max_error"].fillna(0.0),
             )
             axes.errorbar(x, springs["theta_max_over_alpha"], error, label=group or None, **style)
@@ -74,7 +74,7 @@ class _Panels:
                 label = ", ".join(filter(None, (name, str(group))))
                 axes.axhline(theta, label=label, **line(self.lines.index(name) * len(self.groups) + place))
             for status, (marker, words) in INSTEAD.items():
-                places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + beside
+                places = of_group["foundation"][of_group["status"] == status].map(self.places).fillna(-0.6) + shift
                 if len(places):
                     height = [1.07 * self.top] * len(places)
                     axes.plot(places, height, **style | {"marker": marker}, label=words)
@@ -161,7 +161,7 @@ def _panels(runs: "pd.DataFrame", panel_mm: float) -> _Panels:
 
 
 def _legend(figure: Figure, columns: int) -> None:
-    """Explain lines, colours and markers, once for all panels."""
+    """Draw the legend of lines, colours and markers, once for all panels."""
     entries: dict[str, Artist] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -181,17 +181,17 @@ def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str, width_mm:
     axes = drawn.subplots()
     largest = float(runs["theta_max_over_alpha"].where(runs["status"] == "ok").max())
     right = 1.06 * largest if largest > 0 else 1.0
-    for place, (values, same) in enumerate(groups):
+    for place, (values, group) in enumerate(groups):
         theta, share = distribution(
-            same["theta_max_over_alpha"].to_numpy(dtype=float),
-            same["status"].to_list(),
-            counts_as(same, count)[0].to_list(),
+            group["theta_max_over_alpha"].to_numpy(dtype=float),
+            group["status"].to_list(),
+            counts_as(group, count)[0].to_list(),
         )
         label = ", ".join(filter(None, map(_named, keys, values)))
         reached = [0.0, *share, share[-1] if len(share) else 0.0]
         style = line(place)
         axes.step([0.0, *theta, right], reached, where="post", label=label, **style)
-        if same["status"].isin(NO_PEAK).any():
+        if group["status"].isin(NO_PEAK).any():
             axes.plot(right, reached[-1], "x", color=style["color"], clip_on=False)
     share_of = "share of the records\nthat do not exceed it"
     axes.set(xlabel=r"$\theta_{\max}/\alpha$", ylabel=share_of, xlim=(0, right), ylim=(0, 1.01))
@@ -243,9 +243,9 @@ def _scatter(axes: Axes, runs: "pd.DataFrame", norm: LogNorm) -> None:
             runs["frequency"][still], runs["intensity"][still], "o", color="0.6", mfc="none", label="did not move"
         )
     for status, (marker, words) in INSTEAD.items():
-        own = runs[runs["status"] == status]
-        if len(own):
-            axes.plot(own["frequency"], own["intensity"], marker, color="#D55E00", label=words)
+        of_status = runs[runs["status"] == status]
+        if len(of_status):
+            axes.plot(of_status["frequency"], of_status["intensity"], marker, color="#D55E00", label=words)
     axes.set(xscale="log", yscale="log")
     for along in (axes.xaxis, axes.yaxis):
         along.set_major_formatter(LogFormatter(labelOnlyBase=False))

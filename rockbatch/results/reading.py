@@ -81,7 +81,7 @@ def read_saved(directory: Path) -> Saved:
         raise InputError(*problems, *_of_another_version(directory))
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
-            f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, and varied does not say so; start `rockbatch run` "
+            f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, which varied does not list; start `rockbatch run` "
             "again"
         )
     for name in info["varied"]:
@@ -103,7 +103,7 @@ def read_saved(directory: Path) -> Saved:
 
 
 def _of_another_version(directory: Path) -> list[str]:
-    """Return a sentence about the version that wrote a folder which cannot be read; none if it was this one, or nobody knows."""
+    """Return a sentence about the version that wrote a folder which cannot be read; none if it was this one, or is not known."""
     try:
         wrote = str(json.loads(read_text(directory / INFO))["rockbatch"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
@@ -133,7 +133,7 @@ def _noting(problems: list[str]) -> Iterator[None]:
 
 
 @contextmanager
-def _again(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
+def _naming_damage(path: Path, line: str, kind: str, *damages: type[Exception]) -> Iterator[None]:
     """Raise ``InputError`` for a file that is missing, or damaged so that it is no ``kind``."""
     try:
         yield
@@ -147,7 +147,7 @@ def _again(path: Path, line: str, kind: str, *damages: type[Exception]) -> Itera
 
 
 def _read_info(path: Path) -> dict[str, Any]:
-    with _again(path, ":1", "JSON", ValueError, RecursionError):
+    with _naming_damage(path, ":1", "JSON", ValueError, RecursionError):
         info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
     missing = [problem.place for problem in misfits if problem.missing and problem.place in SHAPE]
@@ -160,7 +160,7 @@ def _read_info(path: Path) -> dict[str, Any]:
 
 
 def _legible(value: Any) -> Any:
-    """Return ``value`` of JSON with texts that can be shown, wherever they come from; those of several lines keep them."""
+    """Return ``value`` of JSON with its texts made legible; line breaks stay."""
     if isinstance(value, str):
         return legible(value, keep="\t\r\n")
     if isinstance(value, list):
@@ -169,13 +169,13 @@ def _legible(value: Any) -> Any:
 
 
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
-    with _again(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
+    with _naming_damage(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
     if missing := [name for name in (*names(STAYING), *varied) if name not in head]:
         raise InputError(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
     if len(set(head)) < len(head) or "" in head:
-        which = "without a name" if "" in head else "twice"
-        raise InputError(f"{path}:1: has a column {which}; start `rockbatch run` again")
+        fault = "without a name" if "" in head else "twice"
+        raise InputError(f"{path}:1: has a column {fault}; start `rockbatch run` again")
     texts = [name for name in head if name in TEXTS or name in varied or name == "vertical"]
     numbers = [name for name in head if name not in texts]
     try:
@@ -199,9 +199,9 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     if not sound:
         raise InputError(*(_bad_cells(path, head, numbers) or [f"{path}: {CHANGED}"]))
     for name in texts:
-        meant = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
-        if any(cell != text for cell, text in meant.items()):
-            table[name] = table[name].map(meant)
+        originals = {cell: legible(csv_plain(cell), keep="\t\r\n") for cell in table[name].unique()}
+        if any(cell != text for cell, text in originals.items()):
+            table[name] = table[name].map(originals)
     for name in varied:
         table[name] = _values(table[name])
     return table

@@ -1,4 +1,4 @@
-"""``run.json``: the study, its motions, and the versions with which it was run."""
+"""``run.json``: the study, its motions, and the versions of the packages used."""
 
 import hashlib
 import json
@@ -106,7 +106,7 @@ SHAPE = {
     "count": Maybe(("station", "component")),
     "left_out": Maybe([_OF_FILE]),
 }
-"""The part of run.json on which its readers rely; the rest is for people."""
+"""The part of run.json that programs read; the rest is for people."""
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -121,7 +121,7 @@ def versions() -> dict[str, str]:
 
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
-    """Return what run.json says about a study and its motions."""
+    """Return the entries of a study and its motions in run.json."""
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
     with_pulses = target is not None or study.output.intensity
@@ -175,7 +175,7 @@ def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | Non
 
 
 def describe_case(case: Case) -> dict[str, Any]:
-    """Return what run.json says about a case."""
+    """Return the entry of a case in run.json."""
     pier = case.pier
     return {
         "case": case.name,

@@ -1,4 +1,4 @@
-"""Shapes that JSON from elsewhere has to have before it is used.
+"""Shapes that untrusted JSON must have before it is used.
 
 A shape is a type (``str``, ``bool``, ``int``, ``float`` for any finite number), a tuple of shapes of which one has to fit
 (``None`` among them), ``[shape]`` for a list of such, ``{str: shape}`` for an object with any keys, or an object of the keys
@@ -56,9 +56,11 @@ def _unfit(value: Any, shape: Any, place: str) -> Iterator[Problem]:
         for number, item in enumerate(value):
             yield from _unfit(item, shape[0], f"{place}[{number}]")
     elif isinstance(shape, tuple):
-        if not any(fits(value, choice) if isinstance(choice, list | dict) else _is(value, choice) for choice in shape):
+        if not any(
+            fits(value, choice) if isinstance(choice, list | dict) else _is_a(value, choice) for choice in shape
+        ):
             yield Problem(place, " or ".join(map(_words, shape)))
-    elif not _is(value, shape):
+    elif not _is_a(value, shape):
         yield Problem(place, _words(shape))
 
 
@@ -70,17 +72,17 @@ def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Pro
         for key, item in value.items():
             yield from _unfit(item, shape[str], f"{place}.{key[:40]}")
         return
-    for key, wanted in shape.items():
+    for key, expected in shape.items():
         if key in value:
-            wanted = wanted.shape if isinstance(wanted, Maybe) else wanted
-            if not _soon(value[key], wanted):
-                yield from _unfit(value[key], wanted, f"{place}.{key}" if place else key)
-        elif not isinstance(wanted, Maybe):
+            expected = expected.shape if isinstance(expected, Maybe) else expected
+            if not _soon(value[key], expected):
+                yield from _unfit(value[key], expected, f"{place}.{key}" if place else key)
+        elif not isinstance(expected, Maybe):
             yield Problem(f"{place}.{key}" if place else key, "", missing=True)
 
 
 def _soon(value: Any, shape: Any) -> bool:
-    """Return True if ``value`` fits at first sight: most are single, and there are millions."""
+    """Return True if the single ``value`` fits ``kind``; fast, since there are millions."""
     if type(shape) is tuple:
         shape = shape[0]
     if shape is float:
@@ -88,7 +90,7 @@ def _soon(value: Any, shape: Any) -> bool:
     return shape is str and type(value) is str
 
 
-def _is(value: Any, kind: Any) -> bool:
+def _is_a(value: Any, kind: Any) -> bool:
     if kind is None or kind is bool or kind is str:
         return value is None if kind is None else isinstance(value, kind)
     if isinstance(kind, str):

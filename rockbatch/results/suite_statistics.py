@@ -72,8 +72,8 @@ def records(
     is a record, and all are of group 0.
     """
     kinds = np.asarray(status, dtype=object)
-    gone = np.isin(kinds, NO_PEAK)
-    magnitudes = np.where(gone, math.inf, np.where(kinds == "failed", math.nan, np.abs(values)))
+    no_peak = np.isin(kinds, NO_PEAK)
+    magnitudes = np.where(no_peak, math.inf, np.where(kinds == "failed", math.nan, np.abs(values)))
     names = np.arange(len(kinds))
     if counted_as is not None:
         names = np.unique(np.asarray(counted_as, dtype=str), return_inverse=True)[1]
@@ -86,10 +86,10 @@ def records(
 
     worst = np.full(len(pairs), math.nan)
     np.fmax.at(worst, record, magnitudes)
-    over = any_of(kinds == "overturned")
-    flown = any_of(kinds == "flight") & ~over
-    failed = any_of(kinds == "failed") & ~over & ~flown
-    return Records(worst, over, flown, failed, pairs // (len(names) + 1))
+    overturned = any_of(kinds == "overturned")
+    flown = any_of(kinds == "flight") & ~overturned
+    failed = any_of(kinds == "failed") & ~overturned & ~flown
+    return Records(worst, overturned, flown, failed, pairs // (len(names) + 1))
 
 
 def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
@@ -102,13 +102,13 @@ def suites(
 ) -> list[Suite]:
     """Return the statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
     data = records(values, status, counted_as, group)
-    known, which = data.worst[data.known], data.group[data.known]
-    ordered = known[np.lexsort((known, which))]
-    n = np.bincount(which, minlength=groups)
+    worst, group_of = data.worst[data.known], data.group[data.known]
+    ordered = worst[np.lexsort((worst, group_of))]
+    n = np.bincount(group_of, minlength=groups)
     first = np.cumsum(n) - n
-    stood = np.isfinite(known)
-    standing = np.bincount(which[stood], minlength=groups)
-    total = np.bincount(which[stood], known[stood], groups)
+    stood = np.isfinite(worst)
+    standing = np.bincount(group_of[stood], minlength=groups)
+    total = np.bincount(group_of[stood], worst[stood], groups)
     mean = np.where(standing > 0, total / np.maximum(standing, 1), math.nan)
     fractiles = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
     counts = [np.bincount(data.group[ended], minlength=groups) for ended in (data.overturned, data.flight, data.failed)]
@@ -130,6 +130,6 @@ def distribution(
         those under which the pier overturned, or that were ended by flight, exceed all of them.
     """
     data = records(values, status, counted_as)
-    known = np.sort(data.worst[data.known])
-    stood = known[np.isfinite(known)]
-    return stood, np.arange(1, len(stood) + 1) / max(len(known), 1)
+    worst = np.sort(data.worst[data.known])
+    stood = worst[np.isfinite(worst)]
+    return stood, np.arange(1, len(stood) + 1) / max(len(worst), 1)

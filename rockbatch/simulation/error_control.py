@@ -77,9 +77,9 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
             outcomes[i] = _not_converged(runs[i].pier, levels.pop(i), tolerance, more)
-        going, doubtful = list(levels), []
-        substeps = [2 * levels[i][-1].outcome.substeps for i in going]
-        for i, fine in zip(going, try_all([runs[i] for i in going], substeps, quiet_s, stop), strict=True):
+        unfinished, doubtful = list(levels), []
+        substeps = [2 * levels[i][-1].outcome.substeps for i in unfinished]
+        for i, fine in zip(unfinished, try_all([runs[i] for i in unfinished], substeps, quiet_s, stop), strict=True):
             if fine is None:
                 del levels[i]
                 continue
@@ -116,22 +116,24 @@ def _look_for_chaos(
     stop: Stop,
 ) -> None:
     """Drop the errors of ``doubtful`` runs whose θ_max depends on digits that no record has: their agreement is chance."""
-    checked = [(i, now) for i in doubtful if (now := outcomes[i]) is not None and now.theta_max_error is not None]
+    checked = [
+        (i, result) for i in doubtful if (result := outcomes[i]) is not None and result.theta_max_error is not None
+    ]
     if not checked:
         return
     changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + CHANGE)) for i, _ in checked]
-    others = try_all(changed, [now.substeps for _, now in checked], quiet_s, stop)
-    for (i, now), other in zip(checked, others, strict=True):
-        if other is None:
+    perturbed = try_all(changed, [result.substeps for _, result in checked], quiet_s, stop)
+    for (i, result), trial in zip(checked, perturbed, strict=True):
+        if trial is None:
             outcomes[i] = None
-        elif not abs(other.outcome.theta_max - now.theta_max) <= tolerance * runs[i].pier.alpha:
+        elif not abs(trial.outcome.theta_max - result.theta_max) <= tolerance * runs[i].pier.alpha:
             becomes = (
-                "overturns" if other.outcome.status == "overturned" else f"comes to {other.outcome.theta_max:.3g} rad"
+                "overturns" if trial.outcome.status == "overturned" else f"comes to {trial.outcome.theta_max:.3g} rad"
             )
             chaos = (
                 f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
             )
-            outcomes[i] = now.noted(chaos, theta_max_error=None)
+            outcomes[i] = result.noted(chaos, theta_max_error=None)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -167,30 +169,30 @@ def _with_drift(run: Run, outcome: Outcome) -> Outcome:
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
     """Return how far two runs agree; ``tolerance`` on rotations [rad]."""
-    now, before = fine.outcome, coarse.outcome
-    if now.status != before.status:
+    finer, coarser = fine.outcome, coarse.outcome
+    if finer.status != coarser.status:
         return Agreement.NONE
-    if now.status == "failed":
-        alike = now.reason == before.reason and abs(now.theta_max - before.theta_max) <= tolerance
-        return Agreement.THROUGHOUT if alike and now.reason in LEFT_ALONE else Agreement.NONE
+    if finer.status == "failed":
+        alike = finer.reason == coarser.reason and abs(finer.theta_max - coarser.theta_max) <= tolerance
+        return Agreement.THROUGHOUT if alike and finer.reason in LEFT_ALONE else Agreement.NONE
     greatest = np.fmax(fine.extremes, coarse.extremes)
     change = np.abs(fine.extremes - coarse.extremes)
     change[np.isnan(greatest)] = 0.0  # a window that neither has reached
-    if now.status == "overturned":
+    if finer.status == "overturned":
         standing = greatest < pier.alpha
-        fell_together = abs(now.t_end - before.t_end) <= SAME_TIME / pier.p
+        fell_together = abs(finer.t_end - coarser.t_end) <= SAME_TIME / pier.p
         together = fell_together and not (change[standing] > max(tolerance, SAME_FALL * pier.alpha)).any()
         return Agreement.THROUGHOUT if together else Agreement.NONE
-    if now.status == "flight" and abs(_flight(now) - _flight(before)) > SAME_TIME / pier.p:
+    if finer.status == "flight" and abs(_flight(finer) - _flight(coarser)) > SAME_TIME / pier.p:
         return Agreement.NONE
-    if max(now.theta_max_error or 0.0, now.theta_res_error or 0.0) > tolerance:
+    if max(finer.theta_max_error or 0.0, finer.theta_res_error or 0.0) > tolerance:
         return Agreement.NONE
-    if abs(now.t_max - before.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
+    if abs(finer.t_max - coarser.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
         return Agreement.RESULTS
     differs = ~(change <= tolerance)
     if not differs.any():
         return Agreement.THROUGHOUT
-    below = now.theta_max - greatest[differs]
+    below = finer.theta_max - greatest[differs]
     return Agreement.APART if (FAR_BELOW * change[differs] <= below).all() else Agreement.RESULTS
 
 
@@ -213,24 +215,24 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     If rotations before the peak have not converged, no error is claimed: the peak depends on digits that no record has, and two
     runs that agree on it agree by chance.
     """
-    now, before, notes = fine.outcome, coarse.outcome, list[str]()
+    finer, coarser, notes = fine.outcome, coarse.outcome, list[str]()
     differs = np.abs(fine.extremes - coarse.extremes) > tolerance
     if extent < Agreement.THROUGHOUT and differs.any():
         greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
         notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
-        if differs[: peak + 1].any() and now.status == "ok":
-            now = now.changed(theta_max_error=None)
+        if differs[: peak + 1].any() and finer.status == "ok":
+            finer = finer.changed(theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
-        fewer, more = sorted((getattr(before, name), getattr(now, name)))
+        fewer, more = sorted((getattr(coarser, name), getattr(finer, name)))
         if fewer != more:
             notes.append(f"{name} not settled: {fewer} or {more}")
-    if now.status == "ok" and now.t_flight != before.t_flight:
-        times = [_flight(before), _flight(now)]
+    if finer.status == "ok" and finer.t_flight != coarser.t_flight:
+        times = [_flight(coarser), _flight(finer)]
         if not abs(times[1] - times[0]) <= 1e-3:
             moments = [f"at {t:.3f} s" if t == t else "none" for t in times]
             notes.append(f"first flight not settled: {moments[0]} or {moments[1]}")
-    return now.noted(*notes)
+    return finer.noted(*notes)
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
@@ -238,21 +240,23 @@ def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: 
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest
-    what = "the outcome"
+    change = "the outcome"
     if len(levels) > 1:
-        before = levels[-2].outcome
+        coarser = levels[-2].outcome
         errors = (("theta_max", finest.theta_max_error), ("theta_res", finest.theta_res_error))
         changes = [
             f"{name} by {error:.1e} rad"
             for name, error in errors
             if error is not None and error > tolerance * pier.alpha
         ]
-        if finest.status == before.status == "overturned":
-            changes = [f"the time of overturning, from {before.t_end:.2f} to {finest.t_end:.2f} s"]
-        elif finest.status == before.status == "flight" and not changes:
-            changes = [f"the time of flight, from {_flight(before):.3f} to {_flight(finest):.3f} s"]
-        elif finest.status == before.status and not changes:
+        if finest.status == coarser.status == "overturned":
+            changes = [f"the time of overturning, from {coarser.t_end:.2f} to {finest.t_end:.2f} s"]
+        elif finest.status == coarser.status == "flight" and not changes:
+            changes = [f"the time of flight, from {_flight(coarser):.3f} to {_flight(finest):.3f} s"]
+        elif finest.status == coarser.status and not changes:
             changes = ["rotations almost as large as the peak"]
-        what = " and ".join(changes) or f"the outcome, from {before.status} to {finest.status}"
-    reason = f"not settled: halving the step still changed {what}; at {finest.substeps} substeps: {finest.status}{more}"
+        change = " and ".join(changes) or f"the outcome, from {coarser.status} to {finest.status}"
+    reason = (
+        f"not settled: halving the step still changed {change}; at {finest.substeps} substeps: {finest.status}{more}"
+    )
     return finest.changed(status="failed", reason=reason, note="")

@@ -55,7 +55,7 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     pier, base = run.pier, run.base
     most = math.inf if base.friction is None else float(base.friction)
     limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
-    body = Body(_outline(pier), _hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
+    body = Body(_outline(pier), _friction_hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
     plain, pulls = apart(base, rows)
     recording = RecordedRun(plain, pulls, recorded(pier, base, rows) if base.restraints else None)
     ground, dt = ground_of(run.motion), float(run.motion.dt)
@@ -63,7 +63,7 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     return noted[0]
 
 
-def _hold(pier: Pier, base: RigidBase) -> Hold:
+def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
     """Return what friction dampers can do against a pier at rest that begins to turn about its left or right pivot."""
     numbers = []
     for side in (-1.0, 1.0):
@@ -94,13 +94,15 @@ def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:
     """Return the impacts between neighbouring rows: the speed before, and by how much the momentum changes."""
-    after = _events(rows, LANDINGS)
-    before, kind = after - 1, rows.kind[after]
-    left, right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
-    comes_down = np.where(kind == types.REST, np.where(left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)
+    landed = _events(rows, LANDINGS)
+    before, kind = landed - 1, rows.kind[landed]
+    speed_left, speed_right = np.abs(forces.speed_left[before]), np.abs(forces.speed_right[before])
+    comes_down = np.where(kind == types.REST, np.where(speed_left > 0.0, types.IMPACT_LEFT, types.IMPACT_RIGHT), kind)
     side = np.where(comes_down == types.IMPACT_LEFT, -1, np.where(comes_down == types.IMPACT_RIGHT, 1, 0))
-    speed = np.where(side < 0, left, np.where(side > 0, right, np.maximum(left, right)))
-    return Impacts(after, side, speed, forces.along[after] - forces.along[before], forces.up[after] - forces.up[before])
+    speed = np.where(side < 0, speed_left, np.where(side > 0, speed_right, np.maximum(speed_left, speed_right)))
+    return Impacts(
+        landed, side, speed, forces.along[landed] - forces.along[before], forces.up[landed] - forces.up[before]
+    )
 
 
 def forces_table(t: Samples, forces: np.recarray, gravity: float) -> "pd.DataFrame":
@@ -203,9 +205,9 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
         return "; ".join(notes)
     most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
     if most > limit:
-        when = "at an impact" if noted.slides == NEVER else f"at {noted.slides:.2f} s"
+        time = "at an impact" if noted.slides == NEVER else f"at {noted.slides:.2f} s"
         notes.append(
-            f"{WOULD_SLIDE} {when}: the friction demand reaches {most:.3g}, the interface has {limit:g}; sliding is not followed"
+            f"{WOULD_SLIDE} {time}: the friction demand reaches {most:.3g}, the interface has {limit:g}; sliding is not followed"
         )
     if peaks.key_shear is not None:
         notes.append(
@@ -253,9 +255,9 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakFo
     scales = _scales(pier)
     changes = {}
     for name, (fields, measure) in _SIZED.items():
-        now, before = ([getattr(forces, field) or 0.0 for field in fields] for forces in (fine, coarse))
-        changed = max(abs(new - old) for new, old in zip(now, before, strict=True))
-        changes[name] = changed / max(*now, _FLOOR * scales[measure])
+        finer, coarser = ([getattr(forces, field) or 0.0 for field in fields] for forces in (fine, coarse))
+        changed = max(abs(new - old) for new, old in zip(finer, coarser, strict=True))
+        changes[name] = changed / max(*finer, _FLOOR * scales[measure])
     worst = max(changes, key=changes.__getitem__)
     most = changes[worst]
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""

@@ -100,10 +100,10 @@ def _through_upright(path: Path) -> tuple[Rows, Rows, Samples, Samples]:
 
 def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tuple[Samples, Samples]:
     """Return θ and its rate by the cubic Hermite polynomial between two rows, at the share ``s``."""
-    start, way = path.theta[before], path.theta[after] - path.theta[before]
-    first, last = h * path.omega[before] - way, way - h * path.omega[after]
-    value = start + s * way + s * (1.0 - s) * ((1.0 - s) * first + s * last)
-    rate = way + (1.0 - s) * (1.0 - 3.0 * s) * first + s * (2.0 - 3.0 * s) * last
+    start, travel = path.theta[before], path.theta[after] - path.theta[before]
+    first, last = h * path.omega[before] - travel, travel - h * path.omega[after]
+    value = start + s * travel + s * (1.0 - s) * ((1.0 - s) * first + s * last)
+    rate = travel + (1.0 - s) * (1.0 - 3.0 * s) * first + s * (2.0 - 3.0 * s) * last
     return value, rate / h
 
 
@@ -118,12 +118,12 @@ def _peak(path: Path, first: int, last: int) -> tuple[float, float]:
             continue
         turned, h = True, float(path.t[first + i + 1] - path.t[first + i])
         # θ turns where its rate, a parabola, is 0
-        way = float(theta[i + 1] - theta[i])
+        travel = float(theta[i + 1] - theta[i])
         a, b = h * float(omega[i]), h * float(omega[i + 1])
-        square, linear = 3.0 * (a + b - 2.0 * way), 2.0 * (3.0 * way - 2.0 * a - b)
+        square, linear = 3.0 * (a + b - 2.0 * travel), 2.0 * (3.0 * travel - 2.0 * a - b)
         root = np.roots([square, linear, a])
         for s in root[(np.abs(root.imag) < 1e-9) & (root.real > 0.0) & (root.real < 1.0)].real:
-            value = float(theta[i]) + s * way + s * (1 - s) * ((1 - s) * (a - way) + s * (way - b))
+            value = float(theta[i]) + s * travel + s * (1 - s) * ((1 - s) * (a - travel) + s * (travel - b))
             if abs(value) > best:
                 best, t = abs(value), float(path.t[first + i]) + s * h
     return (best, t) if turned else (math.nan, math.nan)

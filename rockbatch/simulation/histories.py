@@ -77,25 +77,27 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
 
 
-def rocking_from_lean(run: Run, outcome: Outcome, quiet_s: float, wanted: bool = False, wait: bool = True) -> Outcome:
-    """Return ``outcome`` with rocking and lean apart, if ``wanted`` or the peak may be lean; on yielding springs by one more
-    run, and if ``wanted`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
+def rocking_from_lean(
+    run: Run, outcome: Outcome, quiet_s: float, requested: bool = False, wait: bool = True
+) -> Outcome:
+    """Return ``outcome`` with rocking and lean apart, if ``requested`` or the peak may be lean; on yielding springs by one more
+    run, and if ``requested`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
 
     After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
     quarter of the whole, tells most peaks from lean.
     """
-    if not outcome.was_run or not (wanted or may_lean(outcome)):
+    if not outcome.was_run or not (requested or may_lean(outcome)):
         return outcome
     if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
         rocking = {"theta_rocking": outcome.theta_max, "theta_rocking_error": outcome.theta_max_error}
-        return outcome.changed(**rocking) if wanted else outcome
-    if not wanted and outcome.t_max <= run.motion.duration + quiet_s:
+        return outcome.changed(**rocking) if requested else outcome
+    if not requested and outcome.t_max <= run.motion.duration + quiet_s:
         rows = written(run, outcome, quiet_s, every_step=False, wait=False)
         if not apart(run.pier, run.base, rows).leans:
             return outcome
     parts = apart(run.pier, run.base, written(run, outcome, quiet_s, every_step=False, wait=wait))
     outcome = with_rocking(outcome, parts, run.pier.alpha)
-    if not wanted or outcome.theta_max_error is None or outcome.substeps % 2:
+    if not requested or outcome.theta_max_error is None or outcome.substeps % 2:
         return outcome
     rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=False, wait=wait)
     return with_error_of_rocking(outcome, parts, apart(run.pier, run.base, rows))
@@ -183,9 +185,9 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
     """Return the time, kind and pivot of every event, and the rows before and after it."""
     kinds = rows.kind
     events = []
-    for after in np.flatnonzero(kinds > 0):
-        jumps = kinds[after - 1] == types.BEFORE_EVENT
-        events.append((float(rows.t[after]), *_EVENTS[int(kinds[after])], int(after - jumps), int(after)))
+    for row in np.flatnonzero(kinds > 0):
+        jumps = kinds[row - 1] == types.BEFORE_EVENT
+        events.append((float(rows.t[row]), *_EVENTS[int(kinds[row])], int(row - jumps), int(row)))
     if t_flight is not None:
         last = int(np.searchsorted(rows.t, t_flight, side="right")) - 1
         events.append((t_flight, "flight", "", last, last))

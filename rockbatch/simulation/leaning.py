@@ -51,7 +51,7 @@ def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
 def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -> tuple[float, float]:
     """Return the greatest |``swing``| [rad], θ less what is straight between rows, and its time, which may lie between rows."""
     h = np.diff(t)
-    most, when = float(np.abs(swing).max()), float(t[np.abs(swing).argmax()])
+    most, instant = float(np.abs(swing).max()), float(t[np.abs(swing).argmax()])
     first, last = (h * rate - np.diff(theta) for rate in (omega[:-1], omega[1:]))
     bound = np.maximum(np.abs(swing[:-1]), np.abs(swing[1:])) + np.maximum(np.abs(first), np.abs(last))
     near = np.flatnonzero(bound > most)
@@ -59,8 +59,8 @@ def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -
         between = (1.0 - s) * swing[near] + s * swing[near + 1]
         rocking = np.abs(between + s * (1.0 - s) * ((1.0 - s) * first[near] - s * last[near]))
         if len(rocking) and rocking.max() > most:
-            most, when = float(rocking.max()), float(t[near[rocking.argmax()]] + s * h[near[rocking.argmax()]])
-    return most, when
+            most, instant = float(rocking.max()), float(t[near[rocking.argmax()]] + s * h[near[rocking.argmax()]])
+    return most, instant
 
 
 def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray) -> Samples:

@@ -307,6 +307,6 @@ def readings(pier: Pier, base: Base, dt: float) -> tuple[int, int]:
     """
     if not isinstance(base, YieldingBase):
         return 0, 0
-    after = READ_AFTER * 2.0 * math.pi / vertical_frequency(pier, base)
+    interval = READ_AFTER * 2.0 * math.pi / vertical_frequency(pier, base)
     rocking = 2.0 * math.pi / rocking_frequency(pier, base)
-    return math.ceil(after / dt), math.ceil(math.ceil(after / rocking) * rocking / dt)
+    return math.ceil(interval / dt), math.ceil(math.ceil(interval / rocking) * rocking / dt)

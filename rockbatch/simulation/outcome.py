@@ -224,9 +224,9 @@ class Outcome:
 
     def changed(self, **fields: Any) -> "Outcome":
         """Return the outcome with other ``fields``, in a tenth of the time of ``dataclasses.replace``."""
-        other = object.__new__(Outcome)
-        vars(other).update(vars(self), **fields)
-        return other
+        copy = object.__new__(Outcome)
+        vars(copy).update(vars(self), **fields)
+        return copy
 
     def noted(self, *remarks: str, **fields: Any) -> "Outcome":
         """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""

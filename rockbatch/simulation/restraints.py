@@ -73,10 +73,10 @@ def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[
         pose = attitude(m, y, devices.level)
         for j in range(len(devices.elements)):
             law, state = devices.elements[j], devices.states[i, j]
-            here = gap_of(m, law, pose, y)
-            goes = math.copysign(1.0, here.speed) if abs(here.speed) > moves else STICKS
-            pull[i, j] = recorded_force(law, here, state, goes)
-            elongation[i, j], energy[i, j] = here.elongation, stored_in(law, here.elongation, state)
+            gap = gap_of(m, law, pose, y)
+            direction = math.copysign(1.0, gap.speed) if abs(gap.speed) > moves else STICKS
+            pull[i, j] = recorded_force(law, gap, state, direction)
+            elongation[i, j], energy[i, j] = gap.elongation, stored_in(law, gap.elongation, state)
 
 
 def _followed(pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples, Samples]:
@@ -116,7 +116,7 @@ def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> S
     return terms
 
 
-def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states: Samples, holds: np.ndarray) -> float:
+def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states: Samples, sticks: np.ndarray) -> float:
     """Return the rotation [rad] at which the pier comes to rest on its supports after a run with this ``result``.
 
     Static, small, both pivots on their springs; devices give way elastically from their state at its end, and a friction
@@ -126,7 +126,7 @@ def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states
     ----------
     level : float
         v of the pier at rest at the start [m].
-    states, holds : ndarray, shape (devices,)
+    states, sticks : ndarray, shape (devices,)
         State of each device at the end, and whether it is a friction damper that does not move then.
     """
     m, v, theta = springs(pier, base), result.v_end, result.theta_end
@@ -135,18 +135,18 @@ def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states
     stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - m.gravity * h]])
     left, right = result.base_left, result.base_right
     load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
-    for law, state, holding in zip(elements(pier, base), states, holds, strict=True):
-        now, soft = v - level - law.offset * theta, np.array([1.0, -law.offset])
+    for law, state, holding in zip(elements(pier, base), states, sticks, strict=True):
+        u, soft = v - level - law.offset * theta, np.array([1.0, -law.offset])
         if law.height != 0.0:
-            now, soft = law.way * law.height * theta, np.array([0.0, law.way * law.height])
-        force, gives = _at_rest(law, now, state, k if holding else 0.0)
-        # F = force + gives (u − now), which pulls down by F and turns by −s F
-        stiffness += gives * np.outer(soft, soft)
-        load -= (force - gives * (now + (level if law.height == 0.0 else 0.0))) * soft
+            u, soft = law.way * law.height * theta, np.array([0.0, law.way * law.height])
+        force, tangent = _at_rest(law, u, state, k if holding else 0.0)
+        # F = force + tangent (x − u), which pulls down by F and turns by −s F
+        stiffness += tangent * np.outer(soft, soft)
+        load -= (force - tangent * (u + (level if law.height == 0.0 else 0.0))) * soft
     return float(np.linalg.solve(stiffness, load)[1])
 
 
-def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, holds: np.ndarray) -> float:
+def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Samples, sticks: np.ndarray) -> float:
     """Return the rotation [rad] at which devices hold a pier that has not come to rest upright, 0 if they do not.
 
     Friction holds it where it is; other devices give way elastically until weight and devices balance.
@@ -155,7 +155,7 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
     laws = elements(pier, base)
     if any(
         holding and abs(law.offset - math.copysign(b, theta)) > 1e-9 * b
-        for law, holding in zip(laws, holds, strict=True)
+        for law, holding in zip(laws, sticks, strict=True)
     ):
         return theta
     side = math.copysign(1.0, theta)
@@ -164,10 +164,10 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
         """Return the moment [m²/s²] that rights the pier at rest at ``tilt``."""
         righting = pier.gravity * pier.size * math.sin(pier.alpha - tilt)
         for law, state in zip(laws, states, strict=True):
-            now, arm = _reach(law, b, tilt, side)
-            then, _ = _reach(law, b, abs(theta), side)
-            force, gives = _at_rest(law, then, state, 0.0)
-            force = stop_force(law, now, state) if law.kind == CONTACT else force + gives * (now - then)
+            u, arm = _reach(law, b, tilt, side)
+            final, _ = _reach(law, b, abs(theta), side)
+            force, tangent = _at_rest(law, final, state, 0.0)
+            force = stop_force(law, u, state) if law.kind == CONTACT else force + tangent * (u - final)
             righting += force * arm
         return righting
 
@@ -183,8 +183,8 @@ def rests_on_rigid_base(pier: Pier, base: RigidBase, result: Result, states: Sam
 def _reach(law: Element, b: float, tilt: float, side: float) -> tuple[float, float]:
     """Return the elongation [m] of a device of a block at rest on the pivot at ``side``, and its rate over the ``tilt`` [m]."""
     if law.height != 0.0:
-        way = side * law.way
-        return way * (law.height * math.sin(tilt) + b * (1.0 - math.cos(tilt))), way * (
+        direction = side * law.way
+        return direction * (law.height * math.sin(tilt) + b * (1.0 - math.cos(tilt))), direction * (
             law.height * math.cos(tilt) + b * math.sin(tilt)
         )
     distance = b - side * law.offset

@@ -227,13 +227,13 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
     pier, base = run.pier, run.base
     if outcome.status != "ok" or not base.has_residual:
         return outcome
-    n, holds = len(devices.elements), devices.goes == STICKS
+    n, sticks = len(devices.elements), devices.goes == STICKS
     states = devices.x[:n]
     if isinstance(base, ElasticBase):
-        rotation = rests_at(pier, base, result, float(devices.level[0]), states, holds)
+        rotation = rests_at(pier, base, result, float(devices.level[0]), states, sticks)
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
     else:
-        rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, holds)
+        rotation = 0.0 if not math.isnan(result.t_rest) else rests_on_rigid_base(pier, base, result, states, sticks)
         remark = f"dampers hold the pier at a rotation of {rotation:.3g} rad"
     changed = abs(rotation - (outcome.theta_res or 0.0)) > NOTED_TILT * pier.alpha
     return outcome.noted(remark if changed else "", theta_res=rotation)
@@ -241,8 +241,8 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
 
 def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     """Return the demands on devices by the fields of Outcome, of the kinds that the base has."""
-    what = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
-    dampers, tendons = (use[what == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
+    kinds = np.array([device.what for device in run.base.restraints for _ in places(run.pier, device)])
+    dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, Any] = {}
     if len(dampers):
         demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
@@ -254,9 +254,9 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
         demands["tendon_yield"] = float(tendons.yielded.max())
         demands["tendon_slack"] = int(tendons.times.sum())
     for stop_kind in ("stop", "deck_spring"):
-        if (what == stop_kind).any():
-            laws = [law for law, kind in zip(elements(run.pier, run.base), what, strict=True) if kind == stop_kind]
-            demands |= _of_contacts(laws, use[what == stop_kind].view(np.recarray), stop_kind, run.pier.gravity)
+        if (kinds == stop_kind).any():
+            laws = [law for law, kind in zip(elements(run.pier, run.base), kinds, strict=True) if kind == stop_kind]
+            demands |= _of_contacts(laws, use[kinds == stop_kind].view(np.recarray), stop_kind, run.pier.gravity)
     return demands
 
 

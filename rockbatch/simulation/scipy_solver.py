@@ -70,8 +70,8 @@ class _SmoothPart:
     def handle(self, t: float, number: int) -> None:
         """Continue after an event."""
         ground = self.horizontal(t), self.vertical(t)
-        now = handle(self.m, self.state, self.contact, self.supports, number, self.rest, *ground)
-        self.state, self.contact, self.supports, _ = now
+        handled = handle(self.m, self.state, self.contact, self.supports, number, self.rest, *ground)
+        self.state, self.contact, self.supports, _ = handled
 
 
 def solve(

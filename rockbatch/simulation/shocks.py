@@ -39,8 +39,8 @@ def by_shock(
     rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=False, wait=wait)
     coarse = _peaks(run.motion, rows)
     return [
-        replace(now, theta_max_error=abs(now.theta_max - theta) if now.status == "ok" else math.nan)
-        for now, (theta, _) in zip(fine, coarse, strict=True)
+        replace(finer, theta_max_error=abs(finer.theta_max - theta) if finer.status == "ok" else math.nan)
+        for finer, (theta, _) in zip(fine, coarse, strict=True)
     ]
 
 
@@ -74,12 +74,12 @@ def _read(run: Run, outcome: Outcome, rows: np.recarray) -> list[ShockOutcome]:
             outcomes.append(ShockOutcome(outcome.status, theta, t))
         else:
             quiet = (rows.t >= shock.until - LAST_PART * (shock.until - shock.end)) & (rows.t <= shock.until + _AT_ONCE)
-            seen = rows.theta[quiet] if quiet.any() else rows.theta[-1:]
-            high, low = float(seen.max()), float(seen.min())
+            rotations = rows.theta[quiet] if quiet.any() else rows.theta[-1:]
+            high, low = float(rotations.max()), float(rotations.min())
             last = int(np.searchsorted(rows.t, shock.until - _AT_ONCE)) - 1
-            rest = 0.5 * (high + low) if run.base.has_residual else math.nan
+            residual = 0.5 * (high + low) if run.base.has_residual else math.nan
             outcomes.append(ShockOutcome(
-                "ok", theta, t, theta_res=rest if lean is None else float(lean[last]),
+                "ok", theta, t, theta_res=residual if lean is None else float(lean[last]),
                 settlement=math.nan if settlement is None else float(settlement[last]), moving=0.5 * (high - low),
             ))  # fmt: skip
     return outcomes

@@ -39,7 +39,7 @@ def start_of(pier: Pier, base: Base) -> Start:
     for law in elements(pier, base):  # about a corner: the chord of the device's way
         distance = pier.half_width - math.copysign(law.offset, theta * law.offset)
         chord = 2.0 * distance * math.sin(0.5 * abs(theta))
-        states.append(_held(law, chord if law.height == 0.0 else _on_deck(law, theta, True))[1])
+        states.append(_force_and_state(law, chord if law.height == 0.0 else _on_deck(law, theta, True))[1])
     return Start(theta=theta, states=tuple(states), level=0.0)
 
 
@@ -64,9 +64,9 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
     def devices(v: float) -> list[tuple[float, float]]:
         up = v - level + drop
         return [
-            _held(law, _on_deck(law, theta, m.finite is not None))
+            _force_and_state(law, _on_deck(law, theta, m.finite is not None))
             if law.height != 0.0
-            else _held(law, by_v * (up - side * tilt * law.offset))
+            else _force_and_state(law, by_v * (up - side * tilt * law.offset))
             for law in laws
         ]
 
@@ -77,11 +77,11 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
 
     v, pressed, lifted = state(_root(excess))
     z_left, z_right = (-lifted, -pressed) if side > 0.0 else (-pressed, -lifted)
-    states = tuple(own for _, own in devices(v))
+    states = tuple(device_state for _, device_state in devices(v))
     return Start(v, theta, z_left + 0.0, z_right + 0.0, states, level, level + delta * static)
 
 
-def _held(law: Element, elongation: float) -> tuple[float, float]:
+def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:
     """Return force [m/s²] and state of a device that was drawn out slowly from rest to this ``elongation`` [m]."""
     if law.kind == TENDON:
         pull = law.prestress + law.stiffness * elongation
@@ -133,9 +133,9 @@ def _bouc_wen(n: float) -> Curve:
         parts = max(1, math.ceil(curved / 0.5))
         half = 0.5 * curved / parts
         points = half * (2.0 * np.arange(parts)[:, None] + 1.0 + _NODES)
-        left = np.exp(-points)  # 1 − z
-        stiffness = -np.expm1(n * np.log1p(-left)) if w > 0.0 else np.ones_like(points)  # 1 − zⁿ
-        return float(half * (left / stiffness @ _WEIGHTS).sum()) + (w - curved) / n, -math.expm1(-w)
+        deficit = np.exp(-points)  # 1 − z
+        stiffness = -np.expm1(n * np.log1p(-deficit)) if w > 0.0 else np.ones_like(points)  # 1 − zⁿ
+        return float(half * (deficit / stiffness @ _WEIGHTS).sum()) + (w - curved) / n, -math.expm1(-w)
 
     return curve
 

@@ -42,7 +42,7 @@ BASE_KEYS = {
         only=_ON_SPRINGS),
     "stiffness_kN_m": Key(positive, "2.0e6",
         "Stiffness K of one support, for a pier whose mass is known; or give `beta`.", many=True, only=_ON_SPRINGS),
-    "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` says it.", many=True,
+    "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
         only=_ON_SPRINGS, usual=PIER["mass_t"].usual),
     "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
         "Restitution ε of the pivot that lands, from 0 (it stays) to 1 (it bounces without loss).", many=True, only=_ON_SPRINGS),
@@ -96,7 +96,7 @@ LEAST_DEFLECTION = 2e-5
 """Static deflection [m] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
-"""Stands in where no pier can be read, so that what does not depend on it is checked all the same."""
+"""Pier used if none can be read, so that everything independent of it is still checked."""
 
 
 class _Read(NamedTuple):
@@ -110,7 +110,7 @@ class _Read(NamedTuple):
 
 
 class Expanded(NamedTuple):
-    """One pier on one base, and the values of all keys that apply, also of those not written."""
+    """One pier on one base, and the values of all keys that apply, defaults included."""
 
     name: str
     pier: Pier
@@ -154,12 +154,14 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
 
 
 def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Expanded:
-    given = {key: setting.value for key, setting in chosen.items()}
+    values = {key: setting.value for key, setting in chosen.items()}
     any_pier = pier is _ANY_PIER
-    if "mass_t" in given:
-        pier = replace(pier, mass_t=given["mass_t"])
+    if "mass_t" in values:
+        pier = replace(pier, mass_t=values["mass_t"])
     devices = tuple(device.made(pier, chosen) for device in case.devices)
-    base = _base(case.base, {name: given[name] for name in BASE_KEYS if name in given} | {"restraints": devices}, pier)
+    base = _base(
+        case.base, {name: values[name] for name in BASE_KEYS if name in values} | {"restraints": devices}, pier
+    )
     wrong = problems(pier, base)
     for written, device in zip(case.devices, devices, strict=True):
         if not any_pier:
@@ -172,7 +174,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
             _complain(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier, base)
-    applying = {key: value for key, value in asdict(base).items() if value is not None} | given
+    applying = {key: value for key, value in asdict(base).items() if value is not None} | values
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
         applying.pop("epsilon", None)
@@ -181,34 +183,34 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
     return Expanded(case.name, pier, base, pier_values | applying)
 
 
-def _base(name: str, given: Mapping[str, Any], pier: Pier) -> Base:
+def _base(name: str, values: Mapping[str, Any], pier: Pier) -> Base:
     """Return the base; K [kN/m] and F_y [kN] become β and η by the mass of the pier.
 
     Where β or η is missing, which is noted already, a possible value lets the rest be checked.
     """
-    own = dict(given)
-    stiffness, strength, _ = (own.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
+    arguments = dict(values)
+    stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     kind = _BASES[name]
     if kind.on_springs:
-        own.setdefault("beta", 2 * pier.least_beta)
+        arguments.setdefault("beta", 2 * pier.least_beta)
     if stiffness and pier.mass_t:
-        own["beta"] = beta_of(pier, stiffness)
+        arguments["beta"] = beta_of(pier, stiffness)
     if kind.yields:
-        own.setdefault("eta", 2.0)
+        arguments.setdefault("eta", 2.0)
     if strength and pier.mass_t:
-        own["eta"] = eta_of(pier, strength)
-    return kind(**own)
+        arguments["eta"] = eta_of(pier, strength)
+    return kind(**arguments)
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
-    """Yield all without n if the spring has none; what is then alike comes once."""
-    seen = set()
+    """Yield all choices, without n if the spring has none, and without the repetitions that this leaves."""
+    visited = set()
     for chosen in all_of_them:
         if "spring" in chosen and chosen["spring"].value not in WITH_EXPONENT:
             chosen.pop("n", None)
         identity = tuple(chosen.items())
-        if identity not in seen:
-            seen.add(identity)
+        if identity not in visited:
+            visited.add(identity)
             yield chosen
 
 
@@ -221,7 +223,7 @@ def _case(table: Table) -> _Read:
     weighed = has_mass(table.file)
     if weighed and grid.settings.pop("mass_t", ()):
         value = shown(table.data["mass_t"])
-        table.complain(f"mass_t = {value}: [pier] says already what the pier weighs; leave it out", "mass_t")
+        table.complain(f"mass_t = {value}: [pier] states the pier's mass already; leave it out", "mass_t")
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
         if base not in BASE_KEYS[ratio].only["base"] or table.has(ratio):
             continue
@@ -259,19 +261,19 @@ def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base
 
 
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier, base: Base) -> None:
-    """Note a stiffness and a yield force that no support has under this pier, unless they are confirmed.
+    """Note an implausible stiffness or yield force of a support under this pier, unless they are confirmed.
 
     A wrong unit explains them better than the ground. The ratios beta and eta have no unit and are not judged: their limits, too,
     are something to study.
     """
     deflection = static_deflection(pier, base)
-    odd = {}
+    doubts = {}
     if deflection < LEAST_DEFLECTION:
-        by = f"the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
-        odd["stiffness_kN_m"] = f"{by}, where sound rock gives some 0.1 mm"
+        compression = f"the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
+        doubts["stiffness_kN_m"] = f"{compression}, where sound rock gives some 0.1 mm"
     if "yield_kN" in chosen and (eta := eta_of(pier, chosen["yield_kN"].value)) > MOST_ETA:
-        odd["yield_kN"] = f"{eta:.3g} times what the support carries at rest, where 2 to 20 times is usual"
-    for name, meaning in odd.items():
+        doubts["yield_kN"] = f"{eta:.3g} times what the support carries at rest, where 2 to 20 times is usual"
+    for name, meaning in doubts.items():
         if name in chosen and name not in table.confirmed:
             message = f"{name} = {chosen[name].value:g}: {meaning}; {remedy(name)} in this table"
             table.complain_about(chosen[name], message)

@@ -49,11 +49,11 @@ def columns_of(path: Path, known: Collection[str], texts: Collection[str] = ()) 
 def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]) -> Sequence[str]:
     for name in names:
         if name not in known:
-            meant = closest(name, known)
-            instead = f"did you mean {meant}?" if meant else f"write one of {', '.join(known)}"
+            nearest = closest(name, known)
+            instead = f"did you mean {nearest}?" if nearest else f"write one of {', '.join(known)}"
             raise InputError(f"{path}:{number}: {shown(name)}: unknown column; {instead}")
     if len(set(names)) < len(names):
-        raise InputError(f"{path}:{number}: a column is there twice")
+        raise InputError(f"{path}:{number}: a column occurs twice")
     return names
 
 

@@ -31,7 +31,7 @@ LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
 
 @dataclass(frozen=True)
 class FragilitySpec:
-    """[fragility]: how intensity is measured, where fragility is sampled, and which limits are asked about.
+    """[fragility]: how intensity is measured, where fragility is sampled, and the limits.
 
     :data:`FRAGILITY` says what each key means. ``levels`` rise, in :attr:`unit`; ``limits`` are overturning, then the checks,
     each held against every record by itself, with runs that flew or failed undecided unless the check leaves them out.
@@ -119,7 +119,7 @@ FRAGILITY = Section(("fragility",), (
 
 
 def read_fragility(study: Study) -> FragilitySpec:
-    """Return what the table [fragility] of a loaded study asks for.
+    """Return the settings of the table [fragility] of a loaded study.
 
     Raises ``InputError`` with every mistake in it, with its line.
     """
@@ -132,23 +132,23 @@ def read_fragility(study: Study) -> FragilitySpec:
     hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
     dispersions = read_dispersions(file)
     file.finish()
-    given = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
-    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **given)
+    settings = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
+    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **settings)
 
 
 def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]) -> tuple[float, ...]:
     """Return the levels in the unit of the measure, those of ``stripes`` if there are any; mistakes are noted."""
-    given = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
+    written = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
     if read.get("least_scale", 0.0) > read.get("most_scale", math.inf):
         table.complain(
-            f"least_scale = {read['least_scale']:g}: more than most_scale; no record is between", "least_scale"
+            f"least_scale = {read['least_scale']:g}: more than most_scale; no factor lies between", "least_scale"
         )
     if "measure" not in read:
         return ()
-    own = LEVELS[read["measure"]]
-    if table.file.has((*table.at, "stripe")):
-        if given[own]:
-            table.complain(f"{own}: each [[fragility.stripe]] has its level; leave {own} out", own)
+    key = LEVELS[read["measure"]]
+    if table.file.has((*table.key_path, "stripe")):
+        if written[key]:
+            table.complain(f"{key}: each [[fragility.stripe]] has its level; leave {key} out", key)
         if read.get("method", "stripes") != "stripes":
             table.complain(
                 f'method = {shown(read["method"])}: records of their own are for "stripes"; leave it out', "method"
@@ -156,14 +156,16 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
         return tuple(stripe.level for stripe in stripes)
     if read.get("method") == "cloud":
         return ()
-    if not table.has(own):
-        table.complain(f"{own} is missing; write for example {own} = {FRAGILITY[own].example}")
-    levels = given[own]
-    for n, (before, level) in enumerate(pairwise(levels), 1):
-        if level < before:
-            table.complain(f"{own} = {level:g}: after {before:g}; write them in rising order", own, n)
+    if not table.has(key):
+        table.complain(f"{key} is missing; write for example {key} = {FRAGILITY[key].example}")
+    levels = written[key]
+    for n, (previous, level) in enumerate(pairwise(levels), 1):
+        if level < previous:
+            table.complain(f"{key} = {level:g}: after {previous:g}; write them in rising order", key, n)
     if len(levels) == 1:
-        table.complain(f"{own} = {shown(table.data[own])}: one level tells no dispersion; write at least two", own)
+        table.complain(
+            f"{key} = {shown(table.data[key])}: one level does not determine a dispersion; write at least two", key
+        )
     return levels
 
 
@@ -176,16 +178,16 @@ def _limits(table: Table, rules: tuple[Rule, ...], chosen: tuple[str, ...] | Non
         names = [rule.name for rule in able]
         for n, pattern in enumerate(chosen):
             if not any(fnmatch.fnmatchcase(name, pattern) for name in names):
-                meant = closest(pattern, names)
-                there = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
-                instead = f"did you mean {shown(meant)}?" if meant else there
-                table.complain(f"checks = {shown(pattern)}: no [[check]] is called so; {instead}", "checks", n)
+                nearest = closest(pattern, names)
+                choices = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
+                instead = f"did you mean {shown(nearest)}?" if nearest else choices
+                table.complain(f"checks = {shown(pattern)}: no [[check]] has this name; {instead}", "checks", n)
         able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, pattern) for pattern in chosen)]
     return tuple(map(_of_one_record, able))
 
 
 def _of_one_record(rule: Rule) -> Rule:
-    """Return a check as a limit of every record, in whatever suite and direction.
+    """Return a check as a limit of every record, in any suite and direction.
 
     A run that flew or failed may be left out, but else it is undecided: a check is on the safe side where such a run counts as
     infinite, a fragility is not.

@@ -81,15 +81,13 @@ def read_hazard(file: TomlFile, levels: str) -> Hazard | None:
     table = file.table("fragility", "hazard")
     if table is None:
         return None
-    before = len(file.problems)
+    problems_before = len(file.problems)
     read = table.read(HAZARD)
-    others = {"levels_g", "levels_m_s"} - {levels}
-    for name in others & table.data.keys():
-        table.complain(
-            f"{name}: the levels of [fragility] are {levels}; a hazard of another measure does not go with them", name
-        )
+    wrong_keys = {"levels_g", "levels_m_s"} - {levels}
+    for name in wrong_keys & table.data.keys():
+        table.complain(f"{name}: the levels of [fragility] are {levels}; the hazard must have the same measure", name)
     points = _from_file(table, read["file"], levels) if "file" in read else read
-    if not file.is_sound_since(before):
+    if not file.is_sound_since(problems_before):
         return None
     curve = _curve(table, points, levels, read)
     if curve is None:
@@ -111,16 +109,16 @@ def _from_file(table: Table, name: str, levels: str) -> dict[str, Sequence[Any]]
 
 
 def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, Any]) -> HazardCurve | None:
-    given = next((name for name in _RATES if name in points), "")
-    if levels not in points or not given:
+    rate_key = next((name for name in _RATES if name in points), "")
+    if levels not in points or not rate_key:
         lacking = f"{HAZARD[levels].example} and rate_per_year = {HAZARD['rate_per_year'].example}"
         table.complain(f"it has no points; write for example {levels} = {lacking}, or file = {HAZARD['file'].example}")
         return None
-    x, y = points[levels], points[given]
-    rates = tuple(1.0 / period for period in y) if given == "return_period_years" else tuple(y)
+    x, y = points[levels], points[rate_key]
+    rates = tuple(1.0 / period for period in y) if rate_key == "return_period_years" else tuple(y)
     slope, shape = read.get("slope"), read.get("shape", "points")
     wrong = list(problems(x, rates, slope, shape))
-    key = "file" if "file" in read else given
+    key = "file" if "file" in read else rate_key
     for place, message in wrong:
         table.complain(message, key, *(() if place is None or key == "file" else (place,)))
     return None if wrong else HazardCurve(tuple(x), rates, slope, shape)
@@ -131,7 +129,7 @@ def read_dispersions(file: TomlFile) -> tuple[Dispersion, ...]:
     added: list[Dispersion] = []
     for table in file.tables("fragility", "dispersion", title="name"):
         read = table.read(DISPERSION)
-        if any(read.get("name") == other.name for other in added):
+        if any(read.get("name") == dispersion.name for dispersion in added):
             table.complain("its name is given twice; give each its own", "name")
         if read.keys() >= {"name", "value"}:
             added.append(Dispersion(**read))
@@ -139,5 +137,5 @@ def read_dispersions(file: TomlFile) -> tuple[Dispersion, ...]:
 
 
 def root_of_squares(dispersions: Iterable[Dispersion]) -> float:
-    """Return what the dispersions come to together."""
-    return math.sqrt(sum(each.value**2 for each in dispersions))
+    """Return the root of the sum of the squares of the dispersions."""
+    return math.sqrt(sum(dispersion.value**2 for dispersion in dispersions))

@@ -26,7 +26,7 @@ class Grid:
     def of(cls, table: Table, keys: Mapping[str, Key], prefix: str = "", other: Iterable[str] = ()) -> "Grid":
         """Read a table; ``prefix`` goes before its keys, ``other`` ones are read elsewhere."""
         settings = {
-            prefix + name: value if keys[name].many else [Setting(value, (*table.at, name))]
+            prefix + name: value if keys[name].many else [Setting(value, (*table.key_path, name))]
             for name, value in table.read(keys, other=other, places=True).items()
         }
         lists = [name for name, value in table.data.items() if name in keys and isinstance(value, list)]
@@ -50,12 +50,12 @@ def too_many(number: int, what: str) -> str:
         return ""
     return (
         f"{number:,} {what}, more than {MOST_CASES:,}: every value of a list is combined with every other; write shorter "
-        "lists, or several studies; `rockbatch sensitivity` samples what has no room for a grid"
+        "lists, or several studies; `rockbatch sensitivity` samples instead of combining all"
     )
 
 
 def complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
-    """Note a problem that begins with a key, "key = …", at that key, or else about the table."""
+    """Note a problem that begins with a key, "key = …", at that key, or else for the table."""
     name = problem.split(" = ")[0]
     if name in chosen:
         table.complain_about(chosen[name], problem)

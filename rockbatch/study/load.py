@@ -44,7 +44,7 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
     "substeps": Key(count, "4",
         "Instead of a tolerance: a fixed number of steps per sample, without an estimate of the error."),
     "quiet_s": Key(not_negative, "2.0",
-        "Time at rest after the record, at least; a run goes on for as long as anything larger may still come."),
+        "Time at rest after the record, at least; a run continues as long as anything larger may follow."),
     **CONFIRM,
 }, homes=(Numerics,), clashes=(
     Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
@@ -216,8 +216,8 @@ class Study(Shown):
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
-        own = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
-        counts = several(own, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
+        given = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
+        counts = several(given, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
         still = f"still ground for {spec.still_s:g} s" if spec.still_s is not None else ""
         fixed, error = f"{step.substeps} steps per sample", f"error of theta_max/alpha below {step.tolerance or 0:g}"
         return f"study {self.title!r}", {
@@ -314,7 +314,7 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
 
 
 def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
-    """Return what a check chooses and the study does not have, and a limit that is implausible for its piers."""
+    """Return the choices of a check that the study lacks, and limits that are implausible for its piers."""
     yield from unmet(
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
@@ -336,7 +336,7 @@ def _numerics(file: TomlFile) -> Numerics:
 
 
 def _complain_about_friction(file: TomlFile) -> None:
-    """Note friction in a study without forces: what it is held against costs a second run at every step."""
+    """Note friction in a study without forces, which cost a second run with every step."""
     for table in file.tables("case", title="name"):
         if "friction" in table.data:
             table.complain(
@@ -348,21 +348,23 @@ def _complain_about_friction(file: TomlFile) -> None:
 
 def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
-    known = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
+    names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}
-    keys = {**REFERENCE, "case": replace(REFERENCE["case"], kind=known), **of_parts}
+    keys = {**REFERENCE, "case": replace(REFERENCE["case"], kind=names), **of_parts}
     references = []
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
         columns = {name: value for name, value in read.items() if name not in OF_REFERENCE}
         alike = [case.values for case in cases if case.name == read.get("case")]
         for name, value in columns.items():
-            there = dict.fromkeys(values[name] for values in alike if name in values)
-            if alike and value not in there:
+            options = dict.fromkeys(values[name] for values in alike if name in values)
+            if alike and value not in options:
                 case = shown(read["case"])
-                instead = f"write {' or '.join(map(shown, there))}, or leave it out" if there else "leave it out"
+                instead = f"write {' or '.join(map(shown, options))}, or leave it out" if options else "leave it out"
                 table.complain(f"{name} = {shown(value)}: no case {case} has it; {instead}", name)
         if read.keys() >= set(OF_REFERENCE):
-            own = {name: read[name] for name in OF_REFERENCE}
-            references.append(Reference(columns={name: columns[name] for name in varied if name in columns}, **own))
+            fields_read = {name: read[name] for name in OF_REFERENCE}
+            references.append(
+                Reference(columns={name: columns[name] for name in varied if name in columns}, **fields_read)
+            )
     return tuple(references)

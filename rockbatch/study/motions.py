@@ -188,11 +188,13 @@ def _read_motions(table: Table) -> dict[str, Any]:
     axis, step = read.pop("axis_deg", None), read.pop("every_deg", None)
     if axis is not None or step is not None:
         read["azimuths"] = azimuths_every(step) if axis is None else (axis,)
-    if read.pop("select", None) is not None and (inner := table.file.table(*table.at, "select")):
+    if read.pop("select", None) is not None and (inner := table.file.table(*table.key_path, "select")):
         read["select"] = Selection(**inner.read(SELECT))
-    if read.pop("target", None) is not None and (inner := table.file.table(*table.at, "target")):
+    if read.pop("target", None) is not None and (inner := table.file.table(*table.key_path, "target")):
         read["target"] = read_target(inner)
-    if read.pop("vertical_target", None) is not None and (inner := table.file.table(*table.at, "vertical_target")):
+    if read.pop("vertical_target", None) is not None and (
+        inner := table.file.table(*table.key_path, "vertical_target")
+    ):
         read["vertical_target"] = read_target(inner, vertical=True)
     return read
 
@@ -260,11 +262,11 @@ def _check_pulse(table: Table, spec: PulseSpec) -> None:
         spec.motion(GRAVITY)
     except InputError as error:
         for problem in error.problems:
-            symbol, rest = problem.split(" ", 1)
+            symbol, message = problem.split(" ", 1)
             name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in table.data), "name")
-            table.complain(f"{name} {rest}", name)
+            table.complain(f"{name} {message}", name)
     else:
-        odd = unlikely(abs(spec.amplitude_g), spec.period_s, spec.dt_s)
+        doubts = unlikely(abs(spec.amplitude_g), spec.period_s, spec.dt_s)
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
-            if name in odd and key not in table.confirmed:
-                table.complain(f"{key} = {odd[name]}; {remedy(key)} in this table", key)
+            if name in doubts and key not in table.confirmed:
+                table.complain(f"{key} = {doubts[name]}; {remedy(key)} in this table", key)

@@ -104,7 +104,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
     table = file.table("pier", required="[pier] with alpha = 0.13 and p = 0.38, or with width_m and height_m")
     if table is None:
         return [], ()
-    before = len(file.problems)
+    problems_before = len(file.problems)
     grid = Grid.of(table, PIER, other=("part",))
     _check_one_size(table)
     parts = file.tables("pier", "part", title="name")
@@ -115,7 +115,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
         grid += Grid.of(part, PART, f"part_{n}_")
     if message := too_many(len(grid), "piers"):
         table.complain(message)
-    if not file.is_sound_since(before):
+    if not file.is_sound_since(problems_before):
         return [], ()
     piers = []
     for chosen in grid:
@@ -129,8 +129,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
             )
         except InputError as error:
             for problem in error.problems:
-                where = " in this table" if "write confirm" in problem else ""
-                complain_where_due(table, chosen, problem + where)
+                place = " in this table" if "write confirm" in problem else ""
+                complain_where_due(table, chosen, problem + place)
         else:
             piers.append((pier, {name: value for name, value in asdict(pier).items() if value is not None} | values))
     return piers, grid.varied
@@ -143,29 +143,29 @@ def has_mass(file: TomlFile) -> bool:
 
 def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pier:
     """Return the pier that these keys describe; which of them go together is checked already."""
-    rest = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": confirmed}
+    common = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": confirmed}
 
-    def made(constructor: Callable[..., Pier], *names: str) -> Pier:
-        return constructor(**{name: values[name] for name in names if name in values}, **rest)
+    def constructed(constructor: Callable[..., Pier], *names: str) -> Pier:
+        return constructor(**{name: values[name] for name in names if name in values}, **common)
 
     if parts:
-        return _of_parts(values, parts, rest)
+        return _of_parts(values, parts, common)
     if "deck_mass_t" in values and "columns" not in values:
         names = ("width_m", "height_m", "mass_t", "deck_mass_t", "deck_height_m", "deck_inertia_t_m2")
-        return made(Pier.with_deck, *names)
+        return constructed(Pier.with_deck, *names)
     if "width_m" in values:
-        pier = made(Pier.rectangle, "width_m", "height_m", "mass_t")
+        pier = constructed(Pier.rectangle, "width_m", "height_m", "mass_t")
     elif "size_m" in values:
-        pier = made(Pier.from_size, "alpha", "size_m", "mu", "mass_t")
+        pier = constructed(Pier.from_size, "alpha", "size_m", "mu", "mass_t")
     else:
-        del rest["confirm"]
-        pier = made(Pier, "alpha", "p", "mu", "mass_t")
-        if "top_m" in rest:
+        del common["confirm"]
+        pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
+        if "top_m" in common:
             Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
     return Pier.frame(pier, values["columns"], values["deck_mass_t"]) if "columns" in values else pier
 
 
-def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
+def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
     """Return a pier of parts, and the deck as one more; drift is read at the highest point that is known."""
     all_of_them = [
         Part(**{name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values})
@@ -176,22 +176,22 @@ def _of_parts(values: dict[str, Any], parts: int, rest: dict[str, Any]) -> Pier:
         deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
         all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
-    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | rest)
+    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | common)
 
 
 def _check_one_size(table: Table) -> None:
     """Note a size that is given in no way or in several, and α and μ beside one that they follow from."""
     parts = table.has("part")
-    given = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
-    sides = [name for name in given if name in ("width_m", "height_m")]
-    ways = len(given) - len(sides) + bool(sides)
+    written = [name for name in table.names if name in ("p", "size_m", "width_m", "height_m")]
+    sides = [name for name in written if name in ("width_m", "height_m")]
+    ways = len(written) - len(sides) + bool(sides)
     if ways == 0:
         table.complain("its size is missing; write p = 0.38 (rad/s), size_m = 60.1, or width_m and height_m")
     elif ways > 1:
         table.complain(
-            f"{', '.join(given[:-1])} and {given[-1]} are given, which fix the size more than once; keep p, "
+            f"{', '.join(written[:-1])} and {written[-1]} are given, which fix the size more than once; keep p, "
             "or size_m, or width_m with height_m",
-            given[-1],
+            written[-1],
         )
     elif len(sides) == 1 and not (parts and sides == ["width_m"]):
         missing = "height_m" if sides == ["width_m"] else "width_m"

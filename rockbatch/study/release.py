@@ -103,7 +103,7 @@ def _padded(read: dict[str, Any]) -> dict[str, Any]:
         first = rows[0][0] if rows[0][0] == rows[0][0] else 0.0
         rows = [(t - first, amplitude) for t, amplitude in rows]
         rows[0] = (math.nan, rows[0][1])  # 0 by definition, which says nothing
-    return read | {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(own for _, own in rows)}
+    return read | {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(value for _, value in rows)}
 
 
 def _of_file(table: Table, path: Path, written: str) -> dict[str, tuple[float, ...]]:
@@ -116,12 +116,12 @@ def _of_file(table: Table, path: Path, written: str) -> dict[str, tuple[float, .
                 return {}
             content = file.read().decode("utf-8-sig")
     except (OSError, ValueError) as error:  # InputError is one, too
-        why = (
+        reason = (
             "no such file" + nearby(path, written)
             if isinstance(error, FileNotFoundError)
             else f"cannot be read: {error}"
         )
-        table.complain(f"measured = {shown(written)}: {why}; paths are relative to the study file", "measured")
+        table.complain(f"measured = {shown(written)}: {reason}; paths are relative to the study file", "measured")
         return {}
     separator = ";" if ";" in content.partition("\n")[0] else ","
     lines = csv.reader(io.StringIO(content), delimiter=separator)
@@ -169,16 +169,16 @@ def _number(cell: str, separator: str) -> float | None:
 
 def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:
     """Note what the values are that no pier does, and cases in which nothing can be fitted."""
-    times, amplitudes = _given(spec.impact_s), _given(spec.amplitude_rad)
-    where = "measured" if spec.measured else "impact_s"
-    own = len(times) + len(amplitudes)
-    if own < FEWEST or len(spec.impact_s) > MOST:
-        few = f"{own} values were measured, and an interval takes {FEWEST} at least"
-        message = few if own < FEWEST else f"more than {MOST} impacts"
-        table.complain(f"{message}; write impact_s, amplitude_rad or both", *([where] if table.has(where) else []))
-    for (n, before), (m, t) in pairwise(times):
-        if not t > before:
-            table.complain(f"impact {m} is at {t:g} s, and impact {n} at {before:g} s: times have to rise", where)
+    times, amplitudes = _numbered(spec.impact_s), _numbered(spec.amplitude_rad)
+    key = "measured" if spec.measured else "impact_s"
+    measured = len(times) + len(amplitudes)
+    if measured < FEWEST or len(spec.impact_s) > MOST:
+        few = f"{measured} values were measured, and an interval takes {FEWEST} at least"
+        message = few if measured < FEWEST else f"more than {MOST} impacts"
+        table.complain(f"{message}; write impact_s, amplitude_rad or both", *([key] if table.has(key) else []))
+    for (n, previous), (m, t) in pairwise(times):
+        if not t > previous:
+            table.complain(f"impact {m} is at {t:g} s, and impact {n} at {previous:g} s: times have to rise", key)
             break
     start = [abs(case.pier.initial_rotation_rad) for case in study.cases]
     if not all(start):
@@ -197,6 +197,6 @@ def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:
             )
 
 
-def _given(values: Iterable[float]) -> list[tuple[int, float]]:
+def _numbered(values: Iterable[float]) -> list[tuple[int, float]]:
     """Return the values that were measured, with their numbers from 1."""
     return [(n, value) for n, value in enumerate(values, 1) if not math.isnan(value)]

@@ -38,11 +38,11 @@ def numbered(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Parameter
     counts: Counter[str] = Counter()
     given_by = fields_of(pier)
     for place, device in enumerate(restraints):
-        what, kind = device.what, device.kind if isinstance(device, Damper) else device.what
-        counts[what] += 1
+        table, kind = device.what, device.kind if isinstance(device, Damper) else device.what
+        counts[table] += 1
         for key in KEYS_OF[kind]:
             if key in given_by and getattr(device, given_by[key][0]) != math.inf:
-                parameters_by_name[f"{what}_{counts[what]}.{key}"] = Parameter(place, *given_by[key])
+                parameters_by_name[f"{table}_{counts[table]}.{key}"] = Parameter(place, *given_by[key])
     return parameters_by_name
 
 
@@ -50,7 +50,7 @@ def parameters(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, Paramet
     """Return :func:`numbered` ones; those that only one damper or tendon has go without a number, too."""
     by_number = numbered(pier, restraints)
     counts = Counter(map(_plain, by_number))
-    return by_number | {_plain(name): where for name, where in by_number.items() if counts[_plain(name)] == 1}
+    return by_number | {_plain(name): place for name, place in by_number.items() if counts[_plain(name)] == 1}
 
 
 def _plain(name: str) -> str:
@@ -67,9 +67,9 @@ def values_of_devices(pier: Pier, restraints: Sequence[Restraint]) -> dict[str, 
 
 def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str, float]) -> tuple[Restraint, ...]:
     """Return the devices with other values of such parameters, under the pier as it is at that point."""
-    where, changed = parameters(pier, restraints), list(restraints)
+    places, changed = parameters(pier, restraints), list(restraints)
     for name, value in values.items():
-        place, field, divisor = where[name]
+        place, field, divisor = places[name]
         change: dict[str, Any] = {field: value / divisor}
         changed[place] = replace(changed[place], **change)
     return tuple(changed)
@@ -77,15 +77,15 @@ def with_values(pier: Pier, restraints: Sequence[Restraint], values: Mapping[str
 
 def unclear(names: Iterable[str], case: Case) -> dict[str, str]:
     """Return by name what is ambiguous about inputs of devices in this case, and what to write instead."""
-    own = numbered(case.pier, case.base.restraints)
+    numbers = numbered(case.pier, case.base.restraints)
     problems: dict[str, str] = {}
     fixed: dict[tuple[int, str], str] = {}
     for name in filter(is_of_restraint, names):
-        meant = [number for number in own if name in (number, _plain(number))]
-        if len(meant) > 1:
-            problems[name] = f"{name}: case {shown(case.name)} has {len(meant)} of them; write {' or '.join(meant)}"
-        elif meant and (other := fixed.setdefault(own[meant[0]][:2], name)) != name:
-            problems[name] = f"{other} and {name} are given, which fix the same; keep one"
+        fitting = [number for number in numbers if name in (number, _plain(number))]
+        if len(fitting) > 1:
+            problems[name] = f"{name}: case {shown(case.name)} has {len(fitting)} of them; write {' or '.join(fitting)}"
+        elif fitting and (first := fixed.setdefault(numbers[fitting[0]][:2], name)) != name:
+            problems[name] = f"{first} and {name} are given, which fix the same; keep one"
     return problems
 
 
@@ -114,11 +114,11 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
 
 def in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
     """Return a problem, "eta = …" or "damper: f = …", in terms of the input that it is about, and the input's name."""
-    what, _, message = problem.partition(": ")
-    mine = [name for name in values if is_of_restraint(name) and name.startswith(what)]
+    subject, _, message = problem.partition(": ")
+    mine = [name for name in values if is_of_restraint(name) and name.startswith(subject)]
     symbol = (message if mine else problem).partition(" = ")[0]
-    if same := next((name for name in mine if name.endswith(f".{symbol}")), ""):
-        return message.replace(symbol, same, 1), same
+    if name_of_symbol := next((name for name in mine if name.endswith(f".{symbol}")), ""):
+        return message.replace(symbol, name_of_symbol, 1), name_of_symbol
     symbols = IN_KILONEWTONS | {name: FIELD_OF[name.partition(".")[2]].replace("lam", "lambda") for name in mine}
     fitting = [name for name in mine or values if symbols.get(name) == symbol]
     name = next(iter(fitting or mine), symbol)

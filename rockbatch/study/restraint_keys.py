@@ -130,15 +130,17 @@ class Device:
     def made(self, pier: Pier, chosen: Chosen) -> Restraint:
         """Return it with the chosen values."""
         values = {key: setting.value for key, setting in self.values(chosen).items()}
-        own: dict[str, Any] = {name: values[name] for name in ("kind", "at", "side", "height_m") if name in values}
-        own |= {field: values[key] / over for key, (field, over) in fields_of(pier).items() if key in values}
-        own["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
+        arguments: dict[str, Any] = {
+            name: values[name] for name in ("kind", "at", "side", "height_m") if name in values
+        }
+        arguments |= {field: values[key] / unit for key, (field, unit) in fields_of(pier).items() if key in values}
+        arguments["confirm"] = tuple(FIELD_OF.get(name, name) for name in sorted(self.table.confirmed))
         if values.get("kind") == "hysteretic":
-            own.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
+            arguments.setdefault("yield_m", 0.001)  # missing, which is noted: a possible value lets the rest be checked
         if self.what in ("stop", "deck_spring"):  # likewise
-            own.setdefault("gap_m", 0.0)
-            own.setdefault("lam", 1.0)
-        return KINDS[self.what](**own)
+            arguments.setdefault("gap_m", 0.0)
+            arguments.setdefault("lam", 1.0)
+        return KINDS[self.what](**arguments)
 
     def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
         """Note what is impossible about it, or far from usual and not confirmed, each at its key."""
@@ -151,10 +153,10 @@ class Device:
             if key and key != symbol:
                 problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
             self.table.complain(problem, key or next(iter(values)))
-        odd = doubt(pier, device)
-        if odd is not None and odd.name in keys and not problems:
-            key = keys[odd.name]
-            message = f"{key} = {values[key].value:g}: {odd.meaning}; {remedy(key)} in [[case.{self.what}]]"
+        doubts = doubt(pier, device)
+        if doubts is not None and doubts.name in keys and not problems:
+            key = keys[doubts.name]
+            message = f"{key} = {values[key].value:g}: {doubts.meaning}; {remedy(key)} in [[case.{self.what}]]"
             self.table.complain_about(values[key], message)
 
 
@@ -162,29 +164,29 @@ def read_devices(case: Table) -> tuple[list[Device], Grid]:
     """Return the devices of a case, and the values of their keys: those of the first damper as "damper_1_f"."""
     devices: list[Device] = []
     grid = Grid()
-    for what, keys in DEVICES.items():
-        for n, table in enumerate(_tables(case, what), 1):
-            own = Grid.of(table, keys, f"{what}_{n}_")
-            kind: str | None = what
-            if what == "damper":
-                kind = next((s.value for s in own.settings.get(f"damper_{n}_kind", ())), None)
+    for section, keys in DEVICES.items():
+        for n, table in enumerate(_tables(case, section), 1):
+            grid_of_table = Grid.of(table, keys, f"{section}_{n}_")
+            kind: str | None = section
+            if section == "damper":
+                kind = next((s.value for s in grid_of_table.settings.get(f"damper_{n}_kind", ())), None)
             if kind is not None:
-                devices.append(Device(table, f"{what}_{n}"))
+                devices.append(Device(table, f"{section}_{n}"))
                 _check_given(table, kind)
             for name in IN_KN:
                 if name in table.data and not has_mass(table.file):
                     table.complain(f"{name}: kN are of a pier whose mass is known; write mass_t in [pier]", name)
-            grid += own
+            grid += grid_of_table
     return devices, grid
 
 
-def _tables(case: Table, what: str) -> list[Table]:
+def _tables(case: Table, kind: str) -> list[Table]:
     """Return one table, or several, called by their place in the case."""
-    single = case.data.get(what)
+    single = case.data.get(kind)
     if isinstance(single, dict):
-        return [Table(case.file, (*case.at, what), f"{case.label}, {what}", single)]
-    tables = case.file.tables(*case.at, what, title="kind")
-    return [replace(table, label=f"{case.label}, {what} {n}") for n, table in enumerate(tables, 1)]
+        return [Table(case.file, (*case.key_path, kind), f"{case.label}, {kind}", single)]
+    tables = case.file.tables(*case.key_path, kind, title="kind")
+    return [replace(table, label=f"{case.label}, {kind} {n}") for n, table in enumerate(tables, 1)]
 
 
 _NEEDED = {
@@ -196,13 +198,13 @@ _NEEDED = {
 
 def _check_given(table: Table, kind: str) -> None:
     """Note a damper without a force, a tendon without prestress and stiffness, or another device without a stiffness."""
-    first, other, *_ = _NEEDED[kind]
+    first, second, *_ = _NEEDED[kind]
     if not any(map(table.has, _NEEDED[kind])):
         example = f"write for example {first} = {DEVICES.get(kind, DAMPER)[first].example}, or"
         if kind == "tendon":
             message = "it has neither prestress nor stiffness, so that it is not there"
             table.complain(f"{message}; {example} leave the table out")
         else:
-            table.complain(f"{first} is missing; {example} {other}")
+            table.complain(f"{first} is missing; {example} {second}")
     if kind == "hysteretic" and not table.has("yield_mm"):
         table.complain('yield_mm is missing; write for example yield_mm = 5.0, or kind = "friction", its limit')

@@ -66,8 +66,8 @@ def _table(section: Section) -> Schema:
     }
     if section.free:
         table["patternProperties"] = {section.free: {"type": "number"}}
-    others = dict.fromkeys(other for key in section.values() for other in key.only)
-    if conditions := [excluded for other in others for excluded in _excluded(section, other)]:
+    names = dict.fromkeys(key_name for key in section.values() for key_name in key.only)
+    if conditions := [excluded for key_name in names for excluded in _excluded(section, key_name)]:
         table["allOf"] = conditions
     return table
 

@@ -73,7 +73,7 @@ class SensitivitySpec:
 SENSITIVITY = Section(("sensitivity",), (
     "What the answer depends on, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
 ), {
-    "statistic": Key(choice(*(name for name, statistic in STATISTICS.items() if statistic.of and not statistic.code)), '"median"',
+    "statistic": Key(choice(*(name for name, kind in STATISTICS.items() if kind.evaluate and not kind.code)), '"median"',
         "How the records are summed up."),
     "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
     "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
@@ -153,30 +153,30 @@ SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
     """Return the inputs that a case has."""
-    own = {*_own(case), *OF_MOTION}
-    return tuple(parameter for parameter in inputs if parameter.name in own)
+    names = {*_variable_values(case), *OF_MOTION}
+    return tuple(parameter for parameter in inputs if parameter.name in names)
 
 
 def varied(case: Case, values: Mapping[str, Value]) -> Case:
     """Return the case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
-    given: dict[str, Any] = {name: value for name, value in values.items() if name not in OF_MOTION}
-    pier = replace(case.pier, **{name: given.pop(name) for name in OF_PIER if name in given})
+    arguments: dict[str, Any] = {name: value for name, value in values.items() if name not in OF_MOTION}
+    pier = replace(case.pier, **{name: arguments.pop(name) for name in OF_PIER if name in arguments})
     for name, ratio in IN_KILONEWTONS.items():
-        if name in given:
-            given[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, given.pop(name))
-    of_restraints = {name: given.pop(name) for name in list(given) if is_of_restraint(name)}
+        if name in arguments:
+            arguments[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, arguments.pop(name))
+    of_restraints = {name: arguments.pop(name) for name in list(arguments) if is_of_restraint(name)}
     if of_restraints:
-        given["restraints"] = with_values(pier, case.base.restraints, of_restraints)
-    return replace(case, pier=pier, base=replace(case.base, **given))
+        arguments["restraints"] = with_values(pier, case.base.restraints, of_restraints)
+    return replace(case, pier=pier, base=replace(case.base, **arguments))
 
 
 def own_values(study: Study, case: Case) -> dict[str, Any]:
     """Return the study's own value of every input."""
-    return _own(case) | {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
+    return _variable_values(case) | {"vertical": study.motions.vertical, "polarity": study.motions.polarity[0]}
 
 
-def _own(case: Case) -> dict[str, Any]:
-    """Return the values of all that a case may vary; ε, or ζ where that is given in its place."""
+def _variable_values(case: Case) -> dict[str, Any]:
+    """Return the values of all quantities that a case may vary; ε, or ζ if that is given instead."""
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
     base.pop("zeta" if base.get("zeta") is None else "epsilon", None)
@@ -223,8 +223,8 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
     if table is None:
         return []
     unfit = {
-        name: f"belongs under [sensitivity.{other}]"
-        for other, names in SPREADS.items()
+        name: f"belongs under [sensitivity.{spread_of_other}]"
+        for spread_of_other, names in SPREADS.items()
         for name in names.keys() - keys.keys()
     }
     tables = [name for name in table.data if TABLE.fullmatch(name)]
@@ -234,8 +234,8 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
     inputs = _read(table, spread, keys, unfit=unfit, other=(*tables, *RESTRAINTS))
     for name in tables:
         if inner := file.table("sensitivity", spread, name):
-            own = _read(inner, spread, WITHIN[spread][name.partition("_")[0]])
-            inputs += [replace(parameter, name=f"{name}.{parameter.name}") for parameter in own]
+            parameters = _read(inner, spread, WITHIN[spread][name.partition("_")[0]])
+            inputs += [replace(parameter, name=f"{name}.{parameter.name}") for parameter in parameters]
     return inputs
 
 
@@ -254,14 +254,14 @@ def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
     used: set[str] = set()
     places = {parameter.name: parameter.at for parameter in inputs}
     for case in study.cases:
-        own = own_values(study, case)
+        values_of_case = own_values(study, case)
         applicable = applying(inputs, case)
         wrong = unclear(places, case)
         used |= {parameter.name for parameter in applicable} | wrong.keys()
         for name, message in wrong.items():
             table.complain(message, *places[name])
         for parameter in applicable:
-            name, (low, high), value = parameter.name, parameter.levels, own[parameter.name]
+            name, (low, high), value = parameter.name, parameter.levels, values_of_case[parameter.name]
             if parameter.spread != "choice" and value is not None and not low <= value <= high:
                 table.complain(
                     f'{name} = {shown([low, high])}: does not hold the {value:g} of case "{case.name}"; '
@@ -294,8 +294,8 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
     for corner in product(*(parameter.levels for parameter in inputs)):
         values = dict(zip(places, corner, strict=True))
         try:
-            there = varied(case, values)
-            wrong: Sequence[str] = problems(there.pier, there.base)
+            case_at_corner = varied(case, values)
+            wrong: Sequence[str] = problems(case_at_corner.pier, case_at_corner.base)
         except InputError as error:
             wrong = error.problems
         for problem in wrong:
@@ -303,7 +303,7 @@ def _check_corners(table: Table, inputs: Sequence[Input], case: Case) -> None:
             if name in reported:
                 continue
             reported.add(name)
-            named = name if name in places else next((other for other in OF_PIER if other in places), "")
-            which = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
-            where = f" (at {which})" if which and name not in OF_PIER else ""
-            table.complain(f'case "{case.name}"{where}: {problem}', *(places[named] if named else ()))
+            named = name if name in places else next((size for size in OF_PIER if size in places), "")
+            sizes = ", ".join(f"{key} = {shown(values[key])}" for key in OF_PIER if key in values)
+            place = f" (at {sizes})" if sizes and name not in OF_PIER else ""
+            table.complain(f'case "{case.name}"{place}: {problem}', *(places[named] if named else ()))

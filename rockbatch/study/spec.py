@@ -35,7 +35,7 @@ class PulseSpec:
     nu: float | None = None
 
     def motion(self, gravity: float) -> Motion:
-        """Return the motion. Raises ``InputError`` for what it cannot be; amplitude and step are judged by the study."""
+        """Return the motion. Raises ``InputError`` for impossible values; implausible ones are noted by the study."""
         return pulse(
             self.shape, name=self.name, amplitude=self.amplitude_g * gravity, period=self.period_s, dt=self.dt_s,
             duration=self.duration_s, gamma=self.gamma, nu=self.nu, confirm=("amplitude", "dt"),

@@ -123,7 +123,7 @@ MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, 
 
 
 def read_spectrum(study: Study) -> tuple[SpectrumSpec | None, tuple[MapSpec, ...]]:
-    """Return the spectrum and the maps that a study file asks for.
+    """Return the spectrum and the maps of a study file.
 
     Raises
     ------
@@ -147,28 +147,28 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     read = table.read(SPECTRUM, other=["map"])
     if not table.has("alpha"):
         table.complain(f"alpha is missing; write for example alpha = {SPECTRUM['alpha'].example}")
-    given = [name for name in AXES if table.has(name)]
-    if len(given) != 1:
-        ways = " or ".join(f"{name} = {SPECTRUM[name].example}" for name in AXES)
-        table.complain(f"it runs over one range; write {ways}", *given[1:2])
+    axes_written = [name for name in AXES if table.has(name)]
+    if len(axes_written) != 1:
+        examples = " or ".join(f"{name} = {SPECTRUM[name].example}" for name in AXES)
+        table.complain(f"it runs over one range; write {examples}", *axes_written[1:2])
         return None
-    (axis,) = given
+    (axis,) = axes_written
     if not read.keys() >= {"alpha", axis}:
         return None
     space = np.geomspace if read.get("spacing") == "log" else np.linspace
     low, high = read[axis]
     values = space(low, high, read.get("points", SPECTRUM["points"].default)).tolist()
     piers = _piers(table, read["alpha"], axis, values, study)
-    before = len(table.file.problems)
+    problems_before = len(table.file.problems)
     expanded, varied = read_cases(table.file, piers)
     larger = (
-        read_cases(table.file, [(replace(pier, p=0.5 * pier.p), own) for pier, own in piers])[0]
+        read_cases(table.file, [(replace(pier, p=0.5 * pier.p), pier_values) for pier, pier_values in piers])[0]
         if axis == SELF_SIMILAR
         else []
     )
-    del table.file.problems[before:]  # said below, with the slenderness to which it applies
+    del table.file.problems[problems_before:]  # said below, with the slenderness to which it applies
     _without_size(
-        table, study, [case.name for case, other in zip(expanded, larger, strict=False) if case.base != other.base]
+        table, study, [case.name for case, large in zip(expanded, larger, strict=False) if case.base != large.base]
     )
     reported = set()
     for case in expanded:
@@ -185,7 +185,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
 
 
 def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
-    """Note what a self-similar spectrum cannot have: cases ``names`` whose base depends on the pier's size, and scales."""
+    """Note what is impossible in a self-similar spectrum: cases ``names`` whose base depends on the pier's size, and scales."""
     if not table.has(SELF_SIMILAR):
         return
     for name in dict.fromkeys(names):
@@ -209,7 +209,7 @@ def _piers(
     A mass that only a case says is no pier's: the case brings it itself.
     """
     weighed = has_mass(table.file)
-    others = dict.fromkeys(
+    templates = dict.fromkeys(
         replace(
             case.pier, alpha=1.0, p=1.0, top_m=None, deck_height_m=None, mass_t=case.pier.mass_t if weighed else None
         )
@@ -217,13 +217,13 @@ def _piers(
     )
     piers = []
     for n, alpha in enumerate(alphas):
-        for other in others:
-            mass = {} if other.mass_t is None else {"mass_t": other.mass_t}
+        for template in templates:
+            mass = {} if template.mass_t is None else {"mass_t": template.mass_t}
             with table.noting("alpha", n):
                 for value in values:
-                    p = _p(axis, alpha, value, other)
-                    own = {"alpha": alpha, "mu": other.mu, axis: value} | mass
-                    piers.append((replace(other, alpha=alpha, p=p), own))
+                    p = _p(axis, alpha, value, template)
+                    values_of_pier = {"alpha": alpha, "mu": template.mu, axis: value} | mass
+                    piers.append((replace(template, alpha=alpha, p=p), values_of_pier))
     return piers
 
 
@@ -238,11 +238,11 @@ def _maps(file: TomlFile) -> list[MapSpec]:
     maps: list[MapSpec] = []
     names: set[str] = set()
     for table in file.tables("spectrum", "map", title="name"):
-        before = len(file.problems)
+        problems_before = len(file.problems)
         read = table.read(MAP)
         if read.get("name") in names:
             table.complain(f'name = "{read["name"]}": given twice; give each map its own name', "name")
         names.add(read.get("name", ""))
-        if file.is_sound_since(before):
+        if file.is_sound_since(problems_before):
             maps.append(MapSpec(**read))
     return maps

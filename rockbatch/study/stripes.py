@@ -41,26 +41,26 @@ STRIPE = Section(("fragility", "stripe"), (
     Clash(("level_g", "level_m_s"), "level_g and level_m_s are given; keep the one of the measure"),
     Clash(("file", "records"), "file and records are given; keep one"),
     Clash(("file", "scales"), "file and scales are given; write the factors into the file, as its column scale"),
-    Clash(("scales",), "scales: of which records? Write records too", lacking=("records",)),
+    Clash(("scales",), "scales: write records, too, in the same order", lacking=("records",)),
 ))  # fmt: skip
 
 
 def read_stripes(file: TomlFile, levels: str) -> tuple[StripeRecords, ...]:
     """Return the stripes of a study; mistakes are noted. ``levels`` is the key of the levels of its measure."""
-    own = levels.replace("levels", "level")
+    key = levels.replace("levels", "level")
     stripes: list[StripeRecords] = []
-    for table in file.tables("fragility", "stripe", title=own):
-        before = len(file.problems)
+    for table in file.tables("fragility", "stripe", title=key):
+        problems_before = len(file.problems)
         read = table.read(STRIPE)
-        for other in {"level_g", "level_m_s"} - {own} & table.data.keys():
-            table.complain(f"{other}: the measure of [fragility] has {own}; write that", other)
-        if own not in table.data:
-            table.complain(f"{own} is missing; write for example {own} = {STRIPE[own].example}")
+        for wrong_key in {"level_g", "level_m_s"} - {key} & table.data.keys():
+            table.complain(f"{wrong_key}: the measure of [fragility] has {key}; write that", wrong_key)
+        if key not in table.data:
+            table.complain(f"{key} is missing; write for example {key} = {STRIPE[key].example}")
         records, scales = _records(table, read)
-        if file.is_sound_since(before):
-            if stripes and read[own] <= stripes[-1].level:
-                table.complain(f"{own} = {read[own]:g}: after {stripes[-1].level:g}; write them in rising order", own)
-            stripes.append(StripeRecords(read[own], records, scales))
+        if file.is_sound_since(problems_before):
+            if stripes and read[key] <= stripes[-1].level:
+                table.complain(f"{key} = {read[key]:g}: after {stripes[-1].level:g}; write them in rising order", key)
+            stripes.append(StripeRecords(read[key], records, scales))
     return tuple(stripes)
 
 
@@ -86,7 +86,7 @@ def _from_file(table: Table, name: str) -> tuple[tuple[str, ...], tuple[float, .
         raise InputError(f"{path}: it has no column record")
     records, scales = tuple(map(str, columns["record"])), tuple(map(float, columns.get("scale", ())))
     if len(set(records)) < len(records):
-        raise InputError(f"{path}: a record is there twice; a stripe runs each once")
+        raise InputError(f"{path}: a record occurs twice; a stripe runs each once")
     if not all(0 < scale < float("inf") for scale in scales):
         raise InputError(f"{path}: a scale is not above 0")
     return records, scales
@@ -99,18 +99,16 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
     """
     chosen = []
     for n, stripe in enumerate(stripes):
-        own: dict[int, float | None] = {}
+        scales_of_level: dict[int, float | None] = {}
         for place, pattern in enumerate(stripe.records):
             fitting = [number for number, name in enumerate(names) if fnmatch.fnmatchcase(name, pattern)]
             wrong = ""
             if not fitting:
-                meant = closest(pattern, names)
-                wrong = (
-                    f"no record is called so; {f'did you mean {shown(meant)}?' if meant else 'see `rockbatch motions`'}"
-                )
+                nearest = closest(pattern, names)
+                wrong = f"no record has this name; {f'did you mean {shown(nearest)}?' if nearest else 'see `rockbatch motions`'}"
             elif stripe.scales and len(fitting) > 1:
-                wrong = f"{len(fitting)} records are called so, and there is one factor; name one of them"
-            elif not own.keys().isdisjoint(fitting):
+                wrong = f"{len(fitting)} records have such names, and there is one factor; name one of them"
+            elif not scales_of_level.keys().isdisjoint(fitting):
                 wrong = "its record is in this stripe already; name it once"
             if wrong:
                 key = "records" if file.value(("fragility", "stripe", n, "records")) is not None else "file"
@@ -119,7 +117,7 @@ def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[st
                     (*key_path, place) if key == "records" else key_path,
                     f"[[fragility.stripe]] {shown(pattern)}: {wrong}",
                 )
-            own |= dict.fromkeys(fitting, stripe.scales[place] if stripe.scales else None)
-        chosen.append(own)
+            scales_of_level |= dict.fromkeys(fitting, stripe.scales[place] if stripe.scales else None)
+        chosen.append(scales_of_level)
     file.finish()
     return chosen

@@ -51,8 +51,8 @@ def ground_motions(study: Study) -> MotionSet:
         pulses.append(Motion.still(spec.still_s))
     if not records.motions and not pulses:
         reasons += [f"{file.source}: {file.reason}" for file in records.left_out]
-        where = ", ".join(str(path) for path in spec.paths)
-        raise InputError(f"{where}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
+        folders = ", ".join(str(path) for path in spec.paths)
+        raise InputError(f"{folders}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
     return replace(records, motions=[*records.motions, *pulses])
 
 
@@ -70,14 +70,14 @@ def _along_the_axis(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
     across = {motion.of_station: motion for motion in motions if motion.name.endswith(f"_az{azimuths[1]:03g}")}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]
     for i, motion in enumerate(along):
-        other = across.get(motion.of_station)
-        if other is not None and other.npts == motion.npts:
-            along[i] = replace(motion, across=other.horizontal)
+        perpendicular = across.get(motion.of_station)
+        if perpendicular is not None and perpendicular.npts == motion.npts:
+            along[i] = replace(motion, across=perpendicular.horizontal)
     return replace(motions, motions=along)
 
 
 def _as_given(motions: MotionSet, vertical: bool | str) -> MotionSet:
-    """Return motions that were read elsewhere, with the vertical components that the study asks for."""
+    """Return given motions, with the vertical components that the study requires."""
     if vertical is False:
         return replace(motions, motions=[replace(motion, vertical=None) for motion in motions])
     if vertical == "required":

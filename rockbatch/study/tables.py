@@ -62,21 +62,21 @@ def changed(old: Any, new: Any, *place: str) -> Any:
 
 
 def _by_name(tables: list[dict[str, Any]], names: Any, *place: str) -> list[dict[str, Any]]:
-    there = {name_of(table): table for table in tables}
+    by_name = {name_of(table): table for table in tables}
     problems = []
     for name in names:
-        if name not in there:
-            meant = closest(str(name), filter(None, there))
-            known = ", ".join(map(shown, filter(None, there))) or "none that has one; give a list of all tables"
-            instead = f"did you mean {shown(meant)}?" if meant else f"there is {known}"
-            problems.append(f"{'.'.join(place)} = {shown(name)}: there is none of this name; {instead}")
+        if name not in by_name:
+            nearest = closest(str(name), filter(None, by_name))
+            names_shown = ", ".join(map(shown, filter(None, by_name))) or "none that has one; give a list of all tables"
+            instead = f"did you mean {shown(nearest)}?" if nearest else f"there is {names_shown}"
+            problems.append(f"{'.'.join(place)} = {shown(name)}: no table has this name; {instead}")
     if problems:
         raise InputError(*problems)
     if not isinstance(names, Mapping):
-        return [there[name] for name in names]
+        return [by_name[name] for name in names]
     return [
         changed(table, names.get(name, {}), *place, name)
-        for name, table in there.items()
+        for name, table in by_name.items()
         if names.get(name, {}) is not None
     ]
 
@@ -96,19 +96,19 @@ def without_lost_cases(before: Mapping[str, Any], after: Mapping[str, Any]) -> d
     result = dict(after)
     if not (are_tables(before.get("case")) and are_tables(after.get("case"))):
         return result
-    there = [name_of(case) for case in after["case"]]
-    lost = [name for name in map(name_of, before["case"]) if name not in there]
-    for what in ("reference", "check"):
-        if not are_tables(result.get(what)):
+    present = [name_of(case) for case in after["case"]]
+    lost = [name for name in map(name_of, before["case"]) if name not in present]
+    for kind in ("reference", "check"):
+        if not are_tables(result.get(kind)):
             continue
-        kept = []
-        for table in result.pop(what):
+        remaining = []
+        for table in result.pop(kind):
             patterns = table["case"] if isinstance(table.get("case"), list) else [table.get("case", "*")]
-            about = [pattern for pattern in patterns if _fits(there, pattern) or not _fits(lost, pattern)]
+            about = [pattern for pattern in patterns if _fits(present, pattern) or not _fits(lost, pattern)]
             if about:
-                kept.append(table if about == patterns else table | {"case": about})
-        if kept:
-            result[what] = kept
+                remaining.append(table if about == patterns else table | {"case": about})
+        if remaining:
+            result[kind] = remaining
     return result
 
 
@@ -118,7 +118,7 @@ def _fits(names: Iterable[str], pattern: Any) -> bool:
 
 def as_toml(tables: Mapping[str, Any], *place: str) -> str:
     """Return tables as :func:`plain` returns them as TOML: keys first, then the tables within, each under its header."""
-    own, inner = [], []
+    lines, inner = [], []
     for key, value in tables.items():
         header = ".".join(map(_key, (*place, key)))
         if isinstance(value, dict):
@@ -126,8 +126,8 @@ def as_toml(tables: Mapping[str, Any], *place: str) -> str:
         elif are_tables(value):
             inner += [f"\n[[{header}]]\n{as_toml(item, *place, key)}" for item in value]
         else:
-            own.append(f"{_key(key)} = {_written(value)}\n")
-    return "".join([*own, *inner])
+            lines.append(f"{_key(key)} = {_written(value)}\n")
+    return "".join([*lines, *inner])
 
 
 def _key(name: str) -> str:

@@ -147,7 +147,7 @@ def read_target(table: Table, vertical: bool = False) -> Target | SpectrumTarget
 
 
 def _read_measure(table: Table, vertical: bool) -> Target | None:
-    before = len(table.file.problems)
+    problems_before = len(table.file.problems)
     unfit = dict.fromkeys((*_SPECTRUM, *_OF_ANY_CODE), "is for a target with spectrum = …")
     read = table.read(
         _MEASURE | CONFIRM if vertical else _MEASURE | _PAIRS_OF_SA | CONFIRM,
@@ -155,29 +155,29 @@ def _read_measure(table: Table, vertical: bool) -> Target | None:
     )
     measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
     if len(measures) != 1:
-        given = " and ".join(measures) + " are given" if measures else "it is missing what to scale to"
-        table.complain(f"{given}; write one of pga_g, pgv_m_s, sa_g with period_s, or spectrum", *measures[1:2])
+        state = " and ".join(measures) + " are given" if measures else "the measure is missing"
+        table.complain(f"{state}; write one of pga_g, pgv_m_s, sa_g with period_s, or spectrum", *measures[1:2])
     elif measures == ["sa_g"] and "period_s" not in table.data:
         table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
     elif measures != ["sa_g"]:
         for name in ("period_s", "damping", "pairs"):
             if name in table.data:
                 table.complain(f"{name}: is for sa_g only; leave it out", name)
-    return Target(**read) if table.file.is_sound_since(before) else None
+    return Target(**read) if table.file.is_sound_since(problems_before) else None
 
 
 def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
-    before = len(table.file.problems)
+    problems_before = len(table.file.problems)
     written = table.data["spectrum"]
     code = _code(written)
-    own = _OWN.get(code, {})
+    of_code = _OWN.get(code, {})
     if not code and isinstance(written, str) and not _is_there(table.file.path.parent / written):
-        own = _OF_ANY_SPECTRUM | _SPECTRUM  # the name is what is wrong
+        of_code = _OF_ANY_SPECTRUM | _SPECTRUM  # the name is what is wrong
     unfit = {
-        name: f"is for spectrum = {' or '.join(shown(other) for other, keys in _OWN.items() if name in keys)}; leave it out"
-        for name in _OF_ANY_CODE.keys() - own.keys()
+        name: f"is for spectrum = {' or '.join(shown(c) for c, keys in _OWN.items() if name in keys)}; leave it out"
+        for name in _OF_ANY_CODE.keys() - of_code.keys()
     }
-    keys = _SPECTRUM | own | CONFIRM
+    keys = _SPECTRUM | of_code | CONFIRM
     if vertical:
         keys, unfit = {name: key for name, key in keys.items() if name != "pairs"}, unfit | _NO_PAIR
     elif code.endswith("vertical"):
@@ -185,7 +185,7 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
     read = table.read(keys, unfit=unfit | _UNFIT_FOR_SPECTRUM)
     limits = read.get("period_range_s")
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
-    if not table.file.is_sound_since(before) or spectrum is None or limits is None:
+    if not table.file.is_sound_since(problems_before) or spectrum is None or limits is None:
         return None
     with table.noting("period_range_s"):
         return SpectrumTarget(
@@ -195,7 +195,7 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
 
 
 def _code(value: Any) -> str:
-    """Return the code that is meant, however it is written; empty for a table."""
+    """Return the name of the code, from any spelling; empty for a table."""
     if not isinstance(value, str):
         return ""
     plain = {name.replace(" ", "").lower(): name for name in CODES}
@@ -236,15 +236,15 @@ def _of_file(table: Table, written: str, damping: float, linear: bool) -> TableS
     path = table.file.path.parent / written
     if not _is_there(path):
         plain = "".join(filter(str.isalnum, written.lower()))
-        meant = next((code for start, code in _ALSO_CALLED.items() if plain.startswith(start)), closest(written, CODES))
-        hint = f"did you mean {shown(meant)}?" if meant else f"write {' or '.join(map(shown, CODES))}, or a file"
+        near = next((code for start, code in _ALSO_CALLED.items() if plain.startswith(start)), closest(written, CODES))
+        hint = f"did you mean {shown(near)}?" if near else f"write {' or '.join(map(shown, CODES))}, or a file"
         raise InputError(f"spectrum = {shown(written)}: no such file ({path.resolve()}); {hint}")
     return read_spectrum(path, damping, linear)
 
 
 def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpectrum | None:
-    given = {name: read[name] for name in ("soil_factor", "tb_s", "tc_s", "td_s") if name in read}
-    needed = ("type", "ground") if len(given) < 4 else ()
+    written = {name: read[name] for name in ("soil_factor", "tb_s", "tc_s", "td_s") if name in read}
+    needed = ("type", "ground") if len(written) < 4 else ()
     for name in needed:
         if name not in table.data:
             table.complain(f"{name} is missing; write for example {name} = {_EUROCODE[name].example}")
@@ -252,14 +252,14 @@ def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpe
         return None
     name = "EN 1998-1"
     if {"type", "ground"} <= read.keys():
-        shape = EUROCODE[read["type"]][read["ground"]]._replace(**given)
+        shape = EUROCODE[read["type"]][read["ground"]]._replace(**written)
         name += f" type {read['type']}, ground {read['ground']}"
     else:
-        shape = EUROCODE[1]["A"]._replace(**given)
-    if given:
+        shape = EUROCODE[1]["A"]._replace(**written)
+    if written:
         name += ", S = {:g}, T_B = {:g} s, T_C = {:g} s, T_D = {:g} s".format(*shape)
     if not shape.tb_s < shape.tc_s < shape.td_s:
-        table.complain("tb_s, tc_s and td_s must grow in this order", next(iter(given)))
+        table.complain("tb_s, tc_s and td_s must grow in this order", next(iter(written)))
         return None
     return EurocodeSpectrum(read["ag_g"], shape, damping, name)
 

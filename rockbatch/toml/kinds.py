@@ -46,12 +46,12 @@ class Kind(Protocol):
 class Number:
     """A finite number within ``low`` and ``high``; an integer will do, a boolean will not.
 
-    ``says`` is what a message expects; ``above`` and ``below`` exclude these ends. ``bounds`` are those of the quantity, whose
+    ``text`` is what a message expects; ``above`` and ``below`` exclude these ends. ``bounds`` are those of the quantity, whose
     message explains itself; ``but`` is the one number that is excluded; ``endless`` accepts positive infinity, which leaves a
     range open.
     """
 
-    says: str = "a number"
+    text: str = "a number"
     low: float = -math.inf
     high: float = math.inf
     above: bool = False
@@ -64,7 +64,7 @@ class Number:
     def words(self) -> str:
         bounds = self.bounds
         if bounds is None or (bounds.low <= LEAST and bounds.high >= MOST):
-            return self.says
+            return self.text
         if bounds.high >= MOST:
             return f"a number, {bounds.low:.7g} or above"
         return f"a number from {bounds.low:g} to {'below ' if bounds.below else ''}{bounds.high:g}"
@@ -74,7 +74,7 @@ class Number:
             return value
         converted = _finite(value)
         if converted not in Bounds(self.low, self.high, above=self.above, below=self.below) or converted == self.but:
-            raise KindError(self.says)
+            raise KindError(self.text)
         if converted != 0 and not LEAST <= abs(converted) <= MOST:
             raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
         if self.bounds is not None and converted not in self.bounds:

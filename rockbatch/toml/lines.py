@@ -3,7 +3,7 @@
 import re
 import tomllib
 
-At = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 """Place of a value: keys and list indices from the top, such as ("case", 1, "beta", 0)."""
 
 
@@ -32,7 +32,7 @@ class TooDeepError(ValueError):
     """Tables or lists within one another, deeper than any study or manifest has them."""
 
 
-def key_lines(text: str) -> dict[At, int]:
+def key_lines(text: str) -> dict[KeyPath, int]:
     """Return the line (from 1) of every table, key and list element in ``text``.
 
     Raises :class:`TooDeepError` before a parser would be long over it, ``ValueError`` where the text is no TOML.
@@ -47,8 +47,8 @@ class _Scan:
         self.text = text
         self.here = 0
         self.counted, self.lines_above = 0, 0  # up to here there are so many line ends
-        self.lines: dict[At, int] = {}
-        self.last_element: dict[At, int] = {}  # of each array of tables
+        self.lines: dict[KeyPath, int] = {}
+        self.last_element: dict[KeyPath, int] = {}  # of each array of tables
 
     def take(self, token: str) -> str:
         match = _TOKENS[token].match(self.text, self.here)
@@ -65,44 +65,44 @@ class _Scan:
         self.counted = self.here
         return self.lines_above + 1
 
-    def mark(self, at: At, line: int) -> None:
+    def mark(self, key_path: KeyPath, line: int) -> None:
         """Note the line of a place, and of the tables on the way that dotted keys imply."""
-        if len(at) > _DEEPEST:
+        if len(key_path) > _DEEPEST:
             raise TooDeepError(f"line {line}: tables or lists within one another, more than {_DEEPEST} deep")
-        for depth in range(1, len(at) + 1):
-            self.lines.setdefault(at[:depth], line)
+        for depth in range(1, len(key_path) + 1):
+            self.lines.setdefault(key_path[:depth], line)
 
     def document(self) -> None:
-        table: At = ()
+        table: KeyPath = ()
         while self.take("blank") is not None and self.here < len(self.text):
             if self.peek() == "[":
                 table = self.header()
             else:
                 self.pair(table)
 
-    def header(self) -> At:
+    def header(self) -> KeyPath:
         line = self.line()
         brackets = 2 if self.text.startswith("[[", self.here) else 1
         self.here += brackets
         name = self.dotted_key()
         self.here += brackets
-        at: At = ()
+        key_path: KeyPath = ()
         for depth, part in enumerate(name, 1):
-            at += (part,)
+            key_path += (part,)
             if brackets == 2 and depth == len(name):
-                self.last_element[at] = self.last_element.get(at, -1) + 1
-            if at in self.last_element:
-                at += (self.last_element[at],)
-        self.mark(at, line)
-        self.lines[at] = line
-        return at
+                self.last_element[key_path] = self.last_element.get(key_path, -1) + 1
+            if key_path in self.last_element:
+                key_path += (self.last_element[key_path],)
+        self.mark(key_path, line)
+        self.lines[key_path] = line
+        return key_path
 
-    def pair(self, table: At) -> None:
+    def pair(self, table: KeyPath) -> None:
         line = self.line()
-        at = table + self.dotted_key()
-        self.mark(at, line)
+        key_path = table + self.dotted_key()
+        self.mark(key_path, line)
         self.here += 1  # the equals sign
-        self.value(at)
+        self.value(key_path)
 
     def dotted_key(self) -> tuple[str, ...]:
         parts = []
@@ -115,26 +115,26 @@ class _Scan:
                 return tuple(parts)
             self.here += 1
 
-    def value(self, at: At) -> None:
+    def value(self, key_path: KeyPath) -> None:
         self.take("space")
         if self.peek() in ("[", "{"):
-            self.items(at, inline_table=self.peek() == "{")
+            self.items(key_path, inline_table=self.peek() == "{")
         else:
             self.take("string" if self.peek() in ('"', "'") else "plain")
 
-    def items(self, at: At, *, inline_table: bool) -> None:
+    def items(self, key_path: KeyPath, *, inline_table: bool) -> None:
         self.here += 1
         index = 0
         while self.take("blank") is not None and self.peek() not in ("]", "}"):
             if not self.peek():
                 raise ValueError(f"line {self.line()}: not valid TOML")
             if inline_table:
-                self.pair(at)
+                self.pair(key_path)
             elif index < _MOST_ELEMENTS or self.peek() in ("[", "{"):
-                self.mark((*at, index), self.line())
-                self.value((*at, index))
+                self.mark((*key_path, index), self.line())
+                self.value((*key_path, index))
             else:
-                self.value(at)
+                self.value(key_path)
             index += 1
             self.take("blank")
             if self.peek() == ",":

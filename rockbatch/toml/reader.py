@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from rockbatch.errors import InputError, remedy
 from rockbatch.files import legible, opened_input
 from rockbatch.toml.kinds import KindError, closest, shown
-from rockbatch.toml.lines import At, TooDeepError, key_lines
+from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, options
 
 LARGEST = 4 * 2**20
@@ -27,7 +27,7 @@ class Setting(NamedTuple):
     """One value of a key that may hold several, and where it stands."""
 
     value: Any
-    at: At
+    key_path: KeyPath
 
 
 @dataclass
@@ -37,10 +37,10 @@ class TomlFile:
     path: Path
     text: str
     data: dict[str, Any]
-    lines: dict[At, int]
+    lines: dict[KeyPath, int]
     homes: Mapping[str, str] = field(default_factory=dict)
     """Places of keys and tables, in words, for those that stand elsewhere."""
-    misspelt: set[At] = field(default_factory=set)
+    misspelt: set[KeyPath] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, str]] = field(default_factory=list)
     """The first ones, ``MOST_TOLD`` at most: line and message."""
@@ -74,7 +74,7 @@ class TomlFile:
 
         A text that is not ``lined`` was not written by its user: messages do not give its lines.
         """
-        lines: dict[At, int] = {}
+        lines: dict[KeyPath, int] = {}
         try:
             lines = key_lines(text) if lined else {}
         except TooDeepError as error:
@@ -86,19 +86,19 @@ class TomlFile:
         except (ValueError, RecursionError) as error:
             raise InputError(_syntax_error(path, text, str(error))) from None
 
-    def complain(self, at: At, message: str) -> None:
-        """Note a mistake about the value at ``at``; one that is missing counts where its table starts."""
+    def complain(self, key_path: KeyPath, message: str) -> None:
+        """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts."""
         if self.is_full:
             return
-        depth = next((n for n in range(len(at), 0, -1) if at[:n] in self.lines), 0)
-        line = self.lines.get(at[:depth], 0)
+        depth = next((n for n in range(len(key_path), 0, -1) if key_path[:n] in self.lines), 0)
+        line = self.lines.get(key_path[:depth], 0)
         problem = (line, f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
         if problem not in self.problems:
             self.problems.append(problem)
 
-    def adopt(self, other: "TomlFile", at: At) -> None:
-        """Note the mistakes of another file, whose name stands at ``at``."""
-        line = self.lines.get(at, 0)
+    def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
+        """Note the mistakes of another file, whose name stands at ``key_path``."""
+        line = self.lines.get(key_path, 0)
         self.problems += [(line, message) for _, message in sorted(other.problems)][: MOST_TOLD - len(self.problems)]
 
     @property
@@ -118,46 +118,46 @@ class TomlFile:
         if in_order:
             raise InputError(*in_order)
 
-    def table(self, *at: str | int, required: str = "") -> "Table | None":
-        """Return the table ``[at]``, or None; ``required`` says what to write if it is missing."""
-        name = ".".join(map(str, at))
-        value = self.value(at)
+    def table(self, *key_path: str | int, required: str = "") -> "Table | None":
+        """Return the table ``[key_path]``, or None; ``required`` says what to write if it is missing."""
+        name = ".".join(map(str, key_path))
+        value = self.value(key_path)
         if isinstance(value, dict):
-            return Table(self, at, f"[{name}]", value)
+            return Table(self, key_path, f"[{name}]", value)
         if value is not None:
-            self.complain(at, f"{name}: expected one table; write [{name}] on a line of its own, once")
-        elif required and at not in self.misspelt:
-            self.complain(at, f"[{name}] is missing; write {required}")
+            self.complain(key_path, f"{name}: expected one table; write [{name}] on a line of its own, once")
+        elif required and key_path not in self.misspelt:
+            self.complain(key_path, f"[{name}] is missing; write {required}")
         return None
 
-    def has(self, at: At) -> bool:
-        """Return whether there is a value at ``at``, or one whose key is probably misspelt."""
-        return self.value(at) is not None or at in self.misspelt
+    def has(self, key_path: KeyPath) -> bool:
+        """Return whether there is a value at ``key_path``, or one whose key is probably misspelt."""
+        return self.value(key_path) is not None or key_path in self.misspelt
 
-    def tables(self, *at: str | int, title: str) -> list["Table"]:
-        """Return the tables ``[[at]]``; the key ``title`` of each names it in messages."""
-        name = ".".join(part for part in at if isinstance(part, str))
-        value = self.value(at)
+    def tables(self, *key_path: str | int, title: str) -> list["Table"]:
+        """Return the tables ``[[key_path]]``; the key ``title`` of each names it in messages."""
+        name = ".".join(part for part in key_path if isinstance(part, str))
+        value = self.value(key_path)
         if value is None:
             return []
         if not (isinstance(value, list) and all(isinstance(item, dict) for item in value)):
-            self.complain(at, f"{name}: expected a list of tables; write [[{name}]] above each one")
+            self.complain(key_path, f"{name}: expected a list of tables; write [[{name}]] above each one")
             return []
         labels = [shown(item[title]) if title in item else f"no. {n}" for n, item in enumerate(value, 1)]
         return [
-            Table(self, (*at, n), f"[[{name}]] {label}", item)
+            Table(self, (*key_path, n), f"[[{name}]] {label}", item)
             for n, (label, item) in enumerate(zip(labels, value, strict=True))
         ]
 
-    def value(self, at: At) -> Any:
-        """Return the value at ``at``, or None."""
-        here: Any = self.data
-        for part in at:
-            if isinstance(here, dict):
-                here = here.get(str(part))
+    def value(self, key_path: KeyPath) -> Any:
+        """Return the value at ``key_path``, or None."""
+        node: Any = self.data
+        for part in key_path:
+            if isinstance(node, dict):
+                node = node.get(str(part))
             else:
-                here = here[part] if isinstance(here, list) and isinstance(part, int) else None
-        return here
+                node = node[part] if isinstance(node, list) and isinstance(part, int) else None
+        return node
 
 
 @dataclass(frozen=True)
@@ -165,17 +165,17 @@ class Table:
     """One table of a file, with the name that messages give it."""
 
     file: TomlFile
-    at: At
+    key_path: KeyPath
     label: str
     data: dict[str, Any]
 
     def complain(self, message: str, *key: str | int) -> None:
         """Note a mistake about this table, or a key or list element of it."""
-        self.file.complain((*self.at, *key), f"{self.label}: {message}" if self.label else message)
+        self.file.complain((*self.key_path, *key), f"{self.label}: {message}" if self.label else message)
 
     def complain_about(self, setting: Setting, message: str) -> None:
         """Note a mistake about one value."""
-        self.complain(message, *setting.at[len(self.at) :])
+        self.complain(message, *setting.key_path[len(self.key_path) :])
 
     @contextmanager
     def noting(self, *key: str | int) -> Iterator[None]:
@@ -189,11 +189,11 @@ class Table:
     @property
     def names(self) -> list[str]:
         """The keys that are written, in the order of the file, and then those that are probably misspelt."""
-        return [*self.data, *(str(at[-1]) for at in self.file.misspelt if at[:-1] == self.at)]
+        return [*self.data, *(str(key_path[-1]) for key_path in self.file.misspelt if key_path[:-1] == self.key_path)]
 
     def has(self, name: str) -> bool:
         """Return whether the key is written, if perhaps misspelt."""
-        return name in self.data or (*self.at, name) in self.file.misspelt
+        return name in self.data or (*self.key_path, name) in self.file.misspelt
 
     @property
     def confirmed(self) -> frozenset[str]:
@@ -227,8 +227,8 @@ class Table:
                     self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
                 elif name not in other:
                     self._unknown(name, [*keys, *other])
-            elif why := self._not_applying(keys, name):
-                self.complain(f"{name} = {shown(value)}: {why}", name)
+            elif reason := self._not_applying(keys, name):
+                self.complain(f"{name} = {shown(value)}: {reason}", name)
             elif settings := self._checked(name, keys[name], value):
                 usable[name] = settings
         self._check_missing(keys)
@@ -266,18 +266,20 @@ class Table:
                     continue
                 return f"is for {instead}; write that too, or leave it out"
             written = self.data[other]
-            given = written if isinstance(written, list) else [written]
-            if given and not any(value in values or value not in options(keys[other]) for value in given):
-                return f"does not apply to {other} = {' or '.join(map(shown, given))}; leave it out, or write {instead}"
+            written_values = written if isinstance(written, list) else [written]
+            if written_values and not any(
+                value in values or value not in options(keys[other]) for value in written_values
+            ):
+                return f"does not apply to {other} = {' or '.join(map(shown, written_values))}; leave it out, or write {instead}"
         return ""
 
     def _doubt(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
         """Note confirmed keys that are not there, and values larger than usual that are not confirmed."""
         if keys.get("confirm") is CONFIRM["confirm"]:
-            there = [shown(name) for name in self.data if name in keys and name != "confirm"]
+            present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
-                if shown(setting.value) not in there:
-                    instead = f"write one of {', '.join(there)}" if there else "leave it out"
+                if shown(setting.value) not in present:
+                    instead = f"write one of {', '.join(present)}" if present else "leave it out"
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
                     self.complain_about(setting, message)
         for name in (name for name in usable if name not in self.confirmed):
@@ -289,27 +291,27 @@ class Table:
 
     def _checked(self, name: str, key: Key, value: Any) -> list[Setting]:
         """Return the usable values of a key with their places, of a range both ends or none; note the others."""
-        whole = Setting(value, (*self.at, name))
+        whole = Setting(value, (*self.key_path, name))
         items = [whole]
         if isinstance(value, list):
-            items = [Setting(item, (*whole.at, n)) for n, item in enumerate(value)]
+            items = [Setting(item, (*whole.key_path, n)) for n, item in enumerate(value)]
             if not (key.many or key.pair):
                 self._wrong(name, key, whole, KindError("one value, not a list"))
                 return []
             if key.many and not items:
                 self._wrong(name, key, whole, KindError("at least one value"))
         usable: list[Setting] = []
-        seen: set[str] = set()
+        visited: set[str] = set()
         for item in items:
             converted = self._converted(name, key, item)
             if self.file.is_full:
                 break
             if converted is None:
                 continue
-            if key.many and key.distinct and repr(converted) in seen:
+            if key.many and key.distinct and repr(converted) in visited:
                 self.complain_about(item, f"{name} = {shown(item.value)}: given twice; write it once")
-            seen.add(repr(converted))
-            usable.append(Setting(converted, item.at))
+            visited.add(repr(converted))
+            usable.append(Setting(converted, item.key_path))
         if not key.pair:
             return usable
         ends = [end.value for end in usable]
@@ -336,20 +338,20 @@ class Table:
         self.complain_about(setting, f"{name} = {shown(setting.value)}: expected {wrong}; {instead}")
 
     def _unknown(self, name: str, known: list[str]) -> None:
-        section = not self.at and isinstance(self.data[name], dict | list)
-        what = "unknown section" if section else "unknown key"
+        section = not self.key_path and isinstance(self.data[name], dict | list)
+        complaint = "unknown section" if section else "unknown key"
         home = self.file.homes.get(name)
-        meant = closest(name, known)
+        nearest = closest(name, known)
         if home is not None:
             instead = f"it belongs under {home}"
-        elif meant is not None:
-            instead = f"did you mean {meant}?"
-            if meant not in self.data:
-                self.file.misspelt.add((*self.at, meant))
+        elif nearest is not None:
+            instead = f"did you mean {nearest}?"
+            if nearest not in self.data:
+                self.file.misspelt.add((*self.key_path, nearest))
         else:
             instead = "write one of " + ", ".join(known)
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
-        self.complain(f"{written}: {what}; {instead}", name)
+        self.complain(f"{written}: {complaint}; {instead}", name)
 
 
 def _unreadable(path: Path, error: OSError) -> str:
@@ -364,8 +366,8 @@ def nearby(path: Path, written: str) -> str:
         names = os.listdir(path.parent)
     except OSError:
         return ""
-    meant = closest(path.name, sorted(names))
-    return f"; did you mean {(Path(written).parent / meant).as_posix()}?" if meant else ""
+    nearest = closest(path.name, sorted(names))
+    return f"; did you mean {(Path(written).parent / nearest).as_posix()}?" if nearest else ""
 
 
 _LONGEST = 200  # characters of a line that are looked at: the patterns below take the square of their number

@@ -156,5 +156,5 @@ def homes(sections: Iterable[Section]) -> dict[str, str]:
         for name in section if section.at else ():
             if not (section.free and name in headers):  # a reference repeats the keys of cases
                 headers.setdefault(name, {})[section.header] = None
-    own = {section.at[0] for section in outer.values() if section.at}
-    return {name: " or ".join(places) for name, places in headers.items() if name not in ("name", "confirm", *own)}
+    tables = {section.at[0] for section in outer.values() if section.at}
+    return {name: " or ".join(places) for name, places in headers.items() if name not in ("name", "confirm", *tables)}

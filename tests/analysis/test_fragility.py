@@ -438,7 +438,7 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
         (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
         (
             f'{STRIPES}\nchecks = ["half-way"]',
-            ['checks = "half-way": no [[check]] is called so; did you mean "half way"?'],
+            ['checks = "half-way": no [[check]] has this name; did you mean "half way"?'],
         ),
         (f"{STRIPES}\nconfidence = 1.0", ["confidence = 1.0: expected a number, 0 or above and below 1"]),
     ],

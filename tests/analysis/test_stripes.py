@@ -143,7 +143,7 @@ def saved(found, tmp_path):
     ("fragility", "message"),
     [
         (stripes((0.5, {"records": ["sin_0.4"]}), (0.6, {"records": ["sine_*"]})), 'did you mean "sine_0.4"?'),
-        (stripes((0.5, {"records": ["sine_*"], "scales": [2.0]})), "3 records are called so, and there is one factor"),
+        (stripes((0.5, {"records": ["sine_*"], "scales": [2.0]})), "3 records have such names, and there is one factor"),
         (stripes((0.5, {"records": ["sine_*", "sine_0.4"]})), "its record is in this stripe already; name it once"),
         (stripes((0.5, {"records": ["sine_0.4"], "scales": [2.0, 1.0]})), "1 records and 2 scales"),
         (stripes((0.5, {"records": ["sine_*"]}), (0.4, {"records": ["sine_*"]})), "after 0.5; write them in rising order"),

@@ -136,7 +136,7 @@ def test_damaged_rows_are_told_dropped_alone_and_run_again(path):
     path.write_bytes(b"".join(lines))
     found, told = reopened(path)
     assert list(found) == [0, 2, 3, 11]
-    assert told == [f"{path}: 1 line is damaged; the 4 runs that are whole count, the others are carried out again"]
+    assert told == [f"{path}: 1 line is damaged; the 4 undamaged runs are kept, the others are carried out again"]
     assert ended(path) == (TABLE, [0, 2, 3, 11])
 
 
@@ -212,9 +212,11 @@ def test_other_runs_are_not_mixed_in_and_what_has_changed_is_told(path):
     interrupted(path, ROWS)
     before = path.read_bytes()
     changed = Journal(path, COLUMNS, DIGEST | {"motions": "ffff"})
-    with pytest.raises(InputError, match=r"5 finished runs, but .* changed \(motions\); .* start over with --fresh"):
+    with pytest.raises(
+        InputError, match=r"5 finished runs, but .* changed since \(motions\); .* start over with --fresh"
+    ):
         changed.__enter__()
-    with pytest.raises(InputError, match=r"changed \(columns\)"):
+    with pytest.raises(InputError, match=r"changed since \(columns\)"):
         Journal(path, COLUMNS[:2], DIGEST).__enter__()
     assert path.read_bytes() == before
     with Journal(path, COLUMNS, {"cases": "0"}, fresh=True) as journal:
@@ -302,11 +304,11 @@ def test_a_share_of_another_study_or_with_another_row_for_the_same_run_is_refuse
     interrupted(other, {0: ROWS[1]})
     with Journal(path, COLUMNS, DIGEST) as journal:
         journal.add_all({0: ROWS[0]})
-        with pytest.raises(InputError, match="run 0 has come to something else"):
+        with pytest.raises(InputError, match="run 0 differs from the same run"):
             journal.add_from(other)
     with (
         Journal(path, COLUMNS, {"cases": "other"}, fresh=True) as journal,
-        pytest.raises(InputError, match=r"changed \(cases\)"),
+        pytest.raises(InputError, match=r"changed since \(cases\)"),
     ):
         journal.add_from(other)
 

@@ -177,7 +177,7 @@ def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkey
         f"interrupted: {finished_in(out) // 2} of {SIMULATED} runs are finished and kept in {out / 'peaks.csv.part'}"
         in told
     )
-    assert "the same command goes on from there" in told
+    assert "the same command continues from there" in told
     assert finished_in(out) >= 20
 
 
@@ -299,7 +299,7 @@ def test_damaged_rows_of_a_journal_are_told_and_run_again(study, tmp_path, undis
     part.write_bytes(b"".join(lines))
     assert main(["run", str(study), "--out", str(out)]) == 0
     told = capsys.readouterr().err
-    assert f"{part}: 2 lines are damaged; the {RUNS - 2} runs that are whole count, the others are carried out" in told
+    assert f"{part}: 2 lines are damaged; the {RUNS - 2} undamaged runs are kept, the others are carried out" in told
     assert (out / "peaks.csv").read_bytes() == undisturbed
 
 
@@ -334,7 +334,7 @@ def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when
     write(study, last_scale=1.4)
     capsys.readouterr()
     assert main(command) == 2
-    assert "something has changed (scales); undo that to go on" in capsys.readouterr().err
+    assert "something has changed since (scales); undo that to continue" in capsys.readouterr().err
     assert main([*command, "--fresh"]) == 0
     assert "1.4" in {line.split(",")[3] for line in (out / "peaks.csv").read_text(encoding="utf-8").splitlines()}
     assert sorted(file.name for file in out.iterdir()) == sorted(earlier)
@@ -379,7 +379,7 @@ def test_shares_are_merged_to_the_results_of_one_run(study, tmp_path, undisturbe
     merge = ["merge", str(study), "--out", str(out)]
     assert main([*merge, str(folders[2]), str(folders[0])]) == 2
     told = capsys.readouterr().err
-    assert f"{RUNS // 3} of {RUNS} rows are in none of these folders: {RUNS // 3 + 1} to {2 * RUNS // 3}; " in told
+    assert f"{RUNS // 3} of {RUNS} rows are missing in these folders: {RUNS // 3 + 1} to {2 * RUNS // 3}; " in told
     assert f"rockbatch run {study} --out {out}" in told
     assert main([*merge, *map(str, folders)]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
@@ -402,7 +402,7 @@ def test_shares_of_another_study_are_told_all_at_once(study, tmp_path, capsys):
     assert main(["merge", str(study), "--out", str(tmp_path / "out"), *folders]) == 2
     told = capsys.readouterr().err.splitlines()
     assert len(told) == 2
-    assert "something has changed (scales)" in told[0]
+    assert "something has changed since (scales)" in told[0]
     assert "nowhere" in told[1]
     assert "not there" in told[1]
 

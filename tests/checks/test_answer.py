@@ -51,8 +51,8 @@ def test_a_run_that_overturned_has_no_worst_response():
 
 def test_nothing_is_green_where_settlement_tilt_and_ductility_have_no_limit():
     (line,) = lines([verdict("pads", "pass")], worst(**YIELDED))
-    assert (line.verdict, line.which) == (NOT_DECIDED, "pads")
-    assert line.says == "The only case meets the limits, but none is set on mean settlement, residual tilt, ductility"
+    assert (line.verdict, line.cases) == (NOT_DECIDED, "pads")
+    assert line.text == "The only case meets the limits, but none is set on mean settlement, residual tilt, ductility"
     assert line.details == (
         "Without a limit, at most: mean settlement 381 mm, residual tilt 4 mrad (0.23°), ductility 33.",
     )
@@ -85,7 +85,7 @@ def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case()
         verdict("rock", "fail", check="soil", value=5.0, limit=4.0, ratio=1.25, record="ERZ"),
     ]
     (line,) = lines(failing)
-    assert (line.verdict, line.says, line.which) == (FAIL, "Both cases fail", "pads; rock")
+    assert (line.verdict, line.text, line.cases) == (FAIL, "Both cases fail", "pads; rock")
     assert [words.replace("\u00a0", " ") for words in line.details] == [
         "drift: 1.24 m > 0.5 m, record TAK000, in pads and 1 more case.",
         "soil: 5 > 4, record ERZ, in rock.",
@@ -143,14 +143,14 @@ def test_what_passes_comes_first_then_what_fails_then_what_is_open():
         verdict("b", "fail", value=0.6, ratio=1.2),
         verdict("c", "pass"),
     ]
-    assert [(line.verdict, line.which) for line in lines(some)] == [(PASS, "c"), (FAIL, "b"), (NOT_DECIDED, "a")]
+    assert [(line.verdict, line.cases) for line in lines(some)] == [(PASS, "c"), (FAIL, "b"), (NOT_DECIDED, "a")]
 
 
 def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
     open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ")
     assert lines([open_])[0].details == ("tilt: between 0.2 and 0.6, limit 0.5, left open by record ERZ.",)
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
-    assert lines([open_, failed])[-1].which == "tilt, in cases that fail anyway"
+    assert lines([open_, failed])[-1].cases == "tilt, in cases that fail anyway"
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,7 @@ def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
     some += [verdict("a", "pass", check="soil", note=open_), verdict("b", "pass", check="soil")]
     some.append(verdict("c", "does not apply", check="drift", note="the pier has no damper"))
     notes = wording.Notes(some)
-    assert [notes.of(one) for one in some] == [*[""] * 6, open_, "", "the pier has no damper"]
+    assert [notes.about(one) for one in some] == [*[""] * 6, open_, "", "the pier has no damper"]
     assert notes.common() == [
         f"drift, uplift: {few}.",
         "drift, uplift, soil: runs that do not end standing count so: overturned: infinite.",

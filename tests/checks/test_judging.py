@@ -79,7 +79,7 @@ def test_no_statistic_falls_when_a_value_grows(values, index, name, more):
     before = np.array(values)
     after = before.copy()
     after[index % len(after)] += more
-    of = STATISTICS[name].of
+    of = STATISTICS[name].evaluate
     assert of(after) >= of(before) * (1 - 1e-12)
 
 
@@ -463,7 +463,7 @@ def test_a_demand_of_forces_is_refused_where_nobody_asked_for_them(demand):
 def test_a_force_of_a_pier_that_nobody_has_weighed_does_not_apply(demand):
     one = TIED | {"pier": {key: value for key, value in TIED["pier"].items() if key != "mass_t"}}
     found = judged(runs([0.3], **FORCES), one=one, demand=demand, at_most=100.0)
-    assert (found.verdict, found.note) == ("does not apply", "the study does not say what the pier weighs")
+    assert (found.verdict, found.note) == ("does not apply", "the study does not state the pier's mass")
 
 
 def test_a_force_that_an_earlier_version_did_not_write_is_unknown_and_not_none():

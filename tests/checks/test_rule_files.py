@@ -254,7 +254,7 @@ def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, cap
         unusable=[{"name": "notes", "source": "notes.txt", "reason": "no record"}],
     )
     assert main(["check", str(out)]) == 0
-    assert "no usable records, and in no suite: 1" in capsys.readouterr().err
+    assert "not usable as records, and in no suite: 1" in capsys.readouterr().err
 
 
 def test_a_record_without_any_row_is_not_forgotten(tmp_path):

@@ -322,7 +322,7 @@ def test_a_file_of_that_database_that_is_not_whole_is_refused(text, message):
 def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_velocity_of_its_series():
     east, up, north = read(usc_corrected_text(), "x.s0a")
     assert [c.orientation.label for c in (east, up, north)] == ["N90E", "UP", "N00E"]
-    assert (east.dt, east.processed, east.raw, east.odd) == (0.02, True, False, ())
+    assert (east.dt, east.processed, east.raw, east.findings) == (0.02, True, False, ())
     for component, values in ((east, A), (up, C), (north, B)):
         np.testing.assert_allclose(component.acceleration, values / 100, atol=5.1e-6)
     assert east.initial.velocity == pytest.approx(0.008344, abs=6e-6)
@@ -339,7 +339,7 @@ def test_a_second_volume_of_usc_with_another_peak_is_not_used():
     text = usc_corrected_text()
     peak = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
     east = read(text.replace(peak, peak.replace("-", "-1", 1)), "x.s0a")[0]
-    assert [finding.gross for finding in east.odd] == [True]
+    assert [finding.gross for finding in east.findings] == [True]
 
 
 @pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
@@ -355,9 +355,9 @@ def test_taiwanese_local_time_is_eight_hours_ahead():
 
 def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
     peak = A[np.abs(A).argmax()]
-    assert read(dyna_text(**{"PGA_CM/S^2": f"{-peak:.6f}"}), "x.ASC")[0].odd == ()
+    assert read(dyna_text(**{"PGA_CM/S^2": f"{-peak:.6f}"}), "x.ASC")[0].findings == ()
     (component,) = read(dyna_text(**{"PGA_CM/S^2": f"{peak * 1.02:.6f}"}), "x.ASC")
-    assert "header states a peak of" in component.odd[0].text
+    assert "header states a peak of" in component.findings[0].text
 
 
 def test_film_digitised_at_uneven_times_is_interpolated_and_it_is_said():

@@ -148,7 +148,7 @@ def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
     assert read(cosmos_text(peak=peak, location=""), "x.V1")[0].notes == ()
     assert read(cosmos_text(peak=-peak, location=""), "x.V1")[0].notes == ()
     assert read(cosmos_text(peak=-999.0, location=""), "x.V1")[0].notes == ()
-    assert "header states a peak of" in read(cosmos_text(peak=peak / 2, location=""), "x.V1")[0].odd[0].text
+    assert "header states a peak of" in read(cosmos_text(peak=peak / 2, location=""), "x.V1")[0].findings[0].text
 
 
 def test_the_mark_of_missing_values_is_no_acceleration_unless_the_peak_reaches_it():

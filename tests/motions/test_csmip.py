@@ -130,9 +130,9 @@ def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
     text = one_channel()
     line = next(line for line in text.splitlines() if line.startswith("Peak acc"))
     assert "-" in line
-    assert read(text.replace(line, line.replace("-", " ")), "x.V2")[0].odd == ()
+    assert read(text.replace(line, line.replace("-", " ")), "x.V2")[0].findings == ()
     (component,) = read(text.replace(line, line.replace("-", "9")), "x.V2")
-    assert "header states a peak of" in component.odd[0].text
+    assert "header states a peak of" in component.findings[0].text
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def test_film_without_a_rate_is_pairs_of_time_and_value_on_even_steps(digits):
 
 def test_what_the_header_flags_or_contradicts_is_said():
     assert "flags a problem" in read(smc_text(flag=1), "x.smc")[0].notes[0]
-    assert "header states a peak of" in read(smc_text(peak=980.0), "x.smc")[0].odd[0].text
+    assert "header states a peak of" in read(smc_text(peak=980.0), "x.smc")[0].findings[0].text
 
 
 @pytest.mark.parametrize(

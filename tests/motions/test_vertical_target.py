@@ -144,7 +144,7 @@ def test_results_say_what_the_vertical_components_were_scaled_by(tmp_path):
         ),
         ({"vertical_target": {"sa_g": 0.4, "period_s": 0.1, "pairs": "apart"}}, "is for horizontal components"),
         ({"target": VERTICAL}, r'spectrum = "EN 1998-1 vertical": is for \[motions.vertical_target\]'),
-        ({"vertical_target": {"damping": 0.05}}, "it is missing what to scale to"),
+        ({"vertical_target": {"damping": 0.05}}, "the measure is missing"),
     ],
 )
 def test_mistakes_about_verticals_are_answered(tmp_path, motions, said):

@@ -124,7 +124,7 @@ def test_a_name_ends_with_its_unit():
 
 
 def test_every_number_of_an_outcome_has_its_column():
-    taken = {column.of for column in COLUMNS.values() if isinstance(column.of, str)}
+    taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
     of_functions = {"energies", "forces"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     assert {field.name for field in fields(Outcome)} - taken == of_functions
@@ -159,7 +159,7 @@ def test_demands_read_columns_of_the_table_only():
     pads = case("pads", PADS)
     runs = pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()})
     for demand in DEMANDS.values():
-        assert len(demand.of(runs, pads).value) == 1
+        assert len(demand.evaluate(runs, pads).value) == 1
         assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1
 
 
@@ -188,7 +188,7 @@ def test_what_has_statistics_is_compared(tmp_path):
     page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
     over = [text for text in page.tables["peaks"][0] if text]
     assert over == ["θmax/α", "θres/α", "settlement [mm]"]
-    assert sum(column.suite is not None and column.asked is None for column in COLUMNS.values()) == len(over)
+    assert sum(column.suite is not None and column.requested is None for column in COLUMNS.values()) == len(over)
 
 
 def write_results_in(directory):

@@ -343,7 +343,7 @@ def test_a_case_of_values_that_the_table_does_not_have_is_told(foreign, command)
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
     info["cases"][0]["columns"]["a"] = 1
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
-    assert "cases vary a, and varied does not say so" in told(foreign, command)
+    assert "cases vary a, which varied does not list" in told(foreign, command)
 
 
 def test_a_place_that_does_not_fit_is_named_with_what_was_expected():

@@ -15,7 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.kept_histories import history_bytes, keep_histories, kept, worst
+from rockbatch.batch.kept_histories import history_bytes, keep_histories, to_keep, worst
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
@@ -351,17 +351,17 @@ def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
 
 def test_the_worst_runs_go_first_where_not_all_fit(tmp_path):
     saved, study, runs = carried_out(tmp_path, STUDY.replace('histories = "all"\nledger = true\n', ""))
-    every = kept(study, runs, saved.peaks)
+    every = to_keep(study, runs, saved.peaks)
     sizes = {number: history_bytes(runs[number], saved.peaks.iloc[number]) for number in every.numbers}
     rotations = saved.peaks["theta_max_over_alpha"]
     by_rotation = sorted(every.numbers, key=lambda number: -rotations[number])
     room = sum(sizes[number] for number in by_rotation[:3]) + 1.0
-    chosen = kept(replace(study, output=replace(study.output, histories_MB=room / 1e6)), runs, saved.peaks)
+    chosen = to_keep(replace(study, output=replace(study.output, histories_MB=room / 1e6)), runs, saved.peaks)
     assert len(every.numbers) > 4
     assert every.left_out == 0
     assert sorted(chosen.numbers) == sorted(by_rotation[:3])
     assert chosen.left_out == len(every.numbers) - 3
-    least = kept(replace(study, output=replace(study.output, histories_MB=1e-9)), runs, saved.peaks)
+    least = to_keep(replace(study, output=replace(study.output, histories_MB=1e-9)), runs, saved.peaks)
     assert least.numbers == by_rotation[:1]  # a report without any would show no history at all
 
 
@@ -375,7 +375,7 @@ def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
     """Of dampers and tendons the loops, too."""
     saved, study, runs = carried_out(tmp_path, text)
     told = sum(
-        history_bytes(runs[number], saved.peaks.iloc[number]) for number in kept(study, runs, saved.peaks).numbers
+        history_bytes(runs[number], saved.peaks.iloc[number]) for number in to_keep(study, runs, saved.peaks).numbers
     )
     path = keep_histories(saved, study, runs)
     assert path is not None
@@ -388,7 +388,7 @@ def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
 def test_runs_that_were_refused_have_no_history(tmp_path):
     saved, study, runs = carried_out(tmp_path)
     saved.peaks.loc[1, ["status", "theta_max_over_alpha"]] = ["failed", np.nan]
-    assert kept(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
+    assert to_keep(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
 
 
 def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path, monkeypatch):
@@ -405,7 +405,7 @@ def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path)
     calls = []
     keep_histories(saved, study, runs, calls.append)
-    assert len(calls) == len(kept(study, runs, saved.peaks).numbers)
+    assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers)
 
 
 # Choosing one
@@ -431,13 +431,13 @@ def test_a_response_is_found_by_whatever_tells_it_from_the_others(results):
         ({"record": "weak", "case": "rigid", "alpha": 0.3}, r"no history with alpha = 0\.3; there are 0\.2; 0\.25"),
         (
             {"polarity": "+", "beta": 50},
-            "beta: not what tells runs apart; choose by record, case, polarity, scale, alpha, spring",
+            "beta: does not distinguish runs; choose by record, case, polarity, scale, alpha, spring",
         ),
         (
             {"record": "weak", "case": "rigid", "alpha": 0.2},
-            r'2 histories fit; say which: polarity = "\+"; polarity = "-"$',
+            r'2 histories fit; choose one: polarity = "\+"; polarity = "-"$',
         ),
-        ({"record": "weak", "case": "rigid"}, r'4 histories fit; say which: polarity = "\+", alpha = 0\.2; polarity'),
+        ({"record": "weak", "case": "rigid"}, r'4 histories fit; choose one: polarity = "\+", alpha = 0\.2; polarity'),
         ({}, "32 histories fit; .*; and 24 more$"),
     ],
 )

@@ -173,7 +173,7 @@ def test_finished_runs_without_forces_do_not_pass_for_those_with(tmp_path, capsy
     share = ["--shard", "1/2", "--out", str(tmp_path / "out")]
     assert main(["run", str(study(tmp_path, forces=False)), *share]) == 0
     assert main(["run", str(study(tmp_path)), *share]) == 2
-    assert "something has changed (numerics)" in capsys.readouterr().err
+    assert "something has changed since (numerics)" in capsys.readouterr().err
 
 
 def test_a_run_that_is_too_long_to_be_written_down_has_no_forces(tmp_path, monkeypatch):

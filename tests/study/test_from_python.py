@@ -114,9 +114,9 @@ def test_one_case_is_changed_by_its_name_and_a_list_replaces_all(pier4):
     ("change", "message"),
     [
         ({"pier": {"height_m": 4e4}}, "study.toml: [pier]: height_m = 40000: more than 400 m"),
-        ({"case": "pad"}, 'case = "pad": there is none of this name; did you mean "pads"?'),
-        ({"case": {"tower": {}}}, 'case = "tower": there is none of this name; there is "rock", "pads"'),
-        ({"case": {"pads": {"damper": {"first": {}}}}}, 'case.pads.damper = "first": there is none of this name; there is none'),
+        ({"case": "pad"}, 'case = "pad": no table has this name; did you mean "pads"?'),
+        ({"case": {"tower": {}}}, 'case = "tower": no table has this name; there is "rock", "pads"'),
+        ({"case": {"pads": {"damper": {"first": {}}}}}, 'case.pads.damper = "first": no table has this name; there is none'),
         ({"case": {"pads": {"bta": 3}}}, 'study.toml: [[case]] "pads": bta: unknown key; did you mean beta?'),
         ({"case": 3}, "study.toml: case: expected a list of tables"),
         ({"pier": {1: 2}}, 'study.toml: [pier]: "1": unknown key'),
@@ -204,5 +204,5 @@ def test_a_study_is_shown_in_a_few_lines(tmp_path, pier4):
 def test_an_analysis_of_a_study_from_tables_reports_its_mistakes_without_lines(pier4):
     study = pier4.with_(fragility={"measure": "PGA", "levels_g": [0.2]}, motions={"scale": None, "target": None})
     assert problems(rb.fragility, study) == [
-        "study.toml: [fragility]: levels_g = [0.2]: one level tells no dispersion; write at least two"
+        "study.toml: [fragility]: levels_g = [0.2]: one level does not determine a dispersion; write at least two"
     ]

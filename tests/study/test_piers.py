@@ -135,7 +135,7 @@ def test_the_mass_of_the_pier_serves_its_cases_and_is_said_once(tmp_path):
     case = study_of(tmp_path, deck, PADS).cases[0]
     assert case.base == rb.YieldingBase.from_stiffness(pier, 2e6, 4e4)
     (twice,) = problems_of(tmp_path, deck, PADS + "mass_t = 3000\n")
-    assert "mass_t = 3000: [pier] says already what the pier weighs; leave it out" in twice
+    assert "mass_t = 3000: [pier] states the pier's mass already; leave it out" in twice
     (weak,) = problems_of(tmp_path, deck, PADS.replace("4e4", "1e4"))
     assert "yield_kN = 10000 with the 3000 t of [pier] means eta = 0.679579" in weak
     assert weak.endswith("write yield_kN above 1.472e+04")

@@ -481,7 +481,7 @@ def test_tolerance_and_substeps_exclude_each_other(tmp_path):
         ),
         ("select = { pga_g = 0.1 }", "5: [motions.select]: pga_g = 0.1: expected a range; write for example"),
         ("select = { pga_g = [0.1, nan] }", "5: [motions.select]: pga_g = nan: expected a finite number"),
-        ("target = {}", "5: [motions.target]: it is missing what to scale to"),
+        ("target = {}", "5: [motions.target]: the measure is missing"),
         ("target = { pga_g = 1, sa_g = 1 }", "5: [motions.target]: pga_g and sa_g are given; write one of"),
         ("target = { sa_g = 1 }", "5: [motions.target]: period_s is missing beside sa_g"),
         ("target = { pga_g = 1, period_s = 1 }", "5: [motions.target]: period_s: is for sa_g only"),

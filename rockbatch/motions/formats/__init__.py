@@ -108,28 +108,24 @@ FORMATS = (
 
 def is_usual(suffix: str) -> bool:
     """Return whether records of some format usually have this suffix (with its dot, any case)."""
-    return any(suffix.lower() in known.suffixes for known in FORMATS)
+    return any(suffix.lower() in form.suffixes for form in FORMATS)
 
 
 def format_of(suffix: str, head: bytes) -> Format | None:
     """Return the format of a file with this suffix (with its dot, any case) and these first bytes; ``None`` if none."""
     return next(
-        (
-            known
-            for known in FORMATS
-            if (known.anywhere or suffix.lower() in known.suffixes) and known.matches(head[:HEAD])
-        ),
+        (form for form in FORMATS if (form.anywhere or suffix.lower() in form.suffixes) and form.matches(head[:HEAD])),
         None,
     )
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     """Return the components of a file, their texts made legible, or ``InputError`` with the reason why there are none."""
-    known = format_of(file.path.suffix, file.data)
-    if known is None:
+    form = format_of(file.path.suffix, file.data)
+    if form is None:
         raise InputError(_not_recognised(file))
     with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-        return [usable(with_legible_texts(reading)) for reading in known.read(file)]
+        return [usable(with_legible_texts(reading)) for reading in form.read(file)]
 
 
 def usable(reading: Component | Unusable) -> Component | Unusable:
@@ -137,22 +133,22 @@ def usable(reading: Component | Unusable) -> Component | Unusable:
     if isinstance(reading, Unusable):
         return reading
     if len(reading.acceleration) < 2:
-        why = "found one sample; expected at least two"
+        refusal = "found one sample; expected at least two"
     elif not (np.abs(reading.acceleration) < HUGE).all():
-        why = f"holds values that are not finite numbers, or beyond {HUGE:g} m/s²"
+        refusal = f"holds values that are not finite numbers, or beyond {HUGE:g} m/s²"
     elif not is_step(reading.dt):
-        why = f"found a sampling interval of {reading.dt:g} s; expected {STEPS}"
+        refusal = f"found a sampling interval of {reading.dt:g} s; expected {STEPS}"
     elif len(reading.acceleration) > MOST_SAMPLES:
-        why = f"found {len(reading.acceleration)} samples; {MOST_SAMPLES:,} are the most, more than a day: cut the event out"
+        refusal = f"found {len(reading.acceleration)} samples; {MOST_SAMPLES:,} are the most, more than a day: cut the event out"
     else:
         return reading
-    return Unusable(reading.name, reading.source, why, reading.orientation.label)
+    return Unusable(reading.name, reading.source, refusal, reading.orientation.label)
 
 
 def _not_recognised(file: RecordFile) -> str:
     """Return why a file is of no known format, and what to do with it."""
-    names = " or ".join(dict.fromkeys(known.name for known in FORMATS if file.path.suffix.lower() in known.suffixes))
-    foreign = next((what for magic, what in _FOREIGN.items() if file.data.startswith(magic)), "")
+    names = " or ".join(dict.fromkeys(form.name for form in FORMATS if file.path.suffix.lower() in form.suffixes))
+    foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")
     if foreign or not names:
         return f"not a format that rockbatch reads{f', but {foreign}' if foreign else ''}; {_INSTEAD}"
     if not file.data:

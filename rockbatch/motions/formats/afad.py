@@ -40,8 +40,8 @@ def parse(text: str) -> list[Recording]:
     npts, dt = count_and_step(header, "NUMBER OF DATA", "SAMPLING INTERVAL (sec)")
     values = spaced_numbers(lines, heads + 1, npts * len(labels), len(labels)).reshape(-1, len(labels))
     key = next((key for key in header if _PEAKS.search(key)), "")
-    said, peaks = _PEAKS.search(key), {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
-    if said is None or set(peaks) != set(labels):
+    fields, peaks = _PEAKS.search(key), {match["label"]: match["peak"] for match in _PEAK.finditer(header.get(key, ""))}
+    if fields is None or set(peaks) != set(labels):
         raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which tells the unit')
     station, began = header.get("STATION ID", ""), header.get("RECORD TIME", "")
     return [
@@ -49,14 +49,14 @@ def parse(text: str) -> list[Recording]:
             label=label.replace("-", ""),
             dt=dt,
             values=values[:, i],
-            unit=said["unit"],
+            unit=fields["unit"],
             station=f"{station}, {began}" if station else "",
             start=moment_in(_MOMENT, began),
             processed=False,
             sensor=Sensor(station, "TK"),
             event=header.get("EARTHQUAKE DATE", ""),
             origin=origin_of(date=header.get("EARTHQUAKE DATE", ""), station=header.get("PLACE") or station),
-            stated_peak=(peaks[label], said["unit"]),
+            stated_peak=(peaks[label], fields["unit"]),
             header={"station": header.get("PLACE", ""), "event": header.get("EARTHQUAKE DATE", "")},
         )
         for i, label in enumerate(labels)

@@ -82,13 +82,13 @@ def _parse(text: str) -> list[Recording]:
     """
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
     first = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
-    said = None if first is None else _count_and_step(lines[first])
-    if first is None or said is None:
+    fields = None if first is None else _count_and_step(lines[first])
+    if first is None or fields is None:
         raise InputError(
             f"lines 1–{len(lines)}: no number of points and time step found; "
             'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
         )
-    npts, dt = int(said["npts"]), float(_plain(said["dt"]))
+    npts, dt = int(fields["npts"]), float(_plain(fields["dt"]))
     if not 1 <= npts <= MOST_SAMPLES or not is_step(dt):
         raise InputError(
             f'line {first + 1}: found "{lines[first].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time '

@@ -45,8 +45,8 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
     title = read_header(lines, start, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
         raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
-    said = read_header(lines, start, _TEXT)
-    label, npts, duration = said["label"], int(said["npts"]), number_in(said["duration"], start + 10)
+    fields = read_header(lines, start, _TEXT)
+    label, npts, duration = fields["label"], int(fields["npts"]), number_in(fields["duration"], start + 10)
     rate = number_in(line_at(lines, start + _RATE)[:_WIDTH], start + _RATE)
     if npts < 2 or not 0.1 <= rate <= 1e5 or abs(npts / rate - duration) > 2 / rate:
         raise InputError(
@@ -54,14 +54,14 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
             "expected them to agree"
         )
     values, end = fixed_numbers(lines, start + _HEADER, npts, _WIDTH, _PER_LINE)
-    station, event = said["name"].strip(), line_at(lines, start + 2).strip()
-    azimuth = float(said[label]) % 360.0 if said.get(label) else None
+    station, event = fields["name"].strip(), line_at(lines, start + 2).strip()
+    azimuth = float(fields[label]) % 360.0 if fields.get(label) else None
     recording = Recording(
         label=label,
         orientation=Orientation(label, vertical=label == "V", azimuth=azimuth),
         dt=float(f"{1.0 / rate:.12g}"),
         values=values,
-        unit=said["unit"],
+        unit=fields["unit"],
         station=f"{title['file']}, {station}, {event}",
         codes=("I1", title["file"].partition("/")[0][:5], "", label),
         processed=False,

@@ -173,8 +173,8 @@ def speaks_of_spectra(header: Sequence[str]) -> str:
 def stated_unit(header: Sequence[str]) -> str | None:
     """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
-    said = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
-    return stated or next((unit for unit in said if is_acceleration(unit)), None)
+    units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
+    return stated or next((unit for unit in units if is_acceleration(unit)), None)
 
 
 def is_acceleration(unit: str) -> bool:
@@ -215,10 +215,10 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
     Raises ``InputError`` where a header states two, and for numbers that are no intervals.
     """
     steps = [_step(match) for line in header for match in _STEP.finditer(line) if not _of_another(match)]
-    for other in steps[1:]:
-        if abs(other.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
+    for step in steps[1:]:
+        if abs(step.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
             raise InputError(
-                f'the header says "{steps[0].words}" and "{other.words}", {steps[0].dt:g} s and {other.dt:g} s; '
+                f'the header says "{steps[0].words}" and "{step.words}", {steps[0].dt:g} s and {step.dt:g} s; '
                 "correct the one that is wrong"
             )
     return steps[0] if steps else None

@@ -80,9 +80,9 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
     unit = stated_unit(header) or options.unit
-    others = [i for i, column in enumerate(columns) if column.other]
-    wanted = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
-    lacking = [f"{_called(i, columns[i])} has no unit" for i in wanted if not (columns[i].unit or unit)]
+    not_acceleration = [i for i, column in enumerate(columns) if column.other]
+    used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
+    lacking = [f"{_called(i, columns[i])} has no unit" for i in used if not (columns[i].unit or unit)]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
         raise UnstatedError(
@@ -90,10 +90,10 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             'or state it in the study, e.g. unit = "cm/s2"',
             *(("unit", "dt") if untimed else ("unit",)),
         )
-    if not wanted:
-        quantities = " and ".join(columns[i].other for i in others)
+    if not used:
+        quantities = " and ".join(columns[i].other for i in not_acceleration)
         raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
-    left = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in others)
+    omitted = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _sampled(columns, table, header, options)
     return [
         Recording(
@@ -102,9 +102,9 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             dt=dt,
             values=values[:, i],
             unit=columns[i].unit or unit or "",
-            notes=(*notes, *left, *moved),
+            notes=(*notes, *omitted, *moved),
         )
-        for i in wanted
+        for i in used
     ]
 
 
@@ -119,29 +119,29 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
             raise InputError(f"found {width} columns; the study states columns = {list(stated)}")
         notes = (f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",)
     elif stated is not None:
-        said = columns or [Column("")] * width
-        columns = [_completed(i, column, label) for i, (column, label) in enumerate(zip(said, stated, strict=True))]
+        known = columns or [Column("")] * width
+        columns = [_completed(i, column, label) for i, (column, label) in enumerate(zip(known, stated, strict=True))]
     if columns is None:
         return _guessed(header, table)
     columns = _with_time(columns, table)
-    if what := spectrum_in(columns):
-        raise NoRecordError(f"{what} is no time history; take the record of accelerations instead")
+    if spectrum := spectrum_in(columns):
+        raise NoRecordError(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
 
 
-def _completed(i: int, said: Column, stated: str) -> Column:
+def _completed(i: int, header: Column, stated: str) -> Column:
     """Return a column of the header with what the study states about it where the header says nothing.
 
     ``InputError`` where the two contradict each other.
     """
     if stated == "-":
         return Column(stated)
-    by_header, by_study = orientation_in(said.label), orientation_in(stated)
+    by_header, by_study = orientation_in(header.label), orientation_in(stated)
     study = Column(stated)
-    if said.is_time or said.is_abscissa or said.is_ordinate:
-        agree, column = said.is_time == (study.is_time or study.may_be_time), said
-    elif study.is_time or (study.may_be_time and said.may_be_time):
-        agree, column = said.may_be_time or not said.label, Column("time", said.unit)
+    if header.is_time or header.is_abscissa or header.is_ordinate:
+        agree, column = header.is_time == (study.is_time or study.may_be_time), header
+    elif study.is_time or (study.may_be_time and header.may_be_time):
+        agree, column = header.may_be_time or not header.label, Column("time", header.unit)
     else:
         agree = not (by_header.known and by_study.known) or (
             by_header.vertical == by_study.vertical
@@ -149,10 +149,10 @@ def _completed(i: int, said: Column, stated: str) -> Column:
             and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
         )
         unchanged = by_header.vertical or by_header.azimuth is not None or not by_study.known
-        column = said if by_header.known and unchanged else Column(stated, said.unit)
+        column = header if by_header.known and unchanged else Column(stated, header.unit)
     if not agree:
         raise InputError(
-            f'column {i + 1}: the header says "{said.label}", but columns states "{stated}"; what a file says goes '
+            f'column {i + 1}: the header says "{header.label}", but columns states "{stated}"; what a file says goes '
             "first: leave columns out, or correct the header"
         )
     return column
@@ -195,9 +195,9 @@ def _sampled(
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")
-    said = stated_step(header)
+    stated = stated_step(header)
     if not times:
-        dt = said.dt if said else options.dt
+        dt = stated.dt if stated else options.dt
         if dt is None:
             raise UnstatedError(
                 "no column of time and no sampling interval; state it in the study, e.g. dt = 0.01", "dt"
@@ -209,16 +209,16 @@ def _sampled(
         raise InputError(f'unit of time "{column.unit}"; expected s or ms')
     t = table[:, times[0]] * seconds
     dt, values, notes = on_even_steps(t, table)
-    if said and "dt" not in options.instead:
-        _check_step(said, dt, float(np.median(np.diff(t))))
+    if stated and "dt" not in options.instead:
+        _check_step(stated, dt, float(np.median(np.diff(t))))
     return dt, values, notes
 
 
-def _check_step(said: StatedStep, dt: float, usual: float) -> None:
+def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
     """Raise ``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
-    if all(abs(said.dt - step) > SAME_STEP * step for step in (dt, usual)):
+    if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise InputError(
-            f'the header says "{said.words}", {said.dt:g} s, but time grows by {usual:g} s; correct the one that is '
+            f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '
             "wrong, or write dt = … for this file in motions.toml"
         )
 

@@ -74,7 +74,7 @@ def parse(text: str) -> list[Recording]:
     """Return the channels, one after the other; ``InputError`` with the line where the file is not whole."""
     lines = lines_of(text)
     recordings: list[tuple[Recording, _Header]] = []
-    others: list[str] = []
+    quantities: list[str] = []
     header: _Header | None = None
     index = 0
     while index < len(lines):
@@ -91,25 +91,25 @@ def parse(text: str) -> list[Recording]:
         if series["what"].lower().startswith("accel"):
             recordings.append((_recording(header, series, values, index), header))
         else:
-            others.append(series["what"])
+            quantities.append(series["what"])
             if recordings and all(
                 line_at(recordings[-1][1].text, i) == line_at(header.text, i) for i in (_STATION, _SENSOR)
             ):
-                recordings[-1] = (_beside(recordings[-1][0], series, values), header)
+                recordings[-1] = (_with_series(recordings[-1][0], series, values), header)
         index = end
     if not recordings:
         raise NoRecordError(
-            f"holds {' and '.join(others) or 'nothing'}; expected accelerations: take the file that has them"
+            f"holds {' and '.join(quantities) or 'nothing'}; expected accelerations: take the file that has them"
         )
     return [recording for recording, _ in recordings]
 
 
-def _beside(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
+def _with_series(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
     """Return a recording with the velocities or displacements that follow its accelerations."""
-    what, given = series["what"].lower(), (values, series["unit"])
-    if what.startswith("vel"):
-        return replace(recording, velocities=given)
-    return replace(recording, displacements=given) if what.startswith("dis") else recording
+    quantity, samples = series["what"].lower(), (values, series["unit"])
+    if quantity.startswith("vel"):
+        return replace(recording, velocities=samples)
+    return replace(recording, displacements=samples) if quantity.startswith("dis") else recording
 
 
 def _header(lines: list[str], start: int) -> _Header:
@@ -120,12 +120,12 @@ def _header(lines: list[str], start: int) -> _Header:
     end = start + int(title["lines"])
     text = [line_at(lines, i) for i in range(start, end)]
     numbers = []
-    for what in ("Integer", "Real"):
-        said = match_line(_NUMBERS, lines, end, f"100 {what}-header values follow on … lines, Format= …")
-        count = int(said["count"])
-        if said["what"].lower() != what.lower() or count < _HEADERS:
-            raise InputError(f'line {end + 1}: found "{said[0].strip()}"; expected {_HEADERS} {what}-header values')
-        values, end = fixed_numbers(lines, end + 1, count, *_layout(said["format"], end))
+    for kind in ("Integer", "Real"):
+        fields = match_line(_NUMBERS, lines, end, f"100 {kind}-header values follow on … lines, Format= …")
+        count = int(fields["count"])
+        if fields["what"].lower() != kind.lower() or count < _HEADERS:
+            raise InputError(f'line {end + 1}: found "{fields[0].strip()}"; expected {_HEADERS} {kind}-header values')
+        values, end = fixed_numbers(lines, end + 1, count, *_layout(fields["format"], end))
         numbers.append(values)
     comments = int(match_line(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
     unknown = search_lines(_UNKNOWN, text)
@@ -176,14 +176,14 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         raise InputError(
             f"{missing} of {len(values)} values are {header.unknown:g}, which marks those that are missing"
         )
-    said, seed = header.said, _SCNL.search(header.comments)
-    network, station, place = said["network"], said["code"], said["place"]
+    fields, seed = header.said, _SCNL.search(header.comments)
+    network, station, place = fields["network"], fields["code"], fields["place"]
     location, channel = (seed["location"].strip("-"), seed["channel"]) if seed else ("", "")
     corrected = not header.what.lower().startswith(("raw", "uncorr"))
-    where = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
+    description = ", ".join(filter(None, [location, place, "corrected" if corrected else "uncorrected"]))
     event = line_at(header.text, 1)
     name = re.sub(
-        r"^[A-Z]{2}:", "", re.split(r" {2,}", said["words"].strip())[-1]
+        r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1]
     )  # "USGS  AK:Anchorage;R B Atwood Bld"
     year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
     return Recording(
@@ -191,12 +191,12 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         dt=dt,
         values=values,
         unit=_unit(header, series, index),
-        station=f"{network}-{station}, {where}" if station else "",
+        station=f"{network}-{station}, {description}" if station else "",
         codes=(network, station, location, channel),
         start=moment(year, month, day, hour, minute, header.reals[29]),
         processed=corrected,
         sensor=Sensor(
-            station, network, location if seed else None, place.upper() or None, said["number"].strip("?") or None
+            station, network, location if seed else None, place.upper() or None, fields["number"].strip("?") or None
         ),
         event=event,
         initial=_initial(header) if corrected else None,
@@ -238,13 +238,13 @@ def _unit(header: _Header, series: re.Match[str], index: int) -> str:
 
 def _label(header: _Header, channel: str) -> str:
     """Return the direction by the header's text, else by its code for the sensor (integer 54), else by the SEED channel."""
-    code, said = header.integers[53], header.said["label"]
+    code, stated = header.integers[53], header.said["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")
-    known = [label for label in (said, by_code, channel) if orientation_of(label)]
-    ways = {(way.vertical, way.down) for label in known if (way := orientation_of(label))}
-    if len(ways) > 1:
-        raise InputError(f"directions contradict each other: {' and '.join(known)}; repair the header")
-    return known[0] if known else said
+    labels = [label for label in (stated, by_code, channel) if orientation_of(label)]
+    directions = {(o.vertical, o.down) for label in labels if (o := orientation_of(label))}
+    if len(directions) > 1:
+        raise InputError(f"directions contradict each other: {' and '.join(labels)}; repair the header")
+    return labels[0] if labels else stated
 
 
 is_cosmos_file, read_cosmos_stream = plugin("COSMOS", is_cosmos, parse)

@@ -76,9 +76,9 @@ def _channel(lines: list[str], first: int) -> tuple[Recording, int]:
             f"line {first + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
         )
     header = first + volume - 1
-    said, peak = read_header(lines, header, _TEXT), read_header(lines, first, _PEAK[volume])
-    station, place, coded = said["station"], said["place"], bool(said["code"])
-    location = said["location"].strip("-")
+    fields, peak = read_header(lines, header, _TEXT), read_header(lines, first, _PEAK[volume])
+    station, place, coded = fields["station"], fields["place"], bool(fields["code"])
+    location = fields["location"].strip("-")
     record = line_at(lines, header + 3).split("  ")[0].strip()
     dt, series, end = declared_series(lines, first + _DATA[volume])
     values, unit = series["acc"]
@@ -86,34 +86,34 @@ def _channel(lines: list[str], first: int) -> tuple[Recording, int]:
     event, date, name = (line_at(lines, header + i) for i in (1, 2, 5))
     return (
         Recording(
-            label=said["label"],
+            label=fields["label"],
             dt=dt,
             values=values,
             unit=unit,
             station=", ".join(filter(None, [station, record, place, f"Volume {volume}"])),
-            codes=(said["network"], said["code"] or station[:5], location, said["label"].upper()),
-            start=_start(said),
+            codes=(fields["network"], fields["code"] or station[:5], location, fields["label"].upper()),
+            start=_start(fields),
             processed=volume == 2,
             sensor=Sensor(
-                station=said["code"] or station,
-                network=said["network"] if coded else None,
+                station=fields["code"] or station,
+                network=fields["network"] if coded else None,
                 location=location if coded else None,
                 place=place.upper() if place else None,
-                channel=said["of_station"] or said["number"],  # of the station, which other recorders may share
+                channel=fields["of_station"] or fields["number"],  # of the station, which other recorders may share
             ),
             event=f"{event} {date.partition('(')[0]}",
-            origin=origin_of(_left(event), _left(name) or station, _left(date)),
+            origin=origin_of(_left_half(event), _left_half(name) or station, _left_half(date)),
             velocities=series.get("vel"),  # the header's initial velocity has the wrong sign in files of the USGS
             displacements=series.get("dis"),
             stated_peak=(peak["peak"], peak["unit"]),
-            notes=(f"channel {said['number']}: {place}",) if place else (),
+            notes=(f"channel {fields['number']}: {place}",) if place else (),
             header={"station": name.strip(), "record": record},
         ),
         past_mark(lines, end, "the declared values"),
     )
 
 
-def _left(line: str) -> str:
+def _left_half(line: str) -> str:
     """Return the left half of a line, whose right half is about the recorder in some files."""
     return re.split(r"   |\(", line)[0]
 
@@ -121,23 +121,23 @@ def _left(line: str) -> str:
 def _check_again(lines: list[str], first: int, volume: int, npts: int, dt: float) -> None:
     """Raise ``InputError`` where the header's text contradicts the line that declares the data."""
     for offset, pattern, _ in _AGAIN[volume]:
-        said = pattern.search(line_at(lines, first + offset))
-        if said is None:
+        match = pattern.search(line_at(lines, first + offset))
+        if match is None:
             continue
-        key, text = next(iter(said.groupdict().items()))
+        key, text = next(iter(match.groupdict().items()))
         declared = {"npts": npts, "rate": 1.0 / dt, "dt": dt}[key]
         if abs(number_in(text, first + offset) - declared) > 1e-6 * declared:
             raise InputError(
-                f'line {first + offset + 1}: "{said[0].strip()}" contradicts line {first + _DATA[volume] + 1}: '
+                f'line {first + offset + 1}: "{match[0].strip()}" contradicts line {first + _DATA[volume] + 1}: '
                 f"{npts} points at intervals of {dt:g} s"
             )
 
 
-def _start(said: dict[str, str]) -> float | None:
+def _start(fields: dict[str, str]) -> float | None:
     """Return the time of the first sample [s since 1970]; ``None`` for older files, which have the time of triggering."""
-    if len(said["year"]) == 2:
-        said = {**said, "year": f"{19 if int(said['year']) >= 30 else 20}{said['year']}"}
-    return moment_of(said)
+    if len(fields["year"]) == 2:
+        fields = {**fields, "year": f"{19 if int(fields['year']) >= 30 else 20}{fields['year']}"}
+    return moment_of(fields)
 
 
 is_csmip_file, read_csmip_stream = plugin("CSMIP", is_csmip, parse)

@@ -64,8 +64,8 @@ def parse(text: str) -> list[Recording]:
 
 def _labels(sequence: str) -> list[str]:
     """Return the directions of the columns after time, all positive as they are named: "Time U(+); N(+); E(+)"."""
-    time, _, rest = sequence[:200].strip().partition(" ")
-    matches = [_LABEL.fullmatch(part) for part in rest.split(";")]
+    time, _, remainder = sequence[:200].strip().partition(" ")
+    matches = [_LABEL.fullmatch(part) for part in remainder.split(";")]
     if time.lower() != "time" or None in matches:
         raise InputError(f'the header says DataSequence: "{sequence[:60]}"; expected e.g. "Time U(+); N(+); E(+)"')
     return [match["label"] for match in matches if match]

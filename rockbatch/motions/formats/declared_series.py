@@ -32,8 +32,8 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
     _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}
     while _SPACING.match(line_at(lines, end)):
-        what, _, values, end = _block(lines, end, ("vel", "dis"))
-        series[what] = values
+        quantity, _, values, end = _block(lines, end, ("vel", "dis"))
+        series[quantity] = values
     return dt, series, end
 
 
@@ -43,11 +43,11 @@ def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str
     Raises ``InputError`` where it is not one of those ``expected``.
     """
     line = match_line(_SPACING, lines, start, "… points of accel data equally spaced at … sec. (units: …)")
-    what = (line["what"] or "acc").lower()
+    quantity = (line["what"] or "acc").lower()
     unit, layout = _UNIT.search(line["rest"]), _FORMAT.search(line["rest"])
     npts = int(line["npts"])
     step = number_in(line["rate"] or line["dt"], start)
-    if what not in expected or unit is None or npts < 1 or not 1e-6 < step < 1e6:
+    if quantity not in expected or unit is None or npts < 1 or not 1e-6 < step < 1e6:
         raise InputError(
             f'line {start + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
             f"{' or '.join(_WORDS[word] for word in expected)}"
@@ -61,4 +61,4 @@ def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str
             f'line {start + 2}: found "{line_at(lines, start + 1)[:40]}"; expected numbers in equal columns'
         )
     values, end = fixed_numbers(lines, start + 1, npts, width, per_line)
-    return what, float(f"{1.0 / step:.12g}") if line["rate"] else step, (values, unit["unit"]), end
+    return quantity, float(f"{1.0 / step:.12g}") if line["rate"] else step, (values, unit["unit"]), end

@@ -93,9 +93,9 @@ def _numbers(
 
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
     """Raise ``InputError`` for text from ``lines[end]`` on, after what a header has ``declared``: "the 40 values"."""
-    after = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
-    if after is not None:
-        raise InputError(f'line {after + 1}: found "{lines[after][:40]}" after {declared}')
+    number = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
+    if number is not None:
+        raise InputError(f'line {number + 1}: found "{lines[number][:40]}" after {declared}')
 
 
 def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
@@ -146,12 +146,12 @@ def is_cut_short(backwards: Iterable[str]) -> bool:
     are looked at unless the last one is short.
     """
     tokens = islice(backwards, LOOKED_AT)
-    last, before = next(tokens, ""), next(tokens, "")
-    usual = _tail(before)
-    if "." not in before or _tail(last) >= usual:
+    last_tail, tail_before = next(tokens, ""), next(tokens, "")
+    usual = _tail(tail_before)
+    if "." not in tail_before or _tail(last_tail) >= usual:
         return False
-    others = list(map(_tail, tokens))
-    return len(others) + 2 >= _MANY and set(others) == {usual}
+    tails = list(map(_tail, tokens))
+    return len(tails) + 2 >= _MANY and set(tails) == {usual}
 
 
 def _tail(token: str) -> int:

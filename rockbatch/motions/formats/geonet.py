@@ -56,10 +56,10 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
     The header has the time of the recorder's first sample, the year to the hour at the end of its first two lines of
     integers, minute and ms at the end of the fourth. Corrected data begin some s of padding earlier.
     """
-    said = read_header(lines, first_line, _TEXT)
+    fields = read_header(lines, first_line, _TEXT)
     integers = [int(n) for n in fixed_numbers(lines, first_line + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]
     reals, _ = fixed_numbers(lines, first_line + _REALS + 2, 10, _WIDTH, _PER_LINE)
-    npts, duration, dt = int(said["npts"]), number_in(said["duration"], first_line + 9), float(reals[5])
+    npts, duration, dt = int(fields["npts"]), number_in(fields["duration"], first_line + 9), float(reals[5])
     counts = integers[33:36]
     if npts < 1 or counts[0] != npts or min(counts) < 0:
         raise InputError(
@@ -70,8 +70,8 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
         raise InputError(
             f"line {first_line + 10} says {npts} points in {duration:g} s, line {first_line + _REALS + 3} an interval of {dt:g} s"
         )
-    factor, unit = 1.0, said["of_peak"]
-    if said["un"]:
+    factor, unit = 1.0, fields["of_peak"]
+    if fields["un"]:
         raw = read_header(lines, first_line, _OF_RAW)
         factor, unit = number_in(raw["factor"], first_line + 10), raw["unit"]
     blocks, end = [], first_line + _DATA
@@ -79,22 +79,22 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
         block, end = fixed_numbers(lines, end, n, _WIDTH, _PER_LINE)
         blocks.append(block)
     year, month, day, hour, minute, ms = (integers[i] for i in (8, 9, 18, 19, 38, 39))
-    start, site = moment(year, month, day, hour, minute, ms / 1000), said["site"]
+    start, site = moment(year, month, day, hour, minute, ms / 1000), fields["site"]
     recording = Recording(
-        label=said["label"],
+        label=fields["label"],
         dt=dt,
         values=blocks[0] * factor,
         unit=unit,
-        station=f"{site} {said['id']}, {'uncorrected' if said['un'] else 'corrected'}",
+        station=f"{site} {fields['id']}, {'uncorrected' if fields['un'] else 'corrected'}",
         start=None if start is None else start - float(reals[1]),
-        processed=not said["un"],
-        sensor=Sensor(site, "NZ", said["id"].rpartition("_")[2][:2]),
-        event=said["id"],
+        processed=not fields["un"],
+        sensor=Sensor(site, "NZ", fields["id"].rpartition("_")[2][:2]),
+        event=fields["id"],
         origin=origin_of(line_at(lines, first_line + 6), lines[first_line + 2] or site, line_at(lines, first_line + 7)),
-        velocities=(blocks[1], said["velocity"]) if said["velocity"] and len(blocks[1]) else None,
-        displacements=(blocks[2], said["displacement"]) if said["displacement"] and len(blocks[2]) else None,
-        stated_peak=(said["peak"], said["of_peak"]),
-        header={"accelerogram": said["id"], "site": lines[first_line + 2].strip()},
+        velocities=(blocks[1], fields["velocity"]) if fields["velocity"] and len(blocks[1]) else None,
+        displacements=(blocks[2], fields["displacement"]) if fields["displacement"] and len(blocks[2]) else None,
+        stated_peak=(fields["peak"], fields["of_peak"]),
+        header={"accelerogram": fields["id"], "site": lines[first_line + 2].strip()},
     )
     return recording, end
 

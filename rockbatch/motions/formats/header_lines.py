@@ -21,13 +21,13 @@ def match_line(pattern: re.Pattern[str], lines: Sequence[str], index: int, expec
     """Return the match of ``pattern`` in ``lines[index]``; ``InputError`` where the line is another one, or none."""
     match = pattern.search(line_at(lines, index))
     if match is None:
-        raise _other(lines, index, f'"{expected}"')
+        raise _mismatch(lines, index, f'"{expected}"')
     return match
 
 
-def _other(lines: Sequence[str], index: int, expected: str) -> InputError:
-    what = f'"{line_at(lines, index).strip()[:60]}"' if index < len(lines) else "the end of the file"
-    return InputError(f"line {index + 1}: found {what}; expected {expected}")
+def _mismatch(lines: Sequence[str], index: int, expected: str) -> InputError:
+    line = f'"{line_at(lines, index).strip()[:60]}"' if index < len(lines) else "the end of the file"
+    return InputError(f"line {index + 1}: found {line}; expected {expected}")
 
 
 Line = tuple[int, re.Pattern[str], str]
@@ -60,7 +60,7 @@ def read_header(lines: Sequence[str], start: int, layout: Sequence[Line]) -> dic
 def past_mark(lines: Sequence[str], start: int, after: str) -> int:
     """Return the index behind the mark "/&" at ``lines[start]``; ``InputError`` unless it stands there, ``after`` its data."""
     if not line_at(lines, start).startswith("/&"):
-        raise _other(lines, start, f'"/&" after {after}; fetch it again')
+        raise _mismatch(lines, start, f'"/&" after {after}; fetch it again')
     return start + 1
 
 

@@ -45,7 +45,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     segments: dict[str, list[obspy.Trace]] = {}
     for trace in stream:
         segments.setdefault(trace.id, []).append(trace)
-    known, refused = stationxml.channels_beside(file.path.parent, file.root)
+    channels, refused = stationxml.channels_beside(file.path.parent, file.root)
     unread = f" (not read: {', '.join(refused[:_TOLD])})" if refused else ""
     readings: list[Component | Unusable] = []
     for channel_id, traces in segments.items():
@@ -54,12 +54,12 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             name = channel_id if len(segments) > 1 else file.stem
             source = file.source if len(segments) == 1 else f"{file.source} ({channel_id})"
             if len(events) > 1:
-                when = pieces[0].stats.starttime.strftime("%Y%m%dT%H%M%S")
-                name, source = f"{name}.{when}", f"{file.source} ({channel_id} {when})"
+                moment = pieces[0].stats.starttime.strftime("%Y%m%dT%H%M%S")
+                name, source = f"{name}.{moment}", f"{file.source} ({channel_id} {moment})"
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
-                readings.append(_component(name, source, file, pieces[0], known, unread))
+                readings.append(_component(name, source, file, pieces[0], channels, unread))
             except InputError as error:
                 readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
     return readings
@@ -80,7 +80,7 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
 
 
 def _component(
-    name: str, source: str, file: RecordFile, trace: "obspy.Trace", known: list[stationxml.Channel], unread: str
+    name: str, source: str, file: RecordFile, trace: "obspy.Trace", channels: list[stationxml.Channel], unread: str
 ) -> Component:
     """Return one channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
     stats = trace.stats
@@ -89,7 +89,7 @@ def _component(
     if is_clock(stats.channel):
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
-    entries = [channel for channel in known if channel.id == trace.id]
+    entries = [channel for channel in channels if channel.id == trace.id]
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
     orientation = orientation_of(stats.channel) or unknown(stats.channel)
     if entry is not None and entry.sensitivity:

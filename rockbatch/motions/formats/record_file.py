@@ -96,16 +96,16 @@ class ReadOptions:
         """
         wrong = []
         if self.unit is not None and "unit" not in self.instead:
-            said, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
-            if abs(said - stated) > _SAME_UNIT * said:
+            by_file, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
+            if abs(by_file - stated) > _SAME_UNIT * by_file:
                 wrong.append(("unit", unit, f'"{self.unit}"'))
         if self.dt is not None and "dt" not in self.instead and abs(self.dt - dt) > SAME_STEP * dt:
             wrong.append(("dt", f"{dt:g} s", f"{self.dt:g}"))
         if wrong:
             reasons = [
-                f"the file says {said}, but {key} = {stated} is stated for files that do not say: leave it out, and write "
+                f"the file says {by_file}, but {key} = {stated} is stated for files that do not say: leave it out, and write "
                 f"{key} in motions.toml for those that need it"
-                for key, said, stated in wrong
+                for key, by_file, stated in wrong
             ]
             raise InputError("; ".join(reasons))
 

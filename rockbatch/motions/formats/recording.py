@@ -109,7 +109,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
         notes=recording.notes,
-        odd=tuple(_peak_differs(recording, factor, file.gravity)),
+        findings=tuple(_peak_differs(recording, factor, file.gravity)),
     )
 
 
@@ -145,7 +145,7 @@ def _peak_differs(recording: Recording, factor: float, gravity: float) -> list[F
         return []
     nearest = min(peaks, key=lambda peak: abs(peak - stated)) / scale
     unit = unit or recording.unit
-    what = (
+    message = (
         f"its header states a peak of {text.strip()} {unit}, and its samples have {nearest:.6g} {unit}: check its scale"
     )
-    return [Finding("peak", what, gross=True)]
+    return [Finding("peak", message, gross=True)]

@@ -52,28 +52,28 @@ def parse(text: str) -> list[Recording]:
 
 def _channel(lines: list[str], start: int) -> tuple[tuple[Recording, float], int]:
     """Return the channel whose title is ``lines[start]``, its first time [s], and where the next one begins."""
-    said = read_header(lines, start, _TEXT)
-    npts, label = int(said["npts"]), said["label"]
+    fields = read_header(lines, start, _TEXT)
+    npts, label = int(fields["npts"]), fields["label"]
     if npts < 2:
         raise InputError(f"line {start + 11}: found {npts} points; expected at least two")
     numbers, end = fixed_numbers(lines, start + _HEADER, 2 * npts, _WIDTH, _PER_LINE)
     end, pairs = past_mark(lines, end, f"{npts} pairs"), numbers.reshape(npts, 2)
     dt, values, notes = from_pairs(pairs, f"channel {label} from line {start + 1} on")
-    first, trigger = float(pairs[0, 0]), moment_of(said)
-    known = trigger is not None and "-".join(said[part].lstrip("0") for part in ("year", "month", "day")) != _NOT_SET
+    first, trigger = float(pairs[0, 0]), moment_of(fields)
+    dated = trigger is not None and "-".join(fields[part].lstrip("0") for part in ("year", "month", "day")) != _NOT_SET
     event, station = lines[start + 1], lines[start + 5].strip()
     recording = Recording(
         label=label,
         dt=dt,
         values=values,
-        unit=said["unit"],
+        unit=fields["unit"],
         station=f"{station}, {event.strip()}, uncorrected",
-        start=trigger + first if trigger is not None and known else None,
+        start=trigger + first if trigger is not None and dated else None,
         processed=False,
         sensor=Sensor(station.upper()),
         event=event,
         origin=origin_of(event, lines[start + 5]),
-        stated_peak=(said["peak"], "g"),
+        stated_peak=(fields["peak"], "g"),
         as_read=pairs[:, 1],
         notes=notes,
         header={"station": station, "event": event.strip()},

@@ -46,12 +46,12 @@ def parse(text: str) -> list[Recording]:
     lines = lines_of(text)
     title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:
-        what = line_at(lines, 0).strip()
-        raise NoRecordError(f'line 1: found "{what}"; expected accelerations: take the .smc file that has them')
-    said = read_header(lines, 0, _TEXT)
+        quantity = line_at(lines, 0).strip()
+        raise NoRecordError(f'line 1: found "{quantity}"; expected accelerations: take the .smc file that has them')
+    fields = read_header(lines, 0, _TEXT)
     integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)[0]]
     unknown, comments, npts = integers[0], integers[15], integers[16]
-    name, of_station = said["name"], integers[29]
+    name, of_station = fields["name"], integers[29]
     number = str(of_station) if of_station not in (unknown, 0) else name.upper()
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
@@ -67,7 +67,7 @@ def parse(text: str) -> list[Recording]:
     origin_line = line_at(lines, 3)
     return [
         Recording(
-            label=_label(integers[12], integers[13], unknown, said["label"]),
+            label=_label(integers[12], integers[13], unknown, fields["label"]),
             dt=dt,
             values=values,
             unit=_UNIT,

@@ -35,7 +35,7 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
     may be shorter.
     """
     header: list[str] = []
-    rest: list[float] = []
+    remainder: list[float] = []
     rows, row_lines, width, end = array("d"), array("q"), 0, 0
     lines = lines_of(text)
     separators = _separators(text, lines)
@@ -52,7 +52,7 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
             rows.extend(chain(row, block))
             row_lines.extend(range(i, end))
         elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
-            rest = row
+            remainder = row
         elif row:
             raise _refused(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
@@ -62,11 +62,11 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise NoRecordError("no columns of numbers found in it")
-    if width > 1 and stated_count(header) == len(rows) + len(rest):
+    if width > 1 and stated_count(header) == len(rows) + len(remainder):
         wrapped = wrapped or not (columns_with_units(header, width) or columns_without_units(header, width))
-    if rest and not wrapped:
+    if remainder and not wrapped:
         hint = f". {WRAPPED}" if width > 2 else ""
-        raise _refused(lines, f"line {len(lines)}: found {len(rest)} numbers; expected {width} as above{hint}")
+        raise _refused(lines, f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above{hint}")
     table = np.array(rows).reshape(-1, width)
     wild = ~(np.abs(table) < HUGE).all(axis=1)
     if wild.any():
@@ -76,14 +76,14 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
         raise InputError(
             f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
-    return header, np.append(table.ravel(), rest).reshape(-1, 1) if wrapped else table
+    return header, np.append(table.ravel(), remainder).reshape(-1, 1) if wrapped else table
 
 
-def _refused(lines: list[str], why: str) -> InputError:
+def _refused(lines: list[str], reason: str) -> InputError:
     """Return the error of a table, or of a text with some numbers in it: less than half of its lines hold numbers only."""
     written = [line for line in lines if line.strip()]
     numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)
-    return InputError(why) if 2 * numbers >= len(written) else NoRecordError(why)
+    return InputError(reason) if 2 * numbers >= len(written) else NoRecordError(reason)
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:

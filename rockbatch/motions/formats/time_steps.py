@@ -33,10 +33,10 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
     steps = np.diff(t)
     usual, shortest, longest = float(np.median(steps)), float(steps.min()), float(steps.max())
     if longest > _SPREAD * usual or shortest * _SPREAD < usual:
-        odd = int(steps.argmax() if longest > _SPREAD * usual else steps.argmin())
+        uneven = int(steps.argmax() if longest > _SPREAD * usual else steps.argmin())
         raise InputError(
-            f"time does not grow evenly: by {usual:g} as a rule, by {steps[odd]:g} after sample {odd + 1} "
-            f"(t = {t[odd]:g}); a gap is not filled, cut the record there or repair it"
+            f"time does not grow evenly: by {usual:g} as a rule, by {steps[uneven]:g} after sample {uneven + 1} "
+            f"(t = {t[uneven]:g}); a gap is not filled, cut the record there or repair it"
         )
     for step in _candidates(t, usual):
         counts = np.concatenate([[0.0], np.cumsum(np.rint(steps / step))])
@@ -48,7 +48,7 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
         if dt is not None:
             added = int(counts[-1]) + 1 - len(t)
             even = _interpolated(np.arange(counts[-1] + 1), counts, values)
-            return dt, even, (_said(shortest, longest, dt, f"{added} samples put between, none lost"),)
+            return dt, even, (_note(shortest, longest, dt, f"{added} samples put between, none lost"),)
     count = int(np.ceil((t[-1] - t[0]) / shortest * (1 - 1e-9)))
     if count > _GROWTH * len(t):
         raise InputError(
@@ -57,9 +57,9 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
         )
     dt = float(t[-1] - t[0]) / count
     even = _interpolated(t[0] + dt * np.arange(count + 1), t, values)
-    peaks, kept = np.abs(values).max(axis=0), np.abs(even).max(axis=0)
-    lost = float(((peaks - kept) / np.where(peaks > 0, peaks, 1.0)).max())
-    return dt, even, (_said(shortest, longest, dt, f"its peak is lower by {lost:.1%}"),)
+    peaks, even_peaks = np.abs(values).max(axis=0), np.abs(even).max(axis=0)
+    lost = float(((peaks - even_peaks) / np.where(peaks > 0, peaks, 1.0)).max())
+    return dt, even, (_note(shortest, longest, dt, f"its peak is lower by {lost:.1%}"),)
 
 
 def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str, ...]]:
@@ -93,8 +93,8 @@ def _on_grid(t: Samples, counts: Samples) -> float | None:
     dt = float(t[-1] - t[0]) / float(counts[-1])
     printed = _resolution(t)
     allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)
-    off = float(np.abs(t - (t[0] + dt * counts)).max())
-    return float(f"{dt:.12g}") if off <= allowed else None
+    deviation = float(np.abs(t - (t[0] + dt * counts)).max())
+    return float(f"{dt:.12g}") if deviation <= allowed else None
 
 
 def _resolution(t: Samples) -> float:
@@ -107,11 +107,11 @@ def _resolution(t: Samples) -> float:
     return 0.0
 
 
-def _interpolated(where: Samples, counts: Samples, values: Samples) -> Samples:
-    """Return ``values`` of samples ``counts``, linearly at ``where``, channel by channel."""
-    return np.column_stack([np.interp(where, counts, channel) for channel in values.T])
+def _interpolated(places: Samples, counts: Samples, values: Samples) -> Samples:
+    """Return ``values`` of samples ``counts``, linearly at ``places``, channel by channel."""
+    return np.column_stack([np.interp(places, counts, channel) for channel in values.T])
 
 
-def _said(shortest: float, longest: float, dt: float, effect: str) -> str:
+def _note(shortest: float, longest: float, dt: float, effect: str) -> str:
     """Return the note on uneven times."""
     return f"uneven times (steps of {shortest:g} to {longest:g}) interpolated linearly to dt = {dt:g}; {effect}"

@@ -57,9 +57,9 @@ def parse(text: str) -> list[Recording]:
     if header[_DECIMATION] and number_of(header, _DECIMATION) != 1:
         raise InputError(f"the header says that samples were left out ({_DECIMATION}); expected 1")
     count = int(channels)
-    ways = [way.partition(";")[::2] for way in _each(header, "ORIENTACION C1-C6", count)]
-    npts, dt = count_and_step({key: _same(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
-    first = _first(lines, index, [way.strip() for way, _ in ways])
+    labels = [label.partition(";")[::2] for label in _value_of_each(header, "ORIENTACION C1-C6", count)]
+    npts, dt = count_and_step({key: _common_value(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
+    first = _first(lines, index, [label.strip() for label, _ in labels])
     values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
     peaks = header["ACEL. MAX.(Gal), C1-C6"].strip("/ ").split("/")
     station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
@@ -67,13 +67,15 @@ def parse(text: str) -> list[Recording]:
     notes = (f"its header says {npts} samples, and {more} more follow, which are left out",) if more else ()
     return [
         Recording(
-            label=way.strip(),
-            orientation=Orientation(way.strip(), vertical=True, down=True) if (way[:1], sign) == ("V", "-") else None,
+            label=label.strip(),
+            orientation=Orientation(label.strip(), vertical=True, down=True)
+            if (label[:1], sign) == ("V", "-")
+            else None,
             dt=dt,
             values=values[:, i],
             unit=header["UNIDADES DE LOS DATOS"].partition("(")[0].strip(),
             station=f"{station}, {event} {start}" if event else station,
-            codes=("MG", station[:5], "", way.strip().upper()),
+            codes=("MG", station[:5], "", label.strip().upper()),
             start=start,
             processed=False,
             sensor=Sensor(station),
@@ -83,17 +85,17 @@ def parse(text: str) -> list[Recording]:
             notes=notes,
             header={"station": name, "file": header["NOMBRE DEL ARCHIVO"]},
         )
-        for i, (way, sign) in enumerate(ways)
+        for i, (label, sign) in enumerate(labels)
     ]
 
 
 def _header(lines: list[str]) -> dict[str, str]:
     """Return the values of ``_NEEDED`` and ``_ELSE``; what stands behind a key differs: "(s)", "(Hz)", and so do blanks in it."""
-    said = {re.sub(r"\s", "", key): value for key, value in keys_of(lines).items()}
+    entries = {re.sub(r"\s", "", key): value for key, value in keys_of(lines).items()}
 
     def value_of(name: str) -> str:
         begins = re.sub(r"\s", "", name)
-        return next((value for key, value in said.items() if key.startswith(begins)), "")
+        return next((value for key, value in entries.items() if key.startswith(begins)), "")
 
     header = {name: value_of(name) for name in (*_NEEDED, *_ELSE)}
     if lacking := [name for name in _NEEDED if not header[name]]:
@@ -101,7 +103,7 @@ def _header(lines: list[str]) -> dict[str, str]:
     return header
 
 
-def _each(header: dict[str, str], key: str, count: int) -> list[str]:
+def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
     """Return the values of all channels, between slashes."""
     values = [part.strip() for part in header[key].strip("/ ").split("/")]
     if len(values) != count:
@@ -109,24 +111,26 @@ def _each(header: dict[str, str], key: str, count: int) -> list[str]:
     return values
 
 
-def _same(header: dict[str, str], key: str, count: int) -> str:
+def _common_value(header: dict[str, str], key: str, count: int) -> str:
     """Return the value that is the same for all channels; ``InputError`` where it is not."""
-    texts = set(_each(header, key, count))
+    texts = set(_value_of_each(header, key, count))
     if len(texts) > 1:
         raise InputError(f"the header says {key}: {', '.join(sorted(texts))[:60]}; expected the same for all channels")
     return texts.pop()
 
 
-def _first(lines: list[str], start: int, ways: list[str]) -> int:
+def _first(lines: list[str], start: int, labels: list[str]) -> int:
     """Return the index of the first sample's line, behind rulers and the directions, which must be those of the header."""
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]
-        if words == ways:
+        if words == labels:
             named = True
         elif named and words and lines[i].strip("-+= "):
             return i
-    raise InputError(f"line {start + 4}: expected the directions {' '.join(ways)}, as the header has them, and samples")
+    raise InputError(
+        f"line {start + 4}: expected the directions {' '.join(labels)}, as the header has them, and samples"
+    )
 
 
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:

@@ -59,15 +59,15 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
     """Return the channel whose title is ``lines[start]``, and where the next one begins."""
     corrected = _CORRECTED.search(line_at(lines, start)) is not None
     header = start + corrected
-    said = read_header(lines, header, _TEXT)
-    series, end = (_corrected if corrected else _uncorrected)(lines, start, said)
+    fields = read_header(lines, header, _TEXT)
+    series, end = (_corrected if corrected else _uncorrected)(lines, start, fields)
     event, date, name = (line_at(lines, header + i)[:70].strip() for i in (1, 2, 5))
     recording = Recording(
-        label=said["label"],
-        station=", ".join([said["station"], event, date, *(["Volume II"] if corrected else [])]),
-        codes=("LA", said["station"][:5], "", said["label"].upper()),
+        label=fields["label"],
+        station=", ".join([fields["station"], event, date, *(["Volume II"] if corrected else [])]),
+        codes=("LA", fields["station"][:5], "", fields["label"].upper()),
         processed=corrected,
-        sensor=Sensor(said["station"]),
+        sensor=Sensor(fields["station"]),
         event=f"{event}, {date}",
         origin=origin_of(event, name, date),
         header={"station": name, "event": event},
@@ -76,19 +76,19 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
     return recording, end + line_at(lines, end).startswith("/&")
 
 
-def _uncorrected(lines: list[str], start: int, said: dict[str, str]) -> tuple[dict[str, Any], int]:
+def _uncorrected(lines: list[str], start: int, fields: dict[str, str]) -> tuple[dict[str, Any], int]:
     """Return the samples of a channel of Volume I as fields of its recording, and where they end."""
-    npts, duration = int(said["npts"]), number_in(said["duration"], start + 10)
+    npts, duration = int(fields["npts"]), number_in(fields["duration"], start + 10)
     if npts < 2:
         raise InputError(f"line {start + 11}: found {npts} points; expected at least two")
     pairs, end = _pairs(lines, start + _HEADER[1], npts)
     if abs(pairs[-1, 0] - duration) > _LATE:
         raise InputError(f"line {start + 11} says {duration:g} s, but the last time is {pairs[-1, 0]:g} s")
-    dt, values, notes = from_pairs(pairs, f"channel {said['label']} from line {start + 1} on")
-    return {"dt": dt, "values": values, "unit": said["unit"], "notes": notes}, end
+    dt, values, notes = from_pairs(pairs, f"channel {fields['label']} from line {start + 1} on")
+    return {"dt": dt, "values": values, "unit": fields["unit"], "notes": notes}, end
 
 
-def _corrected(lines: list[str], start: int, _said: dict[str, str]) -> tuple[dict[str, Any], int]:
+def _corrected(lines: list[str], start: int, _fields: dict[str, str]) -> tuple[dict[str, Any], int]:
     """Return likewise those of Volume II, which its text has to agree with."""
     repeated = read_header(lines, start, _AGAIN)
     dt, series, end = declared_series(lines, start + _HEADER[2])

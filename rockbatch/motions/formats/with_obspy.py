@@ -61,10 +61,10 @@ def sac(data: bytes) -> bytes:
     floats = np.frombuffer(data, f"{order}f4", _FLOATS)
     integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
     texts = np.frombuffer(data, "S8", 24, 4 * (_FLOATS + _INTEGERS))
-    known = np.full_like(floats, _UNDEFINED), np.full_like(integers, _UNDEFINED), np.full_like(texts, b"-12345  ")
-    for words, limits, first, kept in (
-        (floats, _SAC_FLOATS, 0, known[0]),
-        (integers, _SAC_INTEGERS, _FLOATS, known[1]),
+    copies = np.full_like(floats, _UNDEFINED), np.full_like(integers, _UNDEFINED), np.full_like(texts, b"-12345  ")
+    for words, limits, first, copied in (
+        (floats, _SAC_FLOATS, 0, copies[0]),
+        (integers, _SAC_INTEGERS, _FLOATS, copies[1]),
     ):
         for name, (word, least, largest) in limits.items():
             value = words[word - first]
@@ -72,9 +72,9 @@ def sac(data: bytes) -> bytes:
                 continue
             if not least <= float(f"{value:.7g}") <= largest:
                 raise InputError(f"SAC header: {name} = {value:g}; expected {least:g} to {largest:g}: it is damaged")
-            kept[word - first] = value
-    known[2][list(_SAC_TEXTS)] = texts[list(_SAC_TEXTS)]
-    return b"".join(words.tobytes() for words in known) + data[_SAC_HEADER:]
+            copied[word - first] = value
+    copies[2][list(_SAC_TEXTS)] = texts[list(_SAC_TEXTS)]
+    return b"".join(words.tobytes() for words in copies) + data[_SAC_HEADER:]
 
 
 def mseed(data: bytes) -> bytes:
@@ -94,10 +94,10 @@ def _volume_exponent(data: bytes) -> int:
     while _BLOCKETTE.match(data, offset):
         kind, length = data[offset : offset + 3], int(data[offset + 3 : offset + 7])
         if kind in _LENGTH_IN:
-            said = data[offset + 11 : offset + 13]
-            if not said.isdigit() or int(said) not in _LENGTHS:
-                raise InputError(f'SEED volume: records of 2^"{said.decode("latin-1")}" bytes; expected 07 to 20')
-            return int(said)
+            digits = data[offset + 11 : offset + 13]
+            if not digits.isdigit() or int(digits) not in _LENGTHS:
+                raise InputError(f'SEED volume: records of 2^"{digits.decode("latin-1")}" bytes; expected 07 to 20')
+            return int(digits)
         if length <= 7:
             raise InputError(f"SEED volume: a blockette of {length} bytes; expected more than 7: it is damaged")
         offset += length
@@ -113,16 +113,16 @@ def _data_record(record: bytes) -> None:
     hour, minute, second = record[24:27]
     if hour > 23 or minute > 59 or second > 60 or not 1 <= header[11] <= 366:
         raise InputError(f"MiniSEED header: day {header[11]}, {hour}:{minute}:{second} is no time: it is damaged")
-    offset, seen = int(header[23]), 0
+    offset, previous = int(header[23]), 0
     while offset:
-        if offset < max(_FIXED, seen + 4) or offset + 7 > len(record):
-            raise InputError(f"MiniSEED header: a blockette at byte {offset}, after one at {seen}: it is damaged")
+        if offset < max(_FIXED, previous + 4) or offset + 7 > len(record):
+            raise InputError(f"MiniSEED header: a blockette at byte {offset}, after one at {previous}: it is damaged")
         kind, following = (int(word) for word in np.frombuffer(record[offset : offset + 4], f"{order}u2"))
         if kind == 1000 and record[offset + 6] not in _LENGTHS:
             raise InputError(
                 f"MiniSEED header: records of 2^{record[offset + 6]} bytes; expected 2^7 to 2^20: it is damaged"
             )
-        offset, seen = following, offset
+        offset, previous = following, offset
 
 
 CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed}
@@ -135,12 +135,12 @@ _OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of fou
 def _unraisable() -> Iterator[list[str]]:
     """Collect errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
     errors: list[str] = []
-    before = sys.unraisablehook
+    hook = sys.unraisablehook
     sys.unraisablehook = lambda unraised: errors.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
     try:
         yield errors
     finally:
-        sys.unraisablehook = before
+        sys.unraisablehook = hook
 
 
 def read_stream(data: bytes, name: str) -> "obspy.Stream":
@@ -153,8 +153,8 @@ def read_stream(data: bytes, name: str) -> "obspy.Stream":
                 io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {})
             )
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
-            said = _ADDRESS.sub("the file", str(error))
-            raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {said}") from None
+            message = _ADDRESS.sub("the file", str(error))
+            raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {message}") from None
     complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]
     complaints += unraised
     if complaints:

@@ -36,14 +36,16 @@ def panel(info: Mapping[str, Any], entry: Mapping[str, Any], shape: str, colour:
             inside = (y >= axes.y.low) & (y <= axes.y.high)
             drawn.append(curve(axes.across(x[inside]), axes.down(y[inside]), f"{class_} s{colour}"))
     for run in runs:
-        across, said = float(axes.across(run["x"])), f"{run['x']:.3g} {info['unit']}, {run['counts']}"
+        across, label = float(axes.across(run["x"])), f"{run['x']:.3g} {info['unit']}, {run['counts']}"
         if run["counts"] == "line":
-            where = float(axes.down(run["demand"]))
-            drawn.append(marker(shape, across, where, colour=f"s{colour}", title=f"{said}: {run['demand']:.3g}"))
+            y_of_run = float(axes.down(run["demand"]))
+            drawn.append(marker(shape, across, y_of_run, colour=f"s{colour}", title=f"{label}: {run['demand']:.3g}"))
         elif run["counts"] == "below":
-            drawn.append(marker("down", across, float(axes.down(cloud["floor"])), colour=f"open s{colour}", title=said))
+            drawn.append(
+                marker("down", across, float(axes.down(cloud["floor"])), colour=f"open s{colour}", title=label)
+            )
         elif run["counts"] == "overturned":
-            drawn.append(marker("overturned", across, axes.top - 0.6 * ROOM, colour="alarm", title=said))
+            drawn.append(marker("overturned", across, axes.top - 0.6 * ROOM, colour="alarm", title=label))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
     drawn.append(text(axes.left - 38, 11, str(entry["words"]).split(" > ")[0], class_="q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Demands of {entry['limit_state']}", class_="plot marks")

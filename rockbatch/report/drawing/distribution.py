@@ -41,22 +41,22 @@ def _panel(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: st
     if eventful:
         drawn.append(rectangle(edge, axes.top, axes.left + axes.width - edge, axes.height, "band"))
     drawn.append(axes.frame([tick for tick in Scale(0, top).ticks(5) if tick <= top], axes.y.ticks(5)))
-    for place, same in runs.groupby("series"):
-        own = series[int(str(place))]
+    for place, group in runs.groupby("series"):
+        foundation = series[int(str(place))]
         theta, share = distribution(
-            same["theta_max_over_alpha"].to_numpy(dtype=np.float64),
-            same["status"].to_list(),
-            counts_as(same, count)[0].to_list(),
+            group["theta_max_over_alpha"].to_numpy(dtype=np.float64),
+            group["status"].to_list(),
+            counts_as(group, count)[0].to_list(),
         )
         reached = float(share[-1]) if len(share) else 0.0
         x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
         y = np.repeat(np.concatenate(([0.0], share)), 2)
-        drawn.append(curve(axes.across(np.minimum(x, right)), axes.down(y), _style(own), own.label))
-        if reached < 1.0 and same["status"].isin(["overturned", "flight"]).any():
-            said = f"{own.label}: {100 * (1 - reached):.0f} % overturned, or ended by flight"
+        drawn.append(curve(axes.across(np.minimum(x, right)), axes.down(y), _style(foundation), foundation.label))
+        if reached < 1.0 and group["status"].isin(["overturned", "flight"]).any():
+            note = f"{foundation.label}: {100 * (1 - reached):.0f} % overturned, or ended by flight"
             mid = 0.5 * (edge + axes.left + axes.width)
-            drawn.append(line(mid, float(axes.down(reached)), mid, float(axes.down(1.0)), _style(own)))
-            drawn.append(marker("overturned", mid, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=said))
+            drawn.append(line(mid, float(axes.down(reached)), mid, float(axes.down(1.0)), _style(foundation)))
+            drawn.append(marker("overturned", mid, float(axes.down(0.5 * (1.0 + reached))), colour="alarm", title=note))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, lowered("θ", "max", "/α"), class_="m q"))
     drawn.append(text(axes.left - 26, 11, "share of the records", class_="q"))
     return svg(WIDTH, HEIGHT, *drawn, description=f"Distribution of θmax/α{', ' + words if words else ''}")

@@ -47,7 +47,7 @@ class Marks(NamedTuple):
     """Style of the marks of runs: by ``series``, or all alike if these are too many; and the tooltip of each."""
 
     series: Sequence[Series] | None
-    says: Callable[[Run], str]
+    describe: Callable[[Run], str]
     kind: str
     """The thing that a mark stands for, if all are alike: "foundation"."""
 
@@ -65,10 +65,10 @@ def draw(
         [_line(_across(tick, top), "grid") for tick in ticks]
         + [
             _line(_across(limit.theta, top), _dash(place), tag("title", limit.words))
-            for place, limit in enumerate(own)
+            for place, limit in enumerate(of_column)
             if limit.theta <= top
         ]
-        for own in limits
+        for of_column in limits
     ]
     cells: list[Markup] = []
     if any(columns):
@@ -78,8 +78,8 @@ def draw(
         end = tag("span", row.end, class_="end") if row.end else ""
         cells.append(tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more))
         for words, runs, grid in zip(columns, row.runs, grids, strict=True):
-            here = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
-            cells += [_strip(runs, top, grid, marks, here), _without_peak(runs, marks)]
+            label = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
+            cells += [_strip(runs, top, grid, marks, label), _without_peak(runs, marks)]
     axis = [
         text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in zip(ticks, written(ticks), strict=True)
     ]
@@ -97,7 +97,7 @@ def draw(
 def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
     """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
     drawn: dict[str, Markup] = {}
-    for place, limit in (numbered for own in limits for numbered in enumerate(own)):
+    for place, limit in (numbered for of_column in limits for numbered in enumerate(of_column)):
         words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
         # Serifs, since a rigid base is a stroke, too
         drawn.setdefault(words, tag("path", d="M11 0v14M7 0h8M7 14h8", class_=_dash(place)))
@@ -125,19 +125,19 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     thetas = peaks[order].tolist()
     series = runs["series"].to_numpy()[order].tolist() if marks.series else [None] * len(order)
     first: dict[tuple[object, float], int] = {}
-    for which, theta, place in zip(series, thetas, order.tolist(), strict=True):
-        first.setdefault((which, _across(theta, top)), place)  # others would lie under it
-    seen = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
+    for foundation, theta, place in zip(series, thetas, order.tolist(), strict=True):
+        first.setdefault((foundation, _across(theta, top)), place)  # others would lie under it
+    drawn = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
     low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
-    said = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
+    label = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
     return tag(
-        "svg", *grid, *seen, class_="plot strip marks", role="img", data_of=words,
-        aria_label=said if thetas else f"{words}: no peak",
+        "svg", *grid, *drawn, class_="plot strip marks", role="img", data_of=words,
+        aria_label=label if thetas else f"{words}: no peak",
     )  # fmt: skip
 
 
 def _mark(run: Run, x: float, marks: Marks) -> Markup:
-    title = marks.says(run)
+    title = marks.describe(run)
     if marks.series is None:
         return tag("circle", tag("title", title), cx=f"{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
     series = marks.series[run["series"]]
@@ -152,15 +152,15 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
     shown: list[Markup] = []
     statuses = set(runs["status"])
     for status, words in NO_PEAK.items() if statuses != {"ok"} else ():
-        some = runs[runs["status"] == status]
+        ended = runs[runs["status"] == status]
         if status in statuses:
-            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(some["series"])]
+            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended["series"])]
             names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
-            names = names if 0 < len(names) <= MOST_LETTERS else str(len(some))
+            names = names if 0 < len(names) <= MOST_LETTERS else str(len(ended))
             sign = tag("svg", sign_of(status, 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
                        aria_hidden="true")  # fmt: skip
             class_ = "undecided" if status == "failed" else "alarm"
-            shown.append(tag("span", sign, names, title=f"{len(some)} × {words}", class_=class_))
+            shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_))
     return tag("span", *shown, class_="ends")
 
 

@@ -129,12 +129,12 @@ def _device(response: Response, name: str, left: float, width: float) -> Markup:
     assert table is not None
     sides = [side for side in (" right", " left", "") if f"{name}{side} force" in table]
     factor, unit = (1.0 / pier.gravity, "F/(M g)") if pier.mass_t is None else (pier.mass_t, "F [kN]")
-    ways = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
+    elongations = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
     forces = [factor * table[f"{name}{side} force"].to_numpy(dtype=np.float64) for side in sides]
-    axes = Axes(left, 17, width, LOOPS_HEIGHT - 50, spanning(*ways), spanning(*forces))
+    axes = Axes(left, 17, width, LOOPS_HEIGHT - 50, spanning(*elongations), spanning(*forces))
     lines = [
-        curve(axes.across(way), axes.down(force), "curve" if side != " right" else "curve right", f"{unit}{side}")
-        for side, way, force in zip(sides, ways, forces, strict=True)
+        curve(axes.across(u), axes.down(force), "curve" if side != " right" else "curve right", f"{unit}{side}")
+        for side, u, force in zip(sides, elongations, forces, strict=True)
     ]
     return join(
         axes.frame(axes.x.ticks(4), axes.y.ticks(5)),

@@ -45,7 +45,7 @@ class Strip:
         return self.outcomes[int(np.searchsorted(tops, amplitude))]
 
 
-def strips(own: "pd.DataFrame") -> list[Strip]:
+def strips(regions: "pd.DataFrame") -> list[Strip]:
     """Return the strips of one map, rows of overturning_map.csv, by frequency, without gaps or overlaps."""
     columns = [
         Strip(
@@ -53,17 +53,17 @@ def strips(own: "pd.DataFrame") -> list[Strip]:
             np.array([float(str(frequency))]),
             np.append(column["low"].to_numpy(float), float(column["high"].iloc[-1]))[None],
         )
-        for frequency, column in own.groupby("omega_p_over_p")
+        for frequency, column in regions.groupby("omega_p_over_p")
     ]
     joined = columns[:1]
     for column in columns[1:]:
-        before = joined.pop()
-        if column.outcomes != before.outcomes:
-            middle = 0.5 * (before.frequencies[-1:] + column.frequencies)
-            at_end, at_start = _meeting(before, column)
-            joined.append(_joined(before, Strip(before.outcomes, middle, at_end[None])))
-            before = Strip(column.outcomes, middle, at_start[None])
-        joined.append(_joined(before, column))
+        previous = joined.pop()
+        if column.outcomes != previous.outcomes:
+            middle = 0.5 * (previous.frequencies[-1:] + column.frequencies)
+            at_end, at_start = _meeting(previous, column)
+            joined.append(_joined(previous, Strip(previous.outcomes, middle, at_end[None])))
+            previous = Strip(column.outcomes, middle, at_start[None])
+        joined.append(_joined(previous, column))
     return joined
 
 
@@ -90,7 +90,7 @@ def _meeting(left: Strip, right: Strip) -> tuple[Array, Array]:
     through.append((-1, -1))
     middles = [0.5 * (ends[0][i] + ends[1][j]) for i, j in through]
     at_end, at_start = (
-        _giving_way(own, list(places), middles) for own, places in zip(ends, zip(*through, strict=True), strict=True)
+        _giving_way(end, list(places), middles) for end, places in zip(ends, zip(*through, strict=True), strict=True)
     )
     return at_end, at_start
 
@@ -107,17 +107,17 @@ def _kind(strip: Strip, edge: int) -> tuple[str, ...]:
     return strip.outcomes[edge - 1 : edge + 1]
 
 
-def _nearest(height: float, kind: tuple[str, ...], other: Strip, edges: Array) -> int:
+def _nearest(height: float, kind: tuple[str, ...], strip: Strip, edges: Array) -> int:
     """Return the nearest edge of another strip with the same outcomes on both sides; 0 if there is none."""
-    same = [i for i in range(1, len(other.outcomes)) if _kind(other, i) == kind]
-    return min(same, key=lambda i: abs(edges[i] - height), default=0)
+    candidates = [i for i in range(1, len(strip.outcomes)) if _kind(strip, i) == kind]
+    return min(candidates, key=lambda i: abs(edges[i] - height), default=0)
 
 
-def draw(own: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
+def draw(table: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
     """Draw one map; return the picture and its legend."""
-    drawn = strips(own)
+    drawn = strips(table)
     across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
-    axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(own["low"].min()), float(own["high"].max())))
+    axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(table["low"].min()), float(table["high"].max())))
     present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
     picture = [
         # One path for each outcome, or a hair of background would show where two strips meet

@@ -91,30 +91,30 @@ class _Panel:
 
     def _run(self, run: Run) -> Markup:
         axes, series = self.axes, self.series[run["series"]]
-        both, right = len(self.sides) > 1, self.axes.left + self.axes.width
-        second = both and run["side"] == self.sides[1]
-        x = float(axes.across(0.42 if series.rigid else series.index + 1 + (0.32 * second - 0.16) * both))
+        two_sides, right = len(self.sides) > 1, self.axes.left + self.axes.width
+        second = two_sides and run["side"] == self.sides[1]
+        x = float(axes.across(0.42 if series.rigid else series.index + 1 + (0.32 * second - 0.16) * two_sides))
         status, theta, error = run["status"], run["theta_max_over_alpha"], run["theta_max_error"]
-        said = said_of(series, run, both)
+        words = said_of(series, run, two_sides)
         if status in NO_PEAK:
             level = float(axes.down(1.09 * self.top))
-            over = line(axes.left, level, right, level, _rigid(series, second)) if series.rigid else ""
-            return join(over, sign_of(status, x, level, said))
+            level_line = line(axes.left, level, right, level, _rigid(series, second)) if series.rigid else ""
+            return join(level_line, sign_of(status, x, level, words))
         if status == "failed" or math.isnan(theta):
-            return sign_of("failed", x, axes.top + axes.height - 8, said)
+            return sign_of("failed", x, axes.top + axes.height - 8, words)
         y = float(axes.down(theta))
         bar = Markup("")
         if error > VISIBLE * self.top:
             ends = float(axes.down(min(theta + error, axes.y.high))), float(axes.down(max(theta - error, 0)))
             bar = tag("path", d=f"M{x - 2.5:.1f} {ends[0]:.1f}h5m-2.5 0V{ends[1]:.1f}m-2.5 0h5", class_="bar")
         if series.rigid:
-            return join(line(axes.left, y, right, y, _rigid(series, second), said), bar)
-        return join(bar, _foundation(series, second, x, y, said))
+            return join(line(axes.left, y, right, y, _rigid(series, second), words), bar)
+        return join(bar, _foundation(series, second, x, y, words))
 
 
-def said_of(series: Series, run: Run, both: bool) -> str:
+def said_of(series: Series, run: Run, two_sides: bool) -> str:
     """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
-    name = series.label + (f" ({run['polarity']})" if both else "")
+    name = series.label + (f" ({run['polarity']})" if two_sides else "")
     if run["status"] != "ok":
         return f"{name}: {run['status']}"
     error = run["theta_max_error"]

@@ -90,15 +90,15 @@ def _pier(pier: Mapping[str, Any], scale: float, springs: bool) -> Markup:
         *(mark for kind, place in pier.get("devices", ()) for mark in _device(kind, middle, place, scale, ground, top)),
         *_length(left, ground + 32.0, right, ground + 32.0, f"2b = {number(2.0 * pier['half_width_m'], '.3g')} m"),
     ]
-    what = "two springs" if springs else "rigid ground"
-    said = (
-        f"The pier to scale on {what}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
+    support = "two springs" if springs else "rigid ground"
+    description = (
+        f"The pier to scale on {support}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
         f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
     )
     if kinds := dict.fromkeys(kind for kind, _ in pier.get("devices", ())):
-        said += f", with {' and '.join(kinds)}"
+        description += f", with {' and '.join(kinds)}"
     named = tag("figcaption", pier["name"]) if pier.get("name") else ""
-    return tag("figure", named, svg(width, height, *drawn, description=said), style=f"width:{width:.0f}px")
+    return tag("figure", named, svg(width, height, *drawn, description=description), style=f"width:{width:.0f}px")
 
 
 def _deck(pier: Mapping[str, Any], middle: float, b: float, ground: float, scale: float) -> list[Markup]:
@@ -119,8 +119,8 @@ def _device(kind: str, middle: float, place: Place, scale: float, ground: float,
     Beside the deck, a wall that the deck meets, or to which it is tied, on the side on which it is.
     """
     if place.height:
-        y, way = ground - scale * place.height, place.way or 1.0
-        near, far = (middle + way * reach for reach in (30.0, 30.0 + SPRING))
+        y, side = ground - scale * place.height, place.way or 1.0
+        near, far = (middle + side * reach for reach in (30.0, 30.0 + SPRING))
         bar = line(near, y, far, y, "tendon s3", kind)
         return [bar, line(far, y - ASIDE, far, y + ASIDE, "rigid")]
     offset = scale * place.offset
@@ -128,8 +128,8 @@ def _device(kind: str, middle: float, place: Place, scale: float, ground: float,
         return [line(middle + offset, ground + SPRING, middle + offset, ground - top, "tendon s2", kind)]
     x = middle + offset + math.copysign(ASIDE, offset)
     if kind == "stop":
-        over = ground - ASIDE
-        return [line(x, ground + SPRING, x, over, "rigid", kind), line(x, over, middle + offset, over, "rigid")]
+        end = ground - ASIDE
+        return [line(x, ground + SPRING, x, end, "rigid", kind), line(x, end, middle + offset, end, "rigid")]
     body = rectangle(x - 3.0, ground + 5.0, 6.0, 9.0, "damper s3")
     return [
         line(middle + offset, ground, x, ground, "tendon s3"),

@@ -62,8 +62,8 @@ def draw(spectra: dict[str, Any], names: Sequence[str], fitted: tuple[float, flo
             add(np.percentile(values, percent, axis=0), "level ink d2", f"{percent} %")
     drawn.append(text(axes.left + axes.width / 2, 312, "period [s]", class_="m q"))
     drawn.append(text(axes.left - 40, 11, "SA [g]", class_="q"))
-    said = f"Response spectra of {len(names)} ground motions" + (" and their target" if len(target) else "")
-    return join(svg(440, 318, *drawn, description=said, class_="plot spectra alone"), key(entries))
+    description = f"Response spectra of {len(names)} ground motions" + (" and their target" if len(target) else "")
+    return join(svg(440, 318, *drawn, description=description, class_="plot spectra alone"), key(entries))
 
 
 def _ticks(scale: Scale) -> list[float]:

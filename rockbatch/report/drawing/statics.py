@@ -21,14 +21,14 @@ def draw(sheets: Sequence[tuple[str, Statics]]) -> Markup:
     drawn = sheets[:MOST]
     return side_by_side(
         [
-            ("Steady horizontal ground acceleration that holds the pier [g]", *_picture(drawn, _held, "θ/α")),
+            ("Steady horizontal ground acceleration that holds the pier [g]", *_picture(drawn, _quasi_static, "θ/α")),
             ("Period of free rocking [s]", *_picture(drawn, _period, "amplitude/α")),
         ],
         WIDTH,
     )
 
 
-def _held(sheet: Statics) -> tuple[Array, Array]:
+def _quasi_static(sheet: Statics) -> tuple[Array, Array]:
     equilibria = sheet.equilibria
     return equilibria.theta / sheet.pier.alpha, equilibria.acceleration
 

@@ -47,8 +47,8 @@ def markers() -> Markup:
 
 def marker(name: str, x: float | str, y: float, *, colour: str, title: str | None = None) -> Markup:
     """Draw a marker at (x, y); ``colour`` are classes of the style sheet, ``title`` is its tooltip."""
-    said = tag("title", title) if title else Markup("")
-    return tag("use", said, href=f"#m-{name}", x=_short(x), y=_short(y), class_=colour)
+    tooltip = tag("title", title) if title else Markup("")
+    return tag("use", tooltip, href=f"#m-{name}", x=_short(x), y=_short(y), class_=colour)
 
 
 def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup:
@@ -56,9 +56,9 @@ def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup
     return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
 
 
-def lowered(base: str, index: str, rest: str = "") -> Markup:
+def lowered(base: str, index: str, remainder: str = "") -> Markup:
     """Return text with a subscript: ("θ", "max", "/α")."""
-    raised = tag("tspan", rest, dy="-2") if rest else Markup("")
+    raised = tag("tspan", remainder, dy="-2") if remainder else Markup("")
     return join(base, tag("tspan", index, dy="2", class_="sub"), raised)
 
 
@@ -69,8 +69,8 @@ def rectangle(x: float, y: float, width: float, height: float, class_: str) -> M
 
 
 def line(x1: float, y1: float, x2: float, y2: float, class_: str, title: str | None = None) -> Markup:
-    said = tag("title", title) if title else Markup("")
-    return tag("line", said, x1=_short(x1), y1=_short(y1), x2=_short(x2), y2=_short(y2), class_=class_)
+    tooltip = tag("title", title) if title else Markup("")
+    return tag("line", tooltip, x1=_short(x1), y1=_short(y1), x2=_short(x2), y2=_short(y2), class_=class_)
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
@@ -90,7 +90,7 @@ def key(entries: Sequence[Entry]) -> Markup:
     ]
     return tag(
         "ul",
-        *(tag("li", shown, tag("span", says)) for shown, (_, says) in zip(pictures, entries, strict=True)),
+        *(tag("li", shown, tag("span", label)) for shown, (_, label) in zip(pictures, entries, strict=True)),
         class_="key",
     )
 
@@ -111,9 +111,9 @@ def side_by_side(drawn: Iterable[tuple[str, Markup, Sequence[Entry]]], width: fl
     """Arrange pictures with titles beside each other as room permits, over one legend without repeated entries."""
     entries: dict[str, Markup] = {}
     pictures = []
-    for title, picture, own in drawn:
+    for title, picture, entries_of_picture in drawn:
         pictures.append(tag("figure", tag("figcaption", title), picture))
-        entries |= {words: shown for shown, words in own if words not in entries}
+        entries |= {words: shown for shown, words in entries_of_picture if words not in entries}
     grid = tag("div", *pictures, class_="panels", style=f"--w:{width:.0f}px")
     return join(grid, key([(shown, words) for words, shown in entries.items()]))
 
@@ -135,10 +135,10 @@ _FAR = 1e6
 
 def _relative(x: Array, y: Array) -> str:
     """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
-    there = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
+    in_range = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
     parts = []
-    for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(there.astype(np.int8))) + 1):
-        if len(piece) == 0 or not there[piece[0]]:
+    for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(in_range.astype(np.int8))) + 1):
+        if len(piece) == 0 or not in_range[piece[0]]:
             continue
         points = np.rint(FINE * np.column_stack([x[piece], y[piece]])).astype(np.int64)
         points = points[_bends(points)]

@@ -8,17 +8,17 @@ from rockbatch.report.table import Head, listed
 from rockbatch.report.templates import render
 
 HEADS = (
-    Head("method", of="method"),
-    Head("k", ".0f", "substeps: steps per sample", of="substeps"),
-    Head("tolerance", ".0e", "on θ_max/α; SciPy's rtol", of="tolerance"),
-    Head("runs", ".0f", of="runs"),
-    Head("median error", ".1e", of="error_median"),
-    Head("95 %", ".1e", "error that 95 % of the runs keep", of="error_95"),
-    Head("largest", ".1e", of="error_max"),
-    Head("time per run [ms]", ".3g", of="milliseconds"),
+    Head("method", value="method"),
+    Head("k", ".0f", "substeps: steps per sample", value="substeps"),
+    Head("tolerance", ".0e", "on θ_max/α; SciPy's rtol", value="tolerance"),
+    Head("runs", ".0f", value="runs"),
+    Head("median error", ".1e", value="error_median"),
+    Head("95 %", ".1e", "error that 95 % of the runs keep", value="error_95"),
+    Head("largest", ".1e", value="error_max"),
+    Head("time per run [ms]", ".3g", value="milliseconds"),
     Head(
         "other outcome", ".0f", "runs that end otherwise than the reference: overturned, flight",
-        of=lambda level: level["status_differs"] or None,
+        value=lambda level: level["status_differs"] or None,
     ),
 )  # fmt: skip
 

@@ -60,16 +60,16 @@ def _responses(finished: Finished) -> Facts:
     for name, worst in largest.items():
         words, run = RESPONSES[name].words, worst.run
         rotation = name == "theta_max_over_alpha"
-        when = f", at t = {number(float(run['t_max_s']))} s" if rotation else ""
-        where = f": {finished.label(run['record'])}, case {finished.which(run)}{when}"
+        time = f", at t = {number(float(run['t_max_s']))} s" if rotation else ""
+        place = f": {finished.label(run['record'])}, case {finished.case_of(run)}{time}"
         if first.setdefault(run.name, words) != words:
-            where = f", in the run of the greatest {first[run.name]}"
+            place = f", in the run of the greatest {first[run.name]}"
         lean = " (mostly the lean of a base that has yielded)" if rotation and run["theta_max_is"] else ""
         qualifier = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
-        facts.append((words, join(tag("strong", in_words(worst)), lean, qualifier, where)))
+        facts.append((words, join(tag("strong", in_words(worst)), lean, qualifier, place)))
     if all(worst.case["base"] == "rigid" for worst in finished.worst):
-        held = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
-        facts.append(("of the supports", join(f"no settlement: the ground is rigid{held}")))
+        exception = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
+        facts.append(("of the supports", join(f"no settlement: the ground is rigid{exception}")))
     return facts
 
 
@@ -77,24 +77,24 @@ def _of_devices(finished: Finished) -> Facts:
     """Return the greatest force of devices, in kN if the mass is known, and the greatest stroke, yield or deflection."""
     stood = finished.runs["status"] == "ok"
     facts: Facts = []
-    for device, way, words in (
+    for device, quantity, words in (
         ("damper", "damper_stroke_m", "stroke"),
         ("tendon", "tendon_yield_m", "plastic elongation"),
         ("stop", "stop_deflection_m", "deflection"),
         ("deck_spring", "deck_spring_deflection_m", "deflection"),
     ):
-        if way not in finished.runs or finished.runs.loc[stood, way].isna().all():
+        if quantity not in finished.runs or finished.runs.loc[stood, quantity].isna().all():
             continue
         runs = finished.runs[stood]
         weighed = f"{device}_force_kN" in runs and runs[f"{device}_force_kN"].notna().any()
         forces = runs[f"{device}_force_kN" if weighed else f"{device}_force_over_weight"]
-        hardest, longest = (runs.iloc[int(np.nanargmax(values))] for values in (forces, runs[way]))
+        hardest, longest = (runs.iloc[int(np.nanargmax(values))] for values in (forces, runs[quantity]))
         force = f"{forces.max():,.0f} kN" if weighed else f"{forces.max():.3g} of the pier's weight"
         moved = join(f"no {words}")
-        if longest[way] > 0.0:
-            where = f": {finished.label(longest['record'])}, case {finished.which(longest)}"
-            moved = join(f"{words} at most ", tag("strong", f"{1000 * longest[way]:,.3g} mm"), where)
-        bears = join("force of one at most ", tag("strong", force), f" ({finished.which(hardest)}); ")
+        if longest[quantity] > 0.0:
+            place = f": {finished.label(longest['record'])}, case {finished.case_of(longest)}"
+            moved = join(f"{words} at most ", tag("strong", f"{1000 * longest[quantity]:,.3g} mm"), place)
+        bears = join("force of one at most ", tag("strong", force), f" ({finished.case_of(hardest)}); ")
         facts.append((f"{device.replace('_', ' ')}s", join(bears, moved)))
     return facts
 
@@ -105,7 +105,7 @@ def _by_case(finished: Finished) -> Facts:
     stood = len(rotations) == len(finished.cases) and (finished.runs["status"] == "ok").all()
     if not stood or not 1 < len(rotations) <= MOST_COMPARED:
         return []
-    words = (f"{worst.value:.4f} α ({finished.which(worst.run)})" for worst in rotations)
+    words = (f"{worst.value:.4f} α ({finished.case_of(worst.run)})" for worst in rotations)
     return [("rotation by case", join("; ".join(words)))]
 
 

@@ -60,7 +60,7 @@ def _table(finished: Finished, runs: Sequence[Run]) -> Markup:
         series, pier = finished.place(run["case"], run)
         rows.setdefault((run["record"], pier, run["scale"], run["polarity"]), {})[series] = run
     signs, scales = {key[3] for key in rows}, {key[2] for key in rows}
-    places = sorted({place for same in rows.values() for place in same if finished.series[place].rigid})
+    places = sorted({place for of_row in rows.values() for place in of_row if finished.series[place].rigid})
     computed = [finished.series[place].label for place in places]
     heads = [
         Head("record"),
@@ -72,9 +72,9 @@ def _table(finished: Finished, runs: Sequence[Run]) -> Markup:
         *(Head(name, THETA_FORMAT, "theta_max_over_alpha", "computed θ/α") for name in computed),
     ]
     written = []
-    for (record, place_of_pier, scale, sign), same in rows.items():
-        first = next(iter(same.values()))
-        peaks = [_computed(same.get(place)) for place in places]
+    for (record, place_of_pier, scale, sign), of_row in rows.items():
+        first = next(iter(of_row.values()))
+        peaks = [_computed(of_row.get(place)) for place in places]
         names = [finished.shown(record), finished.piers[place_of_pier] or None, scale if len(scales) > 1 else None]
         estimates = (_estimate(first, method) for method in DAMPING)
         row = [*names, sign if len(signs) > 1 else None, first["pga_over_g_tan_alpha"], *estimates, *peaks]

@@ -27,17 +27,17 @@ def section(finished: Finished) -> Markup:
         return Markup("")
 
     def cells(run: dict[str, Any]) -> list[object]:
-        return [finished.which(run), *(on_scale(column.name, run[column.name]) for column in shown)]
+        return [finished.case_of(run), *(on_scale(column.name, run[column.name]) for column in shown)]
 
     heads = [Head("record"), Head("case"), *map(head, shown)]
     places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
-    asked = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
+    demands = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
     return render(
         "sections/forces.html", of_cases=_of_cases(finished, shown),
         every_run=every_run(finished, heads, cells, "Forces of every run"),
-        interfaces=bool(np.isfinite(available).any()), slides=int((asked > available).sum()),
-        known=int((np.isfinite(available) & ~np.isnan(asked)).sum()),
+        interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
+        known=int((np.isfinite(available) & ~np.isnan(demands)).sum()),
         frames=any("deck_over_columns" in case["pier"] for case in finished.info["cases"]),
         bounds=bool(finished.runs["status"].isin(_CUT_SHORT).any()),
     )  # fmt: skip

@@ -52,9 +52,9 @@ def _panels(info: Mapping[str, Any]) -> Markup:
     drawn = []
     for name, curves in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
         for first in range(0, len(curves), CASES_OF_A_PANEL):
-            some = curves[first : first + CASES_OF_A_PANEL]
-            title = tag("figcaption", tag("span", name), " ", tag("span", some[0]["words"], class_="muted"))
-            drawn.append(tag("figure", title, _panel(info, some, styles)))
+            group = curves[first : first + CASES_OF_A_PANEL]
+            title = tag("figcaption", tag("span", name), " ", tag("span", group[0]["words"], class_="muted"))
+            drawn.append(tag("figure", title, _panel(info, group, styles)))
     shown = [(join(_stroke(colour), marker(shape, 11, 7, colour=f"s{colour}")), name)
              for name, (shape, colour) in styles.items()]  # fmt: skip
     grid = tag("div", *drawn, class_="panels", style=f"--w:{WIDTH:.0f}px", role="group", aria_label="Fragility curves")
@@ -95,8 +95,8 @@ def _panel(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping[str
         drawn += _drawn(axes, entry, *styles[label(entry)])
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
     drawn.append(text(axes.left - 26, 11, "probability", class_="q"))
-    said = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
-    return svg(WIDTH, HEIGHT, *drawn, description=said, class_="plot marks")
+    description = f"Probability of {curves[0]['limit_state']} over {info['measure']}"
+    return svg(WIDTH, HEIGHT, *drawn, description=description, class_="plot marks")
 
 
 def _strips(axes: Axes, curves: Sequence[Curve], styles: Mapping[str, tuple[str, int]]) -> Iterator[Markup]:
@@ -134,13 +134,13 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
         exceeded, undecided, records = point["exceeded"], point["undecided"], point["records"]
         if undecided:
             least, most = (float(axes.down(k / records)) for k in (exceeded, exceeded + undecided))
-            yield line(across, least, across, most, class_, _said(entry, point))
+            yield line(across, least, across, most, class_, _label_of_point(entry, point))
         if records > undecided:
             share = float(axes.down(exceeded / (records - undecided)))
-            yield marker(shape, across, share, colour=class_, title=_said(entry, point))
+            yield marker(shape, across, share, colour=class_, title=_label_of_point(entry, point))
 
 
-def _said(entry: Curve, point: Mapping[str, Any]) -> str:
+def _label_of_point(entry: Curve, point: Mapping[str, Any]) -> str:
     ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
             if point[name]]  # fmt: skip
     counts = f"{label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
@@ -150,30 +150,30 @@ def _said(entry: Curve, point: Mapping[str, Any]) -> str:
 
 def _steps(axes: Axes, capacities: Sequence[float | None]) -> tuple[np.ndarray, np.ndarray]:
     """Return the share of the records whose capacity is at most x, as a staircase [px]."""
-    known = np.sort([x for x in capacities if x is not None])
-    known = np.minimum(known, axes.x.high)
-    shares = np.arange(len(known) + 1) / len(capacities)
-    x = np.concatenate(([0.0], np.repeat(known, 2), [axes.x.high]))
+    finite = np.sort([x for x in capacities if x is not None])
+    finite = np.minimum(finite, axes.x.high)
+    shares = np.arange(len(finite) + 1) / len(capacities)
+    x = np.concatenate(([0.0], np.repeat(finite, 2), [axes.x.high]))
     return axes.across(x), axes.down(np.repeat(shares, 2))
 
 
 def _table(info: Mapping[str, Any], share: str) -> Markup:
     heads = [
-        Head("limit", of="limit_state"),
-        Head("case", of=label),
-        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", of="median"),
-        Head(share, note="profile-likelihood interval of the median", of=_interval("median_interval")),
+        Head("limit", value="limit_state"),
+        Head("case", value=label),
+        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", value="median"),
+        Head(share, note="profile-likelihood interval of the median", value=_interval("median_interval")),
         Head(
             "undecided", note="the median with all undecided runs beyond the limit, and with all within it",
-            of=_interval("median_undecided"),
+            value=_interval("median_undecided"),
         ),
-        Head("dispersion", ".2f", "β: standard deviation of the logarithm", of="dispersion"),
-        Head(share, note="profile-likelihood interval of the dispersion", of=_interval("dispersion_interval")),
+        Head("dispersion", ".2f", "β: standard deviation of the logarithm", value="dispersion"),
+        Head(share, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
-             of="dispersion_total"),
-        Head("records", ".0f", "that count", of=_most("records")),
-        Head("overturned", ".0f", "largest number of records that overturn at one level", of=_most("collapsed")),
-        Head("note", of="note"),
+             value="dispersion_total"),
+        Head("records", ".0f", "that count", value=_greatest("records")),
+        Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
+        Head("note", value="note"),
     ]  # fmt: skip
     return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
 
@@ -185,7 +185,7 @@ def _factors(info: Mapping[str, Any]) -> Markup:
         return Markup("")
     heads = [
         Head("record"),
-        *(Head(f"{level:g}", over=f"{info['measure']} [{info['unit']}]") for level in info["levels"]),
+        *(Head(f"{level:g}", group=f"{info['measure']} [{info['unit']}]") for level in info["levels"]),
     ]
     rows = [
         [name, *(_factor(factor, use) for factor, use in zip(factors, used, strict=True))]
@@ -201,7 +201,7 @@ def _factor(factor: float | None, used: bool) -> str:
     return f"{factor:.2f}" if used else f"({factor:.2f})"
 
 
-def _most(name: str) -> Callable[[Curve], object]:
+def _greatest(name: str) -> Callable[[Curve], object]:
     """Return a function to the largest number of records at a level; of a cloud to their sum."""
     return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
 

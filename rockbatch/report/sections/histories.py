@@ -41,65 +41,65 @@ def section(finished: Finished) -> Markup:
 
 def _pictures(finished: Finished, responses: Sequence[Response]) -> list[dict[str, Any]]:
     """Draw a picture for each pier: a column for every response, or for the worst of many; with what its caption depends on."""
-    kept = _kept(finished, responses)
-    numbers = _chosen(finished, kept)
+    rows = _rows_of(finished, responses)
+    numbers = _chosen(finished, rows)
     same_motion = itemgetter("record", "polarity", "scale", "pier")
-    rigid = {same_motion(run): number for number, run in reversed([*enumerate(kept)]) if run["rigid"]}
-    behind = {number: None if kept[number]["rigid"] else rigid.get(same_motion(kept[number])) for number in numbers}
+    rigid = {same_motion(run): number for number, run in reversed([*enumerate(rows)]) if run["rigid"]}
+    behind = {number: None if rows[number]["rigid"] else rigid.get(same_motion(rows[number])) for number in numbers}
     # A rigid base drawn behind another column needs none of its own
     columns = [number for number in numbers if number not in behind.values()]
-    there = {number for number in (*columns, *behind.values()) if number is not None}
-    drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(there)}
+    needed = {number for number in (*columns, *behind.values()) if number is not None}
+    drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(needed)}
     pictures = []
-    for pier, same in grouped(columns, lambda number: kept[number]["pier"]).items():
-        same.sort(key=lambda number: (not kept[number]["rigid"], kept[number]["index"]))
-        seen = [drawn[number] for column in same for number in (column, behind[column]) if number is not None]
-        scales = [_scale(seen, row) for row in range(len(QUANTITIES))]
+    for pier, of_pier in grouped(columns, lambda number: rows[number]["pier"]).items():
+        of_pier.sort(key=lambda number: (not rows[number]["rigid"], rows[number]["index"]))
+        histories = [drawn[number] for column in of_pier for number in (column, behind[column]) if number is not None]
+        scales = [_scale(histories, row) for row in range(len(QUANTITIES))]
         # As many loops below each column, so that columns beside each other line up
-        shown = [drawn[number] for number in same]
+        shown = [drawn[number] for number in of_pier]
         devices = max(len(history.devices) for history in shown)
         loops = any(history.loops for history in shown)
         feet = [*([0] if loops else []), *range(1, 1 + devices)]
         cells = []
-        for number in same:
-            back, record = behind[number], finished.label(kept[number]["record"])
+        for number in of_pier:
+            back, record = behind[number], finished.label(rows[number]["record"])
             drawing = picture(drawn[number], None if back is None else drawn[back], scales, record, feet)
-            cells.append(tag("figure", tag("figcaption", _title(finished, kept[number])), drawing))
+            cells.append(tag("figure", tag("figcaption", _title(finished, rows[number])), drawing))
         grid = tag("div", *cells, class_="histories", style=f"--w:{LEFT + WIDTH + 6:.0f}px")
         pictures.append({
             "pier": finished.piers[pier], "grid": grid, "loops": loops, "devices": devices,
             "flights": any(len(history.flights) for history in shown), "bands": any(history.band for history in shown),
-            "lines": any(behind[number] is not None for number in same),
+            "lines": any(behind[number] is not None for number in of_pier),
         })  # fmt: skip
     return pictures
 
 
-def _kept(finished: Finished, responses: Sequence[Response]) -> list[Row]:
+def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
     """Return the runs that have histories, without reading these."""
     if isinstance(responses, Responses):
         runs = as_dicts(responses.runs)
     else:
         names = ("record", "case", "polarity", "scale", "status")
         runs = [{name: getattr(response, name) for name in names} | response.columns for response in responses]
-    kept = []
+    rows = []
     for run in runs:
         series, pier = finished.place(run["case"], run)
-        own = finished.series[series]
-        kept.append(run | {"series": series, "pier": pier, "rigid": own.rigid, "index": own.index})
-    return kept
+        foundation = finished.series[series]
+        rows.append(run | {"series": series, "pier": pier, "rigid": foundation.rigid, "index": foundation.index})
+    return rows
 
 
-def _chosen(finished: Finished, kept: Sequence[Row]) -> list[int]:
+def _chosen(finished: Finished, rows: Sequence[Row]) -> list[int]:
     """Return the numbers of the runs to show: all, or of many the worst of each case, and of many cases the worst."""
-    if len(kept) <= MOST_COLUMNS:
-        return list(range(len(kept)))
+    if len(rows) <= MOST_COLUMNS:
+        return list(range(len(rows)))
     names = ["record", "polarity", "scale", "series", "pier"]
-    number_of = {tuple(run[name] for name in names): number for number, run in enumerate(kept)}
+    number_of = {tuple(run[name] for name in names): number for number, run in enumerate(rows)}
     ordered = worst_first(finished.runs, len(finished.runs)).drop_duplicates(names)[names].itertuples(index=False)
-    seen, numbers = set(), []
+    pairs, numbers = set(), []
     for key in map(tuple, ordered):
-        if key in number_of and key[3:] not in seen:
-            seen.add(key[3:])
+        if key in number_of and key[3:] not in pairs:
+            pairs.add(key[3:])
             numbers.append(number_of[key])
     return numbers[:MOST_COLUMNS]
 
@@ -111,12 +111,12 @@ def _scale(shown: Sequence[History], row: int) -> Scale:
     return spanning(*(history.curves[row][1] for history in stood), *bands)
 
 
-def _standing(own: History, row: int) -> Array:
+def _standing(history: History, row: int) -> Array:
     """Return a quantity until the pier overturns, since later values would hide how it rocked."""
-    t, theta = own.curves[0]
-    over = np.flatnonzero(np.abs(theta) > OVER)
-    times, values = own.curves[row]
-    return values[times <= t[over[0]]] if len(over) else values
+    t, theta = history.curves[0]
+    beyond = np.flatnonzero(np.abs(theta) > OVER)
+    times, values = history.curves[row]
+    return values[times <= t[beyond[0]]] if len(beyond) else values
 
 
 def _title(finished: Finished, run: Row) -> Markup:
@@ -127,33 +127,33 @@ def _title(finished: Finished, run: Row) -> Markup:
 
 
 def picture(
-    own: History, behind: History | None, scales: Sequence[Scale], record: str, feet: Sequence[int] = ()
+    history: History, behind: History | None, scales: Sequence[Scale], record: str, feet: Sequence[int] = ()
 ) -> Markup:
     """Draw a column of histories; ``feet`` are the loops below it: 0 for those of springs, from 1 on for devices."""
-    end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
+    end = max(history.end[0], behind.end[0] if behind else 0.0) or 1.0
     drawn: list[Markup] = []
     for row, (top, height) in enumerate(zip(TOPS, HEIGHTS, strict=True)):
-        scale = scales[row] if own.status == "ok" else spanning(_standing(own, row))
+        scale = scales[row] if history.status == "ok" else spanning(_standing(history, row))
         axes = Axes(LEFT, top, WIDTH, height, Scale(0, end), scale)
-        if row == 0 and own.band:
-            y = np.clip(axes.down(np.array([own.band, -own.band])), top, top + height)
+        if row == 0 and history.band:
+            y = np.clip(axes.down(np.array([history.band, -history.band])), top, top + height)
             drawn.append(rectangle(LEFT, y[0], WIDTH, y[1] - y[0], "band"))
         drawn.append(axes.frame(axes.x.ticks(4), scale.ticks(5 if row == 0 else 4), x_numbers=row == len(TOPS) - 1))
-        curves = [_curve(axes, *own.curves[row], "curve rigid" if own.rigid else "curve", QUANTITIES[row])]
+        curves = [_curve(axes, *history.curves[row], "curve rigid" if history.rigid else "curve", QUANTITIES[row])]
         if behind is not None and row < 3:
             curves.insert(0, _curve(axes, *behind.curves[row], "curve behind", f"{QUANTITIES[row]}, rigid base"))
         drawn.append(axes.readable("time", *curves))
         if row == 0:
-            drawn.append(_events(axes, own))
+            drawn.append(_events(axes, history))
         drawn.append(text(LEFT - 2, top - 5, LABELS[row], class_="q"))
     drawn.append(text(LEFT + WIDTH / 2, FOOT - 4, "t [s]", class_="m q"))
     height = FOOT
     for row in feet:
-        if row < len(own.devices) + 1:
-            drawn.append(tag("g", (own.loops, *own.devices)[row], transform=f"translate(0 {height:g})"))
+        if row < len(history.devices) + 1:
+            drawn.append(tag("g", (history.loops, *history.devices)[row], transform=f"translate(0 {height:g})"))
         height += LOOPS_HEIGHT
-    said = f"Rotation, velocity, energy and ground acceleration against time under {record}"
-    return svg(LEFT + WIDTH + 6, height, *drawn, description=said, class_="plot readings")
+    description = f"Rotation, velocity, energy and ground acceleration against time under {record}"
+    return svg(LEFT + WIDTH + 6, height, *drawn, description=description, class_="plot readings")
 
 
 def _curve(axes: Axes, t: Array, y: Array, class_: str, name: str) -> Markup:
@@ -161,21 +161,21 @@ def _curve(axes: Axes, t: Array, y: Array, class_: str, name: str) -> Markup:
     return curve(axes.across(t), axes.down(inside), class_, name)
 
 
-def _events(axes: Axes, own: History) -> Markup:
+def _events(axes: Axes, h: History) -> Markup:
     """Draw impacts at the foot, separations at the top, flights across, the peak with its value, and the end of the run."""
     foot, marks = axes.top + axes.height, []
-    for times, start, way in ((own.impacts, foot, -5), (own.separations, axes.top, 5)):
-        strokes = "".join(f"M{x:.1f} {start:.1f}v{way}" for x in axes.across(times))
+    for times, start, length in ((h.impacts, foot, -5), (h.separations, axes.top, 5)):
+        strokes = "".join(f"M{x:.1f} {start:.1f}v{length}" for x in axes.across(times))
         marks.append(tag("path", d=strokes, class_="event") if strokes else Markup(""))
-    marks += [line(float(x), axes.top, float(x), foot, "flown") for x in axes.across(own.flights)]
-    x, y = float(axes.across(own.peak[0])), float(axes.down(np.clip(own.peak[1], axes.y.low, axes.y.high)))
-    if own.status == "ok" and own.peak[1] != 0:
+    marks += [line(float(x), axes.top, float(x), foot, "flown") for x in axes.across(h.flights)]
+    x, y = float(axes.across(h.peak[0])), float(axes.down(np.clip(h.peak[1], axes.y.low, axes.y.high)))
+    if h.status == "ok" and h.peak[1] != 0:
         to_the_left = x > LEFT + 0.75 * WIDTH
         value = text(
-            x + (-4 if to_the_left else 4), y + 3, f"{abs(own.peak[1]):.4f}", class_="e peak" if to_the_left else "peak"
+            x + (-4 if to_the_left else 4), y + 3, f"{abs(h.peak[1]):.4f}", class_="e peak" if to_the_left else "peak"
         )
         marks += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r="2.2", class_="peak"), value]
-    if own.status in ("overturned", "flight"):
-        end = float(axes.across(own.end[0])), float(axes.down(np.clip(own.end[1], axes.y.low, axes.y.high)))
-        marks.append(marker(own.status, *end, colour="alarm"))
+    if h.status in ("overturned", "flight"):
+        end = float(axes.across(h.end[0])), float(axes.down(np.clip(h.end[1], axes.y.low, axes.y.high)))
+        marks.append(marker(h.status, *end, colour="alarm"))
     return join(*marks)

@@ -36,11 +36,11 @@ def _order(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:
     names = list(dict.fromkeys(order["measure"]))
     ranks: list[list[object]] = []
     lines: list[list[object]] = []
-    for key, same in order.groupby(["case", *varied, "scale"], sort=False, dropna=False):
+    for key, group in order.groupby(["case", *varied, "scale"], sort=False, dropna=False):
         series, pier = finished.place(str(key[0]), dict(zip(varied, key[1:-1], strict=True)))
         words = ", ".join(filter(None, (finished.series[series].label, finished.piers[pier])))
-        by = same.set_index("measure")
-        rho, sigma, first = by["rank_correlation"], by["dispersion"], by.iloc[0]
+        by_measure = group.set_index("measure")
+        rho, sigma, first = by_measure["rank_correlation"], by_measure["dispersion"], by_measure.iloc[0]
         case = [words, float(first["scale"]) if many_scales else None]
         best = _symbol(rho.idxmax()) if rho.notna().any() else "—"
         ranks.append([*case, first["runs"], first["without_peak"], best, *(_shown(rho[name]) for name in names)])

@@ -14,32 +14,32 @@ PULSE_LIKE = (
 )
 Record = Mapping[str, Any]
 COLUMNS = (
-    Head("station", note="its components count as one record", of="station"),
-    Head("PGA [g]", ".3f", of="pga_g"),
-    Head("PGV [m/s]", ".3f", of="pgv_m_s"),
-    Head("PGD [m]", ".3f", of="pgd_m"),
-    Head("vertical PGA [g]", ".3f", of="pga_v_g"),
-    Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity", of="arias_m_s"),
-    Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity", of="d5_95_s"),
-    Head("dt [s]", of="dt_s"),
-    Head("points", of="npts"),
-    Head("length [s]", ".2f", "duration_s: from the first to the last sample", of="duration_s"),
+    Head("station", note="its components count as one record", value="station"),
+    Head("PGA [g]", ".3f", value="pga_g"),
+    Head("PGV [m/s]", ".3f", value="pgv_m_s"),
+    Head("PGD [m]", ".3f", value="pgd_m"),
+    Head("vertical PGA [g]", ".3f", value="pga_v_g"),
+    Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity", value="arias_m_s"),
+    Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity", value="d5_95_s"),
+    Head("dt [s]", value="dt_s"),
+    Head("points", value="npts"),
+    Head("length [s]", ".2f", "duration_s: from the first to the last sample", value="duration_s"),
     Head(
         "processed", note="whether its agency has corrected it; empty: the file does not say",
-        of=lambda record: {True: "yes", False: "no"}.get(record.get("processed", "")),
+        value=lambda record: {True: "yes", False: "no"}.get(record.get("processed", "")),
     ),
     Head(
         "to check", note="what is odd about it; the notes below say more",
-        of=lambda record: ", ".join(finding["what"] for finding in record.get("findings", [])) or None,
+        value=lambda record: ", ".join(finding["what"] for finding in record.get("findings", [])) or None,
     ),
-    Head("azimuth [°]", note="degrees clockwise from north", of="azimuth_deg"),
-    Head("M", note="magnitude", of="magnitude"),
-    Head("distance [km]", of="distance_km"),
-    Head("factor", ".4g", "what brought the record to the study's target", of="factor"),
-    Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", of="vertical_factor"),
-    Head("pulse-like", note=PULSE_LIKE, of="pulse"),
-    Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", of="pulse_indicator"),
-    Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", of="pulse_period_s"),
+    Head("azimuth [°]", note="degrees clockwise from north", value="azimuth_deg"),
+    Head("M", note="magnitude", value="magnitude"),
+    Head("distance [km]", value="distance_km"),
+    Head("factor", ".4g", "what brought the record to the study's target", value="factor"),
+    Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", value="vertical_factor"),
+    Head("pulse-like", note=PULSE_LIKE, value="pulse"),
+    Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", value="pulse_indicator"),
+    Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", value="pulse_period_s"),
 )  # fmt: skip
 """Columns of the table of ground motions; those of a name hold that value of run.json."""
 
@@ -51,19 +51,19 @@ def section(finished: Finished) -> Markup:
     caption = "before the study's scale."
     drawn = Markup("") if "target" in finished.info else spectra(finished, caption)
     records = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
-    name = Head("record", of=lambda record: finished.shown(record["record"]))
+    name = Head("record", value=lambda record: finished.shown(record["record"]))
     scaled = any(record.get("factor", 1.0) != 1.0 for record in records)
-    heads = [name, *(head for head in COLUMNS if scaled or head.of != "factor")]
+    heads = [name, *(head for head in COLUMNS if scaled or head.value != "factor")]
     lacking = finished.info.get("without_vertical")
-    without = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
+    no_vertical = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
     sources = [
         name,
-        Head("horizontal from", of=lambda record: _path(record["source"])),
-        Head("vertical from", of=lambda record: _path(record["vertical_source"])),
-        Head("what was done", of=_done),
+        Head("horizontal from", value=lambda record: _path(record["source"])),
+        Head("vertical from", value=lambda record: _path(record["vertical_source"])),
+        Head("what was done", value=_processing),
     ]
     return join(
-        drawn, listed(heads, records, sortable=True, name="Ground motions"), without,
+        drawn, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
         tag("h3", "Where they come from, and what was done to them"), listed(sources, records, prose=True, name="Sources"),
     )  # fmt: skip
 
@@ -82,7 +82,7 @@ def _path(source: str | None) -> object:
     return source and tag("span", source, class_="path")
 
 
-def _done(record: Record) -> object:
+def _processing(record: Record) -> object:
     return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
 
 
@@ -91,12 +91,14 @@ def unusable(finished: Finished) -> Markup:
     rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
     failed = finished.runs[finished.runs["status"] == "failed"]
     most = max(MOST_ROWS - len(rows), 0)
-    rows += [[finished.shown(run["record"]), finished.which(run), "", run["reason"]] for run in as_dicts(failed[:most])]
+    rows += [
+        [finished.shown(run["record"]), finished.case_of(run), "", run["reason"]] for run in as_dicts(failed[:most])
+    ]
     rows += [[]] * (len(failed) - most)  # not shown
     heads = [Head("record"), Head("case"), Head("file"), Head("why")]
     drawn = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
-    left = finished.info.get("left_out")
-    if not left:
+    left_out = finished.info.get("left_out")
+    if not left_out:
         return drawn
-    heads = [Head("record", of="name"), Head("file", of="source"), Head("why", of="reason")]
-    return join(drawn, tag("h3", "Left out"), listed(heads, left, prose=True, name="Left out"))
+    heads = [Head("record", value="name"), Head("file", value="source"), Head("why", value="reason")]
+    return join(drawn, tag("h3", "Left out"), listed(heads, left_out, prose=True, name="Left out"))

@@ -43,7 +43,7 @@ def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str
         return Markup("")
     heads = [Head("record"), Head("PGA [g]", ".3f")]
     heads += [
-        Head(own.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, own in series for sign in signs
+        Head(f.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, f in series for sign in signs
     ]
     stood = runs[runs["status"] == "ok"]["theta_max_over_alpha"]
     shown = runs[runs["record"].isin(records)]
@@ -86,7 +86,7 @@ def _every_run(finished: Finished) -> Markup:
     names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component")
-    columns = {column.name: head(column) for column in on_page() if column.of and column.name in runs}
+    columns = {column.name: head(column) for column in on_page() if column.source and column.name in runs}
     columns |= {
         name: Head(name)
         for name in map(str, finished.saved.peaks)
@@ -120,11 +120,11 @@ def _cell(name: str, value: Any) -> object:
 
 def _settlement(run: dict[str, Any]) -> object:
     """Return the settlement [mm] of a run; by two spring laws, the range between both."""
-    own, other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
-    if own is None or other is None:
-        return own
+    by_law, by_other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
+    if by_law is None or by_other is None:
+        return by_law
     form = COLUMNS["settlement_m"].page
-    low, high = (number(value, form.form if form else ".2f") for value in sorted((own, other)))
+    low, high = (number(value, form.form if form else ".2f") for value in sorted((by_law, by_other)))
     return Markup(low if low == high else f"{low}\u00a0–\u00a0{high}")
 
 

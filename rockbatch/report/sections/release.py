@@ -30,11 +30,13 @@ def section(contents: Contents) -> Markup:
     if fits is None or impacts is None or history is None:
         return Markup("")
     keys = ["case", *analysis.info["varied"]]
-    own = [{name: part for name, part in table.groupby(keys, sort=False, dropna=False)} for table in (impacts, history)]
+    by_case = [
+        {name: part for name, part in table.groupby(keys, sort=False, dropna=False)} for table in (impacts, history)
+    ]
     drawn, numbers = [], []
-    for names, measured in own[0].items():
+    for names, measured in by_case[0].items():
         title = named(dict(zip(keys, names, strict=True)), keys)
-        drawn.append((title, _picture(measured, own[1][names]), _legend()))
+        drawn.append((title, _picture(measured, by_case[1][names]), _legend()))
         numbers.append(_numbers(measured, title))
     lead = (
         "What the pier loses, fitted to the measured times and amplitudes, and the interval of the fit. In the pictures a "
@@ -47,27 +49,27 @@ def section(contents: Contents) -> Markup:
 def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
     """Return the table of what was fitted."""
     heads = [
-        Head("case", of=lambda fit: named(fit, keys)), Head("fitted", of="parameter"), Head("value", ".4g", of="value"),
-        Head("interval", of=_interval),
-        Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", of="scatter"),
-        Head("of Housner's", ".3f", "over the value that keeps the angular momentum", of="over_housner"),
+        Head("case", value=lambda fit: named(fit, keys)), Head("fitted", value="parameter"), Head("value", ".4g", value="value"),
+        Head("interval", value=_interval),
+        Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
+        Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
     ]  # fmt: skip
-    said = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
-    return join(listed(heads, as_dicts(fits), name="Fitted to the release test"), *(tag("p", words) for words in said))
+    notes = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
+    return join(listed(heads, as_dicts(fits), name="Fitted to the release test"), *(tag("p", words) for words in notes))
 
 
 def _interval(fit: Mapping[str, Any]) -> str:
     return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
 
 
-def _numbers(own: "pd.DataFrame", title: str) -> Markup:
+def _numbers(impacts: "pd.DataFrame", title: str) -> Markup:
     """Return the table of impacts, measured and computed."""
-    heads, kinds = [Head("impact", "d", of="impact")], {
+    heads, kinds = [Head("impact", "d", value="impact")], {
         "t": ("_s", "time [s]", ".4f"), "amplitude": ("_rad", "amplitude [rad]", ".5f"), "restitution": ("", "apparent e", ".3f"),
     }  # fmt: skip
     for name, (unit, over, form) in kinds.items():
-        heads += [Head(how, form, over=over, of=f"{name}_{how}{unit}") for how in ("measured", "computed")]
-    return listed(heads, as_dicts(own), name=f"Impacts of {title}, measured and computed")
+        heads += [Head(origin, form, group=over, value=f"{name}_{origin}{unit}") for origin in ("measured", "computed")]
+    return listed(heads, as_dicts(impacts), name=f"Impacts of {title}, measured and computed")
 
 
 def _legend() -> list[tuple[Markup, str]]:
@@ -77,17 +79,17 @@ def _legend() -> list[tuple[Markup, str]]:
     ]  # fmt: skip
 
 
-def _picture(own: "pd.DataFrame", way: "pd.DataFrame") -> Markup:
+def _picture(impacts: "pd.DataFrame", history: "pd.DataFrame") -> Markup:
     """Draw the rotation, with the measured values on it."""
-    t, theta = way["t_s"].to_numpy(float), way["theta_rad"].to_numpy(float)
-    at, when = own["t_amplitude_computed_s"].to_numpy(float), own["t_measured_s"].to_numpy(float)
-    amplitude = own["amplitude_measured_rad"].to_numpy(float)
+    t, theta = history["t_s"].to_numpy(float), history["theta_rad"].to_numpy(float)
+    t_amplitude, t_impact = impacts["t_amplitude_computed_s"].to_numpy(float), impacts["t_measured_s"].to_numpy(float)
+    amplitude = impacts["amplitude_measured_rad"].to_numpy(float)
     most = 1.08 * max(float(np.abs(theta).max()), float(np.nan_to_num(amplitude).max()))
     axes = Axes(52, 20, WIDTH - 64, HEIGHT - 58, Scale(float(t[0]), float(t[-1])), Scale(-most, most))
-    points = [("diamond", x, 0.0, f"impact at {x:.4g} s") for x in when if t[0] <= x <= t[-1]]
+    points = [("diamond", x, 0.0, f"impact at {x:.4g} s") for x in t_impact if t[0] <= x <= t[-1]]
     points += [
         ("disc", x, float(np.copysign(a, np.interp(x, t, theta))), f"amplitude {a:.4g} rad")
-        for x, a in zip(at, amplitude, strict=True)
+        for x, a in zip(t_amplitude, amplitude, strict=True)
         if x == x and a == a
     ]
     marks = [

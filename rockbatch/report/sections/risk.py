@@ -41,8 +41,8 @@ def section(contents: Contents) -> Markup:
 def _panels(info: Mapping[str, Any], curves: Sequence[Curve]) -> Markup:
     styles = {name: style_of(i)[1] for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
     drawn = [tag("figure", tag("figcaption", "hazard of the site"), _hazard(info))]
-    for name, some in grouped(curves, lambda entry: entry["limit_state"]).items():
-        drawn.append(tag("figure", tag("figcaption", name), _densities(info, some, styles)))
+    for name, group in grouped(curves, lambda entry: entry["limit_state"]).items():
+        drawn.append(tag("figure", tag("figcaption", name), _densities(info, group, styles)))
     grid = tag("div", *drawn, class_="panels", style=f"--w:{WIDTH:.0f}px", role="group", aria_label="Annual rates")
     return join(grid, key([(line(0, 7, 22, 7, f"level s{colour}"), name) for name, colour in styles.items()]))
 
@@ -82,31 +82,31 @@ def _densities(info: Mapping[str, Any], curves: Sequence[Curve], styles: Mapping
         drawn.append(curve(axes.across(density["x"]), axes.down(density["share"]), f"level s{colour}"))
     drawn.append(text(axes.left + axes.width / 2, HEIGHT - 6, f"{info['measure']} [{info['unit']}]", class_="m q"))
     drawn.append(text(axes.left - 26, 11, "share of the rate", class_="q"))
-    said = f"Intensities from which {curves[0]['limit_state']} comes"
-    return svg(WIDTH, HEIGHT, *drawn, description=said, class_="plot marks")
+    description = f"Intensities from which {curves[0]['limit_state']} comes"
+    return svg(WIDTH, HEIGHT, *drawn, description=description, class_="plot marks")
 
 
 def _table(info: Mapping[str, Any], curves: Sequence[Curve], share: str) -> Markup:
     heads = [
-        Head("limit", of="limit_state"),
-        Head("case", of=label),
-        Head("dispersion", ".2f", "β with what the study adds", of=lambda entry: entry["risk"]["dispersion_total"]),
-        Head("rate [1/year]", note="mean annual rate of exceedance", of=lambda entry: _power(entry["risk"]["rate_per_year"])),
-        Head(share, note="what the fit leaves of the rate", of=_pair("rate_low", "rate_high")),
+        Head("limit", value="limit_state"),
+        Head("case", value=label),
+        Head("dispersion", ".2f", "β with what the study adds", value=lambda entry: entry["risk"]["dispersion_total"]),
+        Head("rate [1/year]", note="mean annual rate of exceedance", value=lambda entry: _power(entry["risk"]["rate_per_year"])),
+        Head(share, note="what the fit leaves of the rate", value=_pair("rate_low", "rate_high")),
         Head("undecided", note="the rate with all undecided runs within the limit, and with all beyond it",
-             of=_pair("rate_if_withstood", "rate_if_exceeded")),
+             value=_pair("rate_if_withstood", "rate_if_exceeded")),
         *(Head(f"in {years:g} years", note=f"probability of at least one exceedance, and what the fit leaves of it ({share})",
-               of=_chance(f"p_in_{years:g}_years")) for years in info["hazard"]["years"]),
+               value=_chance(f"p_in_{years:g}_years")) for years in info["hazard"]["years"]),
         Head(f"90 % come from [{info['unit']}]", note="intensities that contribute, but for 5 % at either end",
-             of=_contributing),
+             value=_contributing),
     ]  # fmt: skip
     return listed(heads, curves, prose=True, name="Annual rates and probabilities")
 
 
 def _notes(curves: Sequence[Curve]) -> Markup:
     """Return what the numbers do not say by themselves, a line for each curve."""
-    said = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
-    return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in said if note))
+    notes = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
+    return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))
 
 
 def _power(value: float) -> str:
@@ -130,7 +130,7 @@ def _pair(low: str, high: str) -> Callable[[Curve], object]:
 
 def _chance(name: str) -> Callable[[Curve], object]:
     def written(entry: Curve) -> Markup:
-        value, low, high = (_percent(entry["risk"][which]) for which in (name, f"{name}_low", f"{name}_high"))
+        value, low, high = (_percent(entry["risk"][key]) for key in (name, f"{name}_low", f"{name}_high"))
         return Markup(f"{value}\u00a0% ({interval(low, high)})")
 
     return written

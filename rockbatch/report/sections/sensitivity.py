@@ -35,12 +35,12 @@ def section(contents: Contents) -> Markup:
     keys = ["case", *info["varied"]]
     varying = [name for name in keys if swings[name].nunique(dropna=False) > 1]
     drawn = []
-    for names, own in swings.groupby(keys, sort=False, dropna=False):
-        both, words = own.merge(shares, on=[*keys, "parameter"]), named(dict(zip(keys, names, strict=True)), varying)
+    for names, part in swings.groupby(keys, sort=False, dropna=False):
+        rows, words = part.merge(shares, on=[*keys, "parameter"]), named(dict(zip(keys, names, strict=True)), varying)
         drawn += [
-            figure(_tornado(both), f"{words}: one input at a time, all others as in the study."),
-            figure(_bars(both), f"{words}: all inputs at once over their ranges."),
-            _numbers(both),
+            figure(_tornado(rows), f"{words}: one input at a time, all others as in the study."),
+            figure(_bars(rows), f"{words}: all inputs at once over their ranges."),
+            _numbers(rows),
         ]
     vertical = [motion["vertical"] for motion in info.get("under", [])]
     return render(
@@ -64,13 +64,13 @@ def _frame(inputs: Sequence[str], scale: Scale) -> tuple[Axes, list[Markup]]:
     return axes, [axes.frame(axes.x.ticks(5), []), *names]
 
 
-def _tornado(both: "pd.DataFrame") -> Markup:
-    ends = both[["answer_low", "answer_base", "answer_high"]].to_numpy(float)
+def _tornado(rows: "pd.DataFrame") -> Markup:
+    ends = rows[["answer_low", "answer_base", "answer_high"]].to_numpy(float)
     low, high = float(ends.min()), float(ends.max())
     room = 0.12 * (high - low) or 0.1 * abs(high) or 1.0
-    axes, drawn = _frame(both["parameter"].tolist(), Scale(max(0.0, low - room), high + room))
+    axes, drawn = _frame(rows["parameter"].tolist(), Scale(max(0.0, low - room), high + room))
     base = float(axes.across(ends[0, 1]))
-    for place, row in enumerate(as_dicts(both)):
+    for place, row in enumerate(as_dicts(rows)):
         middle = TOP + ROW * (place + 0.5)
         for colour, end, answer in (("s1", row["low"], row["answer_low"]), ("s2", row["high"], row["answer_high"])):
             x = float(axes.across(answer))
@@ -85,13 +85,13 @@ def _tornado(both: "pd.DataFrame") -> Markup:
     return _picture("One input at a time", drawn, axes, ends_in_words, (line(11, 0, 11, 14, "edge"), "as in the study"))
 
 
-def _bars(both: "pd.DataFrame") -> Markup:
-    own = both.sort_values("total", ascending=False, kind="stable")
-    whiskers = [own[name] + sign * own[f"{name}_error"] for name in ("first", "total") for sign in (-1, 1)]
+def _bars(rows: "pd.DataFrame") -> Markup:
+    ordered = rows.sort_values("total", ascending=False, kind="stable")
+    whiskers = [ordered[name] + sign * ordered[f"{name}_error"] for name in ("first", "total") for sign in (-1, 1)]
     ends = np.concatenate([np.nan_to_num(column.to_numpy(float)) for column in whiskers])
-    axes, drawn = _frame(own["parameter"].tolist(), spanning(ends))
+    axes, drawn = _frame(ordered["parameter"].tolist(), spanning(ends))
     zero = float(axes.across(0.0))
-    for place, row in enumerate(as_dicts(own)):
+    for place, row in enumerate(as_dicts(ordered)):
         for colour, name, shift in (("s1", "first", -BAR), ("s2", "total", 0)):
             if np.isnan(row[name]):
                 continue
@@ -106,22 +106,22 @@ def _bars(both: "pd.DataFrame") -> Markup:
 
 def _picture(words: str, drawn: Sequence[Markup], axes: Axes, bars: Sequence[str], *more: Entry) -> Markup:
     """Return a picture with its legend; ``bars`` is what the first and the second bar of each input stand for."""
-    entries = [(rectangle(1, 3, 20, BAR, f"filled s{i}"), says) for i, says in enumerate(bars, 1)]
+    entries = [(rectangle(1, 3, 20, BAR, f"filled s{i}"), label) for i, label in enumerate(bars, 1)]
     drawing = svg(WIDTH, TOP + axes.height + 20, *drawn, description=words, class_="plot marks alone")
     return join(drawing, key([*entries, *more]))
 
 
-def _numbers(both: "pd.DataFrame") -> Markup:
+def _numbers(rows: "pd.DataFrame") -> Markup:
     ends = ("low", "base", "high"), ("low", "study", "high")
-    heads = [Head("input", of=lambda row: _symbol(row["parameter"]))]
-    heads += [Head(says, of=_end(name)) for name, says in zip(*ends, strict=True)]
-    heads += [Head(says, ".4f", over="answer at", of=f"answer_{name}") for name, says in zip(*ends, strict=True)]
-    for name, says in (("first", "first-order"), ("total", "total")):
+    heads = [Head("input", value=lambda row: _symbol(row["parameter"]))]
+    heads += [Head(label, value=_end(name)) for name, label in zip(*ends, strict=True)]
+    heads += [Head(label, ".4f", group="answer at", value=f"answer_{name}") for name, label in zip(*ends, strict=True)]
+    for name, label in (("first", "first-order"), ("total", "total")):
         heads += [
-            Head(says, ".3f", over="Sobol index", of=name),
-            Head("±", ".3f", over="Sobol index", of=f"{name}_error"),
+            Head(label, ".3f", group="Sobol index", value=name),
+            Head("±", ".3f", group="Sobol index", value=f"{name}_error"),
         ]
-    return listed(heads, as_dicts(both), name="Sensitivity in numbers")
+    return listed(heads, as_dicts(rows), name="Sensitivity in numbers")
 
 
 def _end(name: str) -> Callable[[Mapping[str, Any]], object]:

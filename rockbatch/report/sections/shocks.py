@@ -60,7 +60,7 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
     cells = []
     for row in rows:
         series, pier = finished.place(row["case"], row)
-        which = finished.which(row | {"series": series, "pier": pier, "with_vertical": ""})
+        foundation = finished.case_of(row | {"series": series, "pier": pier, "with_vertical": ""})
         status, moving = row["shock_status"], row["moving_over_alpha"]
         stood = [None] * 5
         if status == "ok":
@@ -69,7 +69,7 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
             ]
             stood.append(1000.0 * row["settlement_m"])
         cells.append([
-            finished.shown(row["record"]), which, row["shock"], finished.shown(row["shock_record"]), row["start_s"],
+            finished.shown(row["record"]), foundation, row["shock"], finished.shown(row["shock_record"]), row["start_s"],
             row["shock_pga_g"], status if status == "ok" else alarm(status), *map(_cell, stood),
             alarm(f"{moving:.4f}") if moving > AT_REST else _cell(moving),
         ])  # fmt: skip

@@ -87,29 +87,29 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list
     finite = points[names].to_numpy(float)
     top = 1.08 * max(float(finite[np.isfinite(finite)].max(initial=0.0)), 1e-6)
     x = points[axis].to_numpy(float)
-    over = ROW * points["alpha"].nunique() + 4.0
-    axes = Axes(36, 20 + over, WIDTH - 48, HEIGHT - 58, Scale(x.min(), x.max()), Scale(0.0, top))
-    height = HEIGHT + over
+    height_above = ROW * points["alpha"].nunique() + 4.0
+    axes = Axes(36, 20 + height_above, WIDTH - 48, HEIGHT - 58, Scale(x.min(), x.max()), Scale(0.0, top))
+    height = HEIGHT + height_above
     drawn = [
-        rectangle(axes.left, axes.top - over, axes.width, over, "band"),
+        rectangle(axes.left, axes.top - height_above, axes.width, height_above, "band"),
         axes.frame(axes.x.ticks(8), axes.y.ticks(6)),
         text(axes.left + axes.width / 2, height - 6, ACROSS.get(axis, symbol(axis)), class_="m q"),
         text(axes.left - 30, 12, lowered("θ", "max", "/α"), class_="q"),
     ]
     entries: list[Entry] = []
-    for place, (alpha, own) in enumerate(points.groupby("alpha", sort=False)):
+    for place, (alpha, of_alpha) in enumerate(points.groupby("alpha", sort=False)):
         colour = f"s{place % COLOURS + 1}"
-        across = axes.across(own[axis].to_numpy(float))
+        across = axes.across(of_alpha[axis].to_numpy(float))
         for name in names:
-            y = own[name].to_numpy(float)
+            y = of_alpha[name].to_numpy(float)
             drawn.append(
                 curve(across, axes.down(np.where(np.isfinite(y), y, np.nan)), f"level {colour}{QUANTILES[name]}")
             )
-        fell = np.isinf(own["median"].to_numpy(float))
-        high = axes.top - over + 2.0 + ROW * (place + 0.5)
+        fell = np.isinf(of_alpha["median"].to_numpy(float))
+        high = axes.top - height_above + 2.0 + ROW * (place + 0.5)
         drawn += [
-            marker("overturned", at, high, colour=colour, title=f"{quantity('alpha', float(str(alpha)))}: ∞")
-            for at in across[fell]
+            marker("overturned", x_fell, high, colour=colour, title=f"{quantity('alpha', float(str(alpha)))}: ∞")
+            for x_fell in across[fell]
         ]
         entries.append((line(0, 7, 22, 7, f"level {colour}"), quantity("alpha", float(str(alpha)))))
     if np.isinf(points["median"].to_numpy(float)).any():
@@ -126,17 +126,17 @@ def _maps(analysis: FinishedAnalysis, regions: "pd.DataFrame") -> list[Markup]:
             " = 2π over its period, ", sub("a", "p"), " its peak acceleration.",
         )
     ]  # fmt: skip
-    asked = {pulse["name"]: pulse for pulse in analysis.info["maps"]}
+    pulses = {pulse["name"]: pulse for pulse in analysis.info["maps"]}
     pictures: dict[str, list[tuple[str, Markup, list[Entry]]]] = {}
-    for names, own in regions.groupby(apart, sort=False, dropna=False):
+    for names, of_map in regions.groupby(apart, sort=False, dropna=False):
         values = dict(zip(apart, names, strict=True))
-        spec = asked[values["map"]]
-        title = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}; {own['omega_p_over_p'].nunique()} frequencies"
+        spec = pulses[values["map"]]
+        title = f"{values['map']} ({spec['shape']}), {named(values, apart[1:])}; {of_map['omega_p_over_p'].nunique()} frequencies"
         caption = (
             f"Boundaries are located within {spec['tolerance']:g} along the ordinate, "
             f"and where regions begin, end or change their order within {spec['width']:g} along the abscissa, "
             "where the picture has a step. Islands may be missed that are narrower than a step of the grid both ways."
         )
-        pictures.setdefault(caption, []).append((title, *overturning_map.draw(own)))
-    drawn += [figure(side_by_side(same, WIDTH), caption) for caption, same in pictures.items()]
+        pictures.setdefault(caption, []).append((title, *overturning_map.draw(of_map)))
+    drawn += [figure(side_by_side(drawings, WIDTH), caption) for caption, drawings in pictures.items()]
     return drawn

@@ -36,7 +36,7 @@ def section(finished: Finished) -> Markup:
             devices.append("; ".join(in_words(pier, device) for device in base.restraints))
     if not sheets:
         return Markup("")
-    left = len(finished.info["cases"]) - MOST_CASES
+    omitted = len(finished.info["cases"]) - MOST_CASES
     soft = [
         f"{name}: {flexure(sheet)}" for name, sheet in sheets if (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE
     ]
@@ -46,7 +46,7 @@ def section(finished: Finished) -> Markup:
         *tables,
         tag("figure", drawing.draw(sheets), class_="whole"),
         tag("p", LEGEND, class_="legend"),
-        paragraphs(f"The first {MOST_CASES} cases are shown; `rockbatch statics` shows all." if left > 0 else ""),
+        paragraphs(f"The first {MOST_CASES} cases are shown; `rockbatch statics` shows all." if omitted > 0 else ""),
     )
 
 

@@ -37,7 +37,7 @@ def section(finished: Finished) -> Markup:
     runs, keys = finished.runs, ["scale", "pier", "series"]
     names, heads = rows_of(finished, runs, keys)
     shown = dict(islice(names.items(), MOST_ROWS))
-    sides = {str(side): same for side, same in runs.groupby("with_vertical")}
+    sides = {str(side): group for side, group in runs.groupby("with_vertical")}
     return join(shown_of(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
 
 
@@ -53,7 +53,7 @@ def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[
     shown = {keys.index(name): column for name, column in columns.items() if name in keys}
     rows = runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None)
     names = {key: [words(key[place]) for place, (_, words) in shown.items()] for key in rows}
-    return names, [Head(says) for says, _ in shown.values()]
+    return names, [Head(heading) for heading, _ in shown.values()]
 
 
 def tables(
@@ -82,24 +82,24 @@ def tables(
     grouped = [(runs[place >= 0], place[place >= 0].astype(np.int64)) for runs, place in placed]
     counted_as = [counts_as(runs, count)[0].to_list() for runs, _ in grouped]
     for column in COLUMNS.values():
-        there = all(column.name in runs for runs, _ in grouped)
-        if column.suite is None or column.page is None or not there:
+        present = all(column.name in runs for runs, _ in grouped)
+        if column.suite is None or column.page is None or not present:
             continue
-        says, form = heading(column.suite.heading), column.suite.form
+        title, form = heading(column.suite.heading), column.suite.form
         of_sides = []
         for (runs, rows), records in zip(grouped, counted_as, strict=True):
             values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
-            known = np.bincount(rows, ~np.isnan(values), len(names)) > 0
+            has_value = np.bincount(rows, ~np.isnan(values), len(names)) > 0
             of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
-            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, known, strict=True)])
+            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, has_value, strict=True)])
         cells = [
-            [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in own)]
-            for words, *own in zip(names.values(), *of_sides, strict=True)
-            if any(own)
+            [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in cells_of_sides)]
+            for words, *cells_of_sides in zip(names.values(), *of_sides, strict=True)
+            if any(cells_of_sides)
         ]
         if cells:
             drawn += [
-                tag("h3", says),
+                tag("h3", title),
                 table([*heads, *_heads(list(sides), form)], cells, name=f"Suite: {column.suite.heading}"),
             ]
     return join(*drawn)
@@ -120,22 +120,22 @@ _COLUMNS = {
 
 def _heads(sides: Sequence[str], form: str) -> list[Head]:
     heads = []
-    for name, (says, note) in _COLUMNS.items():
-        own = form if name in ("mean", "median", "low", "high", "largest") else ".0f"
-        heads += [Head(side, own, note, says) if len(sides) > 1 else Head(says, own, note) for side in sides]
+    for name, (label, note) in _COLUMNS.items():
+        fmt = form if name in ("mean", "median", "low", "high", "largest") else ".0f"
+        heads += [Head(side, fmt, note, label) if len(sides) > 1 else Head(label, fmt, note) for side in sides]
     return heads
 
 
-def _cell(own: Suite | None, name: str, form: str) -> object:
-    if own is None:
+def _cell(s: Suite | None, name: str, form: str) -> object:
+    if s is None:
         return None
-    value = getattr(own, name)
+    value = getattr(s, name)
     if name in ("overturned", "flight", "failed"):
         return alarm(str(value)) if value else value
     if isinstance(value, int):
         return value
     if math.isinf(value):
         return alarm("∞")
-    if name == "mean" and own.standing < own.count:
-        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {own.standing}", class_="muted"))
+    if name == "mean" and s.standing < s.count:
+        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {s.standing}", class_="muted"))
     return value

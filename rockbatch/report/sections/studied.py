@@ -45,7 +45,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
     return render(
         "sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
-        degrees=math.degrees, piers=list(piers.values()), given=_given(finished.pier_as_given),
+        degrees=math.degrees, piers=list(piers.values()), given=_numbers_of(finished.pier_as_given),
         drawn=_drawn(finished), vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
@@ -70,7 +70,7 @@ def _drawn(finished: Finished) -> list[Markup]:
     return drawing.piers(piers, {case["base"] for case in finished.info["cases"]})
 
 
-def _given(pier: Mapping[str, Any]) -> list[str]:
+def _numbers_of(pier: Mapping[str, Any]) -> list[str]:
     """Return the numbers of the pier in the units of the study file; those that vary are in the tables."""
     parts = pier.get("part", ())
     words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
@@ -119,8 +119,8 @@ def _foundations(finished: Finished) -> Markup:
         Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
         Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
     ]
-    given = ("epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
-    names = ("beta", "eta", *in_kilonewtons, *given)
+    keys = ("epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    names = ("beta", "eta", *in_kilonewtons, *keys)
     rows = []
     for case in finished.info["cases"]:
         values = case["parameters"]

@@ -26,17 +26,17 @@ def section(finished: Finished) -> Markup:
     if horizontal is not None:
         parts.append(_horizontal(finished, horizontal, records))
     if vertical is not None:
-        own = [record["vertical_factor"] for record in records if record.get("vertical_factor") is not None]
-        parts.append(render("sections/vertical_target.html", target=vertical, factors=own, **_mean_over(vertical)))
+        factors = [record["vertical_factor"] for record in records if record.get("vertical_factor") is not None]
+        parts.append(render("sections/vertical_target.html", target=vertical, factors=factors, **_mean_over(vertical)))
     return join(*parts)
 
 
 def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
     """Return the mean over the target at its periods, where it is the least and the largest, and a table of it."""
     periods = target["period_s"]
-    over = np.array(target["mean_sa_g"], dtype=np.float64) / np.array(target["sa_g"], dtype=np.float64)
+    ratio = np.array(target["mean_sa_g"], dtype=np.float64) / np.array(target["sa_g"], dtype=np.float64)
     places = np.unique(np.linspace(0, len(periods) - 1, min(MOST_PERIODS, len(periods))).round().astype(int))
-    rows = [[periods[i], target["sa_g"][i], target["mean_sa_g"][i], float(over[i])] for i in places]
+    rows = [[periods[i], target["sa_g"][i], target["mean_sa_g"][i], float(ratio[i])] for i in places]
     heads = [
         Head("T [s]", ".3g"),
         Head("target SA [g]", ".3f"),
@@ -44,25 +44,25 @@ def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
         Head("mean over target", ".2f"),
     ]
     return {
-        "periods": periods, "over": over.tolist(), "least": int(np.argmin(over)), "most": int(np.argmax(over)),
+        "periods": periods, "over": ratio.tolist(), "least": int(np.argmin(ratio)), "most": int(np.argmax(ratio)),
         "ratios": table(heads, rows, name="Mean over target"),
     }  # fmt: skip
 
 
 def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence[Record]) -> Markup:
     pulses = [record for record in records if record.get("pulse") == "yes"]
-    known = [record["distance_km"] for record in records if record.get("distance_km") is not None]
+    distances = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."
-    own = np.array(target.get("components_sa_g", ()), dtype=np.float64)
+    both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
         "sections/target.html", target=target, records=records, **_mean_over(target),
-        run=(own / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(own) == len(target["sa_g"]) else [],
+        run=(both / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(both) == len(target["sa_g"]) else [],
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),
         stations=_stations(records), pulses=pulses, with_pulse=_stations(pulses),
         open=[record.get("pulse") for record in records].count("ambiguous"),
         lengths=[record["pulse_period_s"] for record in pulses if record.get("pulse_period_s") is not None],
-        known=known, near=sum(distance <= NEAR_KM for distance in known), near_km=f"{NEAR_KM:g}",
+        known=distances, near=sum(distance <= NEAR_KM for distance in distances), near_km=f"{NEAR_KM:g}",
     )  # fmt: skip
 
 
@@ -74,5 +74,5 @@ def _sound(target: Mapping[str, Any]) -> bool:
     """Return whether the parts of a target fit each other, since run.json may come from anybody."""
     periods, ends = target["period_s"], target["range_s"]
     fitting = all(len(target[name]) == len(periods) > 0 for name in ("sa_g", "mean_sa_g"))
-    known = fitting and all(map(math.isfinite, target["mean_sa_g"]))
-    return len(ends) == 2 and min(ends) > 0 and known and min((*periods, *target["sa_g"])) > 0
+    is_finite = fitting and all(map(math.isfinite, target["mean_sa_g"]))
+    return len(ends) == 2 and min(ends) > 0 and is_finite and min((*periods, *target["sa_g"])) > 0

@@ -38,7 +38,7 @@ def section(finished: Finished) -> Markup:
     else:
         rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
         parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
-    return join(*parts, tag("h3", "What the checks ask"), _asked(verdicts))
+    return join(*parts, tag("h3", "What the checks ask"), _requirements(verdicts))
 
 
 def mark(verdict: str, words: str) -> Markup:
@@ -61,9 +61,9 @@ def answer(finished: Finished) -> Markup:
 
 
 def _line(line: Line) -> Markup:
-    which = f": {line.which}." if line.which else "."
+    cases = f": {line.cases}." if line.cases else "."
     details = tag("ul", *(tag("li", words) for words in line.details)) if line.details else ""
-    return tag("li", tag("strong", mark(line.verdict, line.says)), which, details)
+    return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
 def _case(verdict: Verdict, scaled: bool) -> str:
@@ -86,8 +86,8 @@ def matrix(verdicts: Sequence[Verdict]) -> Markup:
     checks = list(dict.fromkeys(verdict.check for verdict in verdicts))
     rows = []
     scaled = len({verdict.scale for verdict in verdicts}) > 1
-    for case, same in grouped(verdicts, lambda verdict: _case(verdict, scaled)).items():
-        by_check = {verdict.check: verdict for verdict in same}
+    for case, of_case in grouped(verdicts, lambda verdict: _case(verdict, scaled)).items():
+        by_check = {verdict.check: verdict for verdict in of_case}
         rows.append([case, *(_cell(by_check[name]) if name in by_check else "" for name in checks)])
     return table([Head("case"), *(Head(name) for name in checks)], rows, name="Checks of every case")
 
@@ -99,20 +99,20 @@ def _cell(verdict: Verdict) -> Markup:
 def _counts(verdicts: Sequence[Verdict]) -> Markup:
     """Return a row for each check: the number of verdicts of each kind."""
     rows = [
-        [name, *(mark(way, str(n)) if n else "" for way, n in count.items())]
+        [name, *(mark(kind, str(n)) if n else "" for kind, n in count.items())]
         for name, count in wording.count_by_check(verdicts).items()
     ]
     return table([Head("check"), *map(Head, wording.WAYS)], rows, name="Verdicts of each kind")
 
 
-def _asked(verdicts: Sequence[Verdict]) -> Markup:
-    asked = [same[0] for same in grouped(verdicts, lambda verdict: verdict.check).values()]
-    rows = [[row.check, wording.asked(row), BASIS.get(row.basis, row.basis), row.reason] for row in asked]
-    rests = {row.statistic: wording.unchecked(row) for row in asked}
+def _requirements(verdicts: Sequence[Verdict]) -> Markup:
+    firsts = [of_check[0] for of_check in grouped(verdicts, lambda verdict: verdict.check).values()]
+    rows = [[row.check, wording.requirement(row), BASIS.get(row.basis, row.basis), row.reason] for row in firsts]
+    rests = {row.statistic: wording.unchecked(row) for row in firsts}
     heads = map(Head, ("check", "asks", "limit from", "reason"))
-    rest = (f"{name}: {words}." for name, words in rests.items() if words)
+    sentences = (f"{name}: {words}." for name, words in rests.items() if words)
     drawn = table([*heads], rows, prose=True, name="What the checks ask")
-    return join(drawn, paragraphs(*wording.Notes(verdicts).common(), *wording.counting(verdicts), *rest))
+    return join(drawn, paragraphs(*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences))
 
 
 def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
@@ -138,7 +138,7 @@ def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
         [
             row.check, _case(row, scaled), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
             "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
-            wording.governing(row), "; ".join(filter(None, (row.counted, notes.of(row)))),
+            wording.governing(row), "; ".join(filter(None, (row.counted, notes.about(row)))),
         ]
         for row in verdicts
     ]  # fmt: skip
