@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.kernel import inlined, inner, shared
+from rockbatch.core.kernel import inlined, kernel, shared
 from rockbatch.core.roots import hermite, largest_within, turning_point
 from rockbatch.core.system import clearances
 from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED, Ground
@@ -83,7 +83,7 @@ COMMON = {"clock": Clock, "ground": Ground, "peak": Peak, "tally": Tally}
 """Parts of every table of lanes; the ground is that at the last sample."""
 
 
-@inner
+@kernel
 def fallen(theta):
     """Return OVERTURNED once the pier lies on its side, NOT_FINITE for what no pier turns within a step, else SURVIVED."""
     if abs(theta) < ON_ITS_SIDE:
@@ -91,7 +91,7 @@ def fallen(theta):
     return OVERTURNED if abs(theta) < 2.0 * ON_ITS_SIDE else NOT_FINITE
 
 
-@inner
+@kernel
 def start_clock(lanes, i, number, run, rest, alpha, theta):
     """Set clock, counts and peaks of run ``number`` at its start, at rotation ``theta`` [rad]."""
     clock, peak, tally = lanes.clock, lanes.peak, lanes.tally
@@ -135,7 +135,7 @@ def ground_at(lanes, i, x):
     return Ground(at.horizontal[i] + x * a_slope, a_slope, at.vertical[i] + x * c_slope, c_slope)
 
 
-@inner
+@kernel
 def ground_rests(lanes, i):
     """Return whether the ground is at rest from the last sample on, for good."""
     over = lanes.clock.sample[i] >= lanes.clock.npts[i] - 1.0
@@ -153,13 +153,13 @@ def window_of(sample, samples):
     return float(window), begin_next
 
 
-@inner
+@kernel
 def close_window(lanes, i, results):
     """Write the greatest |θ| of the present window."""
     results[int(lanes.clock.number[i])].extremes[int(lanes.peak.window[i])] = lanes.peak.in_window[i]
 
 
-@inner
+@kernel
 def turn_window(lanes, i, theta, results):
     """Begin the next window at a sample with which the present one is over."""
     peak, sample = lanes.peak, lanes.clock.sample[i]
@@ -169,7 +169,7 @@ def turn_window(lanes, i, theta, results):
         peak.in_window[i] = abs(theta)
 
 
-@inner
+@kernel
 def include_peak(lanes, i, y, end, start, done, h):
     """Bring the peak up to that of a smooth part of ``h`` [s] from ``y`` to ``end``, ``done`` [s] after ``start``.
 
@@ -181,7 +181,7 @@ def include_peak(lanes, i, y, end, start, done, h):
         lanes.peak.time[i] = lanes.clock.sample[i] * lanes.clock.dt[i] + (start + (done + at))
 
 
-@inner
+@kernel
 def include_height(lanes, i, m, supports, y, end, h):
     """Bring the height of flight up to that of the lower pivot in a smooth part of ``h`` [s] from ``y`` to ``end``.
 
@@ -210,7 +210,7 @@ def include_height(lanes, i, m, supports, y, end, h):
     lanes.tally.flight_height[i] = max(lanes.tally.flight_height[i], highest)
 
 
-@inner
+@kernel
 def note_flight(lanes, i, flies, t):
     """Begin or end a flight at ``t`` [s], if the pier flies or no longer does."""
     tally = lanes.tally

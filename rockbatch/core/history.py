@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.devices.pull import under_devices
-from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.kernel import inlined, kernel
 
 MOMENT = ("t", "kind")
 """Columns before those of state and contact; behind them, of devices: their states x, and the force and moment of all."""
@@ -34,7 +34,7 @@ def _write_devices(line, at, m, devices, y, contact, ground):
     line[at + len(devices.x)], line[at + len(devices.x) + 1] = under.pull.force, under.pull.moment
 
 
-@inner
+@kernel
 def write(history, t, kind, m, devices, y, contact, ground):
     """Write a row at time ``t`` [s], if there is room for it."""
     rows, row = history.rows, history.written[0]

@@ -26,10 +26,10 @@ from rockbatch.core.clock import (
     turn_window,
 )
 from rockbatch.core.devices.events import after_contact, device_event, start_devices
-from rockbatch.core.devices.pull import loaded, resolved, with_pull
+from rockbatch.core.devices.pull import Devices, loaded, resolved
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.history import history_of, take_back, write
-from rockbatch.core.kernel import entry, inlined, inner
+from rockbatch.core.kernel import entry, inlined, kernel, question
 from rockbatch.core.search import first_event, marks_for, start_rates
 from rockbatch.core.system import (
     after_event,
@@ -73,6 +73,7 @@ from rockbatch.core.types import (
     SURVIVED,
     TAKE_OFF,
     Moment,
+    Pull,
     Result,
 )
 
@@ -103,7 +104,7 @@ def _commit(devices):
         devices.x[i] = devices.end[i]
 
 
-@inner
+@kernel
 def _strongest(lanes, i, ground):
     """Return the strongest horizontal acceleration [m/s²] that the ground has or may still have."""
     strongest = 0.0
@@ -115,7 +116,7 @@ def _strongest(lanes, i, ground):
     return strongest
 
 
-@inner
+@kernel
 def _in_flight(traits, lanes, i, m, y, ground):
     """Return the status of a pier that has left the ground with both pivots."""
     if m.guided != 0.0:
@@ -128,7 +129,7 @@ def _in_flight(traits, lanes, i, m, y, ground):
     return OVERTURNED if falling else FLIGHT
 
 
-@inner
+@kernel
 def _count(lanes, i, kind, landed, lifted, t, remaining):
     """Count an event of this ``kind`` at ``t`` [s], after which bounces go on for ``remaining`` [s] until rest."""
     tally = lanes.tally
@@ -144,7 +145,7 @@ def _count(lanes, i, kind, landed, lifted, t, remaining):
         tally.t_rest[i] = math.nan
 
 
-@inner
+@kernel
 def _many(lanes, i):
     """Return whether one event more is one too many in this sample."""
     tally, sample = lanes.tally, lanes.clock.sample[i]
@@ -166,7 +167,7 @@ def _device_event(m, devices, y, contact, ground, h, rest, which):
         device_event(m, devices, y, contact, ground, h, rest, which)
 
 
-@inner
+@kernel
 def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
     """Let event ``which`` happen ``x`` [s] after the sample: status, and the Moment after it."""
     here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
@@ -198,7 +199,7 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
     """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
     h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
     t_sample = lanes.clock.sample[i] * dt
-    m = with_pull(devices, model(traits, lanes, i))
+    m = model(traits, lanes, i)
     y, contact, supports = moment(traits, lanes, i)
     now = Moment(y, contact, supports)
     done, which, status = 0.0, NO_EVENT, SURVIVED
@@ -232,12 +233,12 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
     return status, t
 
 
-@inner
+@kernel
 def _begin(traits, lanes, i, number, runs, devices, ground, history):
     """Let run ``number`` begin in lane ``i``: its status."""
     run = runs[number]
     begin(traits, lanes, i, run)
-    m = with_pull(devices, model(traits, lanes, i))
+    m = model(traits, lanes, i)
     y, contact, _ = moment(traits, lanes, i)
     start_clock(lanes, i, number, run, at_rest(m), math.atan2(m.half_width, m.height), y.theta)
     read_ground(lanes, i, ground)
@@ -248,7 +249,7 @@ def _begin(traits, lanes, i, number, runs, devices, ground, history):
     return over(traits, lanes, i, devices)
 
 
-@inner
+@kernel
 def _finish(traits, lanes, i, status, t, history, results):
     """Write what the run in lane ``i`` has come to."""
     close_window(lanes, i, results)
@@ -263,9 +264,18 @@ def _finish(traits, lanes, i, status, t, history, results):
     finish(traits, lanes, i, t, result)
 
 
-@inner
-def _attend(traits, lanes, i, devices, marks, substep, settings, ground, history):
+@question
+def _attend(devices, traits, lanes, i, marks, substep, settings, ground, history):
     """Do what the pass has left to do in lane ``i``: status and time [s]."""
+
+
+@_attend.of(Devices)
+def _attend_with_devices(devices, traits, lanes, i, marks, substep, settings, ground, history):
+    return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
+
+
+@_attend.of(type(None))
+def _attend_alone(devices, traits, lanes, i, marks, substep, settings, ground, history):
     if lanes.news.kind[i] >= EVENTFUL:
         return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
     if lanes.news.kind[i] == ATTEND:
@@ -303,7 +313,7 @@ def _to_samples(lanes, count, ground):
     return due
 
 
-@inner
+@kernel
 def _at_sample(traits, lanes, i, devices, results):
     """Do what is due at the sample that lane ``i`` has come to: its status, RUNNING while it goes on."""
     clock, peak = lanes.clock, lanes.peak
@@ -317,24 +327,31 @@ def _at_sample(traits, lanes, i, devices, results):
     return status
 
 
-@inlined
-def _pass(traits, lanes, count, devices, substep, settings):
-    """Take all lanes a sub-step further; return how many are not calm. One with devices has to be taken event by event."""
-    if devices is None:
-        one_pass(traits, lanes, count, substep, settings)
-    else:
-        lanes.news.kind[0] = EVENTFUL
+@question
+def _pass(devices, traits, lanes, count, substep, settings):
+    """Take all lanes a sub-step further; return how many are not calm."""
+
+
+@_pass.of(Devices)
+def _pass_with_devices(devices, traits, lanes, count, substep, settings):
+    lanes.news.kind[0] = EVENTFUL  # a lane with devices is taken event by event
+    return count
+
+
+@_pass.of(type(None))
+def _pass_alone(devices, traits, lanes, count, substep, settings):
+    one_pass(traits, lanes, count, substep, settings)
     busy = 0
     for i in range(count):
         busy += 1 if lanes.news.kind[i] != CALM else 0
     return busy
 
 
-@inner
+@kernel
 def _write_now(traits, lanes, devices, kind, x, history):
     """Write a row of the only lane as it is now, ``x`` [s] after its sample."""
     y, contact, _ = moment(traits, lanes, 0)
-    t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, with_pull(devices, model(traits, lanes, 0))
+    t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, model(traits, lanes, 0)
     write(history, t, kind, m, devices, y, contact, ground_at(lanes, 0, x))
 
 
@@ -354,12 +371,12 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
         if count == 0 or stop[0] != 0:
             return
         for substep in range(settings.substeps):
-            busy = _pass(traits, lanes, count, devices, substep, settings)
+            busy = _pass(devices, traits, lanes, count, substep, settings)
             i = NONE if busy > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
                 if lanes.news.kind[i] != CALM:
-                    status, t = _attend(traits, lanes, i, devices, marks, substep, settings, ground, history)
+                    status, t = _attend(devices, traits, lanes, i, marks, substep, settings, ground, history)
                 if status == SURVIVED:
                     i += 1
                 else:
@@ -419,7 +436,7 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
     settings = Settings(int(substeps), bool(locate), len(history) > 0)
     marks = marks_for(0 if devices is None else len(devices.elements))
     _march(
-        kind.traits,
+        kind.traits if devices is None else kind.traits._replace(pull=Pull(0.0, 0.0)),
         runs,
         ground,
         settings,

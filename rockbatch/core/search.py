@@ -7,7 +7,7 @@ import numpy as np
 from rockbatch.core.devices.events import PER_DEVICE, device_functions
 from rockbatch.core.devices.pull import END, START, stage_states
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rates_with, rk4
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
 from rockbatch.core.system import event_functions
@@ -30,13 +30,13 @@ def marks_for(elements):
     return Marks(*(np.zeros(OF_PIER + PER_DEVICE * elements) for _ in Marks._fields))
 
 
-@inner
+@kernel
 def _copy(numbers, to):
     for i in range(len(numbers)):
         to[i] = numbers[i]
 
 
-@inner
+@kernel
 def _earliest(early, early_slopes, late, late_slopes, h):
     """Return which event function falls through zero first within ``h`` [s], NO_EVENT for none; and when."""
     which, first = NO_EVENT, h
@@ -57,7 +57,7 @@ def _evaluate(m, devices, now, k, rest, ground, h, place, values, slopes):
         device_functions(m, devices, now, k, place, rest, ground, h, values, slopes)
 
 
-@inner
+@kernel
 def _try(m, devices, marks, start, k, rest, ground, x, h):
     """Take a step over ``x`` [s] and evaluate the event functions at its end: the state there, and its rates."""
     end = rk4(m, devices, start.y, k, start.contact, ground, x)
@@ -68,7 +68,7 @@ def _try(m, devices, marks, start, k, rest, ground, x, h):
     return end, k_end
 
 
-@inner
+@kernel
 def _narrow(marks, a, t, b):
     """Narrow the interval [a, b] of the first event by a trial at ``t``: a, b, which function falls first, and when after a."""
     which, at = _earliest(marks.early, marks.early_slopes, marks.now, marks.now_slopes, t - a)

@@ -6,8 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
+
 import rockbatch
-from rockbatch.core.kernel import core_digest, entry
+from rockbatch.core.kernel import core_digest, entry, kernel
 
 SCRIPT = """
 import numpy as np
@@ -73,3 +75,21 @@ def test_no_two_processes_write_one_file_of_machine_code():
 
     names = {entry(twice)._cache._cache_file._data_name(1) for _ in range(2)}
     assert len(names) == 2
+
+
+def test_a_building_block_is_part_of_its_callers_only_and_python_may_call_it_too():
+    """Machine code of its own would take a quarter of all compilation, and nobody would run it."""
+
+    @kernel
+    def twice(x):
+        return 2.0 * x
+
+    @numba.njit
+    def caller(x):
+        return twice(x) + 1.0
+
+    assert caller(3.0) == 7.0
+    compiled = twice.overloads[(numba.float64,)]
+    assert compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name) == 0
+    assert not compiled.library._codegen._engine.is_symbol_defined(compiled.fndesc.llvm_func_name)
+    assert twice(4.0) == 8.0

@@ -16,7 +16,7 @@ from rockbatch.core.devices.events import leave_rest
 from rockbatch.core.devices.laws import CLOSES, OPENS
 from rockbatch.core.devices.pull import about_to_turn
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
 from rockbatch.core.system import accelerations, clearances, lever, rates
 from rockbatch.core.table import along
@@ -51,7 +51,7 @@ NEAR_FLIGHT = 0.3
 RESTING = Stance(1.0, 1.0, 0.0)
 
 
-@inner
+@kernel
 def _lift(m, devices, y, side, ground):
     """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock, and its rate [rad/s³]."""
     under = about_to_turn(devices, m, y, side, OPENS)
@@ -60,7 +60,7 @@ def _lift(m, devices, y, side, ground):
     return side * turning, side * change
 
 
-@inner
+@kernel
 def _change_of_normal(m, y, k, contact, ground):
     """Return the rate of N/M [m/s³] of a block that rocks, from a moment later."""
     near = NEARBY / m.p
@@ -158,7 +158,7 @@ def transition(m, devices, y, contact, supports, which, rest, ground, dt):
     return y, contact, supports, kind, 0.0
 
 
-@inner
+@kernel
 def _lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
     other, _ = _lift(m, devices, y, -side, ground)
@@ -172,7 +172,7 @@ def _lift_off(m, devices, y, side, ground):
     return y, on_side(side), LIFT_OFF
 
 
-@inner
+@kernel
 def _impact(m, devices, y, ground, dt):
     """Return state, stance, kind and the time [s] left to rest, as the block passes through θ = 0 (THEORY.md, eq. 16)."""
     omega = m.restitution * y.omega
@@ -184,7 +184,7 @@ def _impact(m, devices, y, ground, dt):
     return y, on_side(side), IMPACT_LEFT if side == LEFT else IMPACT_RIGHT, 0.0
 
 
-@inner
+@kernel
 def _bounces(m, devices, omega, ground):
     """Return the height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
 
@@ -209,14 +209,14 @@ def _bounces(m, devices, omega, ground):
     return height, times / (1.0 - ratio)
 
 
-@inner
+@kernel
 def _closing(m, devices, y, side, ground):
     """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against what devices then hold."""
     under = about_to_turn(devices, m, y, side, CLOSES)
     return accelerations(under, y, on_side(side), ground.horizontal, ground.vertical)[1]
 
 
-@inner
+@kernel
 def _landing(m, y, contact, pivot, rest):
     """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant.
 

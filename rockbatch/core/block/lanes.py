@@ -8,7 +8,6 @@ from rockbatch.core.block import ending, events, passing  # noqa: F401  answers 
 from rockbatch.core.block.equations import constrained, on_side
 from rockbatch.core.block.model import NUMBERS, Block, BlockTraits, Numbers, Rocking, Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING
-from rockbatch.core.kernel import inner
 from rockbatch.core.system import Kind
 from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import LEFT, RIGHT
@@ -59,7 +58,7 @@ def model(traits, lanes, i):
     m = get(lanes.model, i, Numbers)
     return Block(
         m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness,
-        None, True,
+        traits.pull, True,
     )  # fmt: skip
 
 
@@ -89,15 +88,9 @@ def begin(traits, lanes, i, run):
     leans = run.theta if run.theta != 0.0 else run.omega
     side = RIGHT if leans > 0.0 else LEFT
     contact = Stance(1.0, 1.0, 0.0) if at_rest else on_side(side)
-    y = constrained(model_of(lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
+    y = constrained(system.model(traits, lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
     put(lanes.now, i, y)
     put(lanes.contact, i, contact)
-
-
-@inner
-def model_of(lanes, i):
-    """Return the Block of lane ``i``."""
-    return system.model(BlockTraits(0.0), lanes, i)
 
 
 @system.attend.of(BlockTraits)
@@ -136,7 +129,7 @@ def write_reversals(traits, lanes, i, substep, history):
 
 def kind_of(m):
     """Return the Kind of the pier ``m`` (Block)."""
-    return Kind(BlockTraits(0.0), Line, LANE, Rocking._fields + Stance._fields)
+    return Kind(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields)
 
 
 def line_of(m, theta, omega, *timing):

@@ -23,9 +23,9 @@ class Block(NamedTuple):
 
 
 class BlockTraits(NamedTuple):
-    """Traits that kernels are compiled for: none, for blocks differ in numbers only."""
+    """Traits that kernels are compiled for: the type of this field of a Block; otherwise blocks differ in numbers only."""
 
-    alike: float = 0.0
+    pull: Pull | None = None
 
 
 NUMBERS = tuple((name, float) for name in Block._fields[: Block._fields.index("pull")])

@@ -26,7 +26,7 @@ from rockbatch.core.devices.laws import (
 )
 from rockbatch.core.devices.pull import BESIDE, START, device_rates, sticking, under_devices, way_of_opening
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
 from rockbatch.core.system import accelerations, rates
 from rockbatch.core.table import along
@@ -59,7 +59,7 @@ def _crossing(value, slope, speed, rest, rounding):
     return (rounding, slope if abs(speed) > rest else 0.0) if slope > 0.0 or abs(speed) <= rest else (value, slope)
 
 
-@inner
+@kernel
 def _of_stop(devices, j, at, deepest, acceleration, rest, rounding, values, slopes):
     """Write the three event functions of stop ``j``, and their slopes."""
     of, mode = devices.elements[j], devices.modes[j]
@@ -79,7 +79,7 @@ def _of_stop(devices, j, at, deepest, acceleration, rest, rounding, values, slop
             values[gives], slopes[gives] = _crossing(at.elongation - of.start, rate, at.speed, rest, rounding)
 
 
-@inner
+@kernel
 def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slopes):
     """Write the three event functions of device ``j``, and their slopes, but for a friction damper that does not move."""
     of, mode, goes = devices.elements[j], devices.modes[j], devices.goes[j]
@@ -116,7 +116,7 @@ def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slop
             values[gives] = least
 
 
-@inner
+@kernel
 def _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes):
     """Write what friction dampers that do not move could hold more; its rate from a moment later."""
     near = NEARBY * h
@@ -135,7 +135,7 @@ def _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes):
         slopes[at] = (abs(forces[number]) - abs(forces_later[number])) / near
 
 
-@inner
+@kernel
 def _is_held(m, devices, y, k, slope, i):
     """Return whether friction holds the pivot of event function ``i`` where it is, on or just off its support."""
     least, at = NO_ACCELERATION * m.gravity, attitude(m, y, devices.level[0])
@@ -143,7 +143,7 @@ def _is_held(m, devices, y, k, slope, i):
     return abs(slope) <= least and abs(lift) <= least
 
 
-@inner
+@kernel
 def device_functions(m, devices, now, k, place, rest, ground, h, values, slopes):
     """Write the event functions of all devices and their slopes behind those of the pier, of the Moment ``now`` with rates ``k``.
 
@@ -167,7 +167,7 @@ def device_functions(m, devices, now, k, place, rest, ground, h, values, slopes)
         _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes)
 
 
-@inner
+@kernel
 def _consistent(m, devices, y, x, contact, ground, first, second):
     """Return whether friction dampers ``first`` and ``second``, without velocity, can do what ``goes`` says of them."""
     under, one, two = under_devices(m, devices, y, x, contact, ground)
@@ -185,7 +185,7 @@ def _consistent(m, devices, y, x, contact, ground, first, second):
     return True
 
 
-@inner
+@kernel
 def settle_friction(m, devices, y, x, contact, ground):
     """Decide what friction dampers without velocity do from here on: hold if they can, else go where the others take them."""
     first = sticking(devices, NO_EVENT)
@@ -205,7 +205,7 @@ def settle_friction(m, devices, y, x, contact, ground):
         devices.goes[second] = STICKS
 
 
-@inner
+@kernel
 def change_tendon(mode, limit):
     """Return the mode of a tendon whose force has fallen to 0 or, slack, risen to it; with ``limit``, come to its strength."""
     if limit:
@@ -213,7 +213,7 @@ def change_tendon(mode, limit):
     return SLACK if mode == TAUT else TAUT
 
 
-@inner
+@kernel
 def _stop_event(devices, j, depth, what):
     """Change the mode of stop ``j``, pressed in by ``depth`` [m]; left, it recovers when the pier is where it first met it."""
     mode = devices.modes[j]
@@ -230,7 +230,7 @@ def _stop_event(devices, j, depth, what):
         devices.use[j].times += 1.0 if devices.x[j] == 0.0 else 0.0
 
 
-@inner
+@kernel
 def _let_go(m, devices, y, contact, ground, h, j):
     """Let friction damper ``j`` go, and perhaps others with it: what they do a moment later decides.
 
@@ -248,7 +248,7 @@ def _let_go(m, devices, y, contact, ground, h, j):
         settle_friction(m, devices, y, devices.x, contact, ground)
 
 
-@inner
+@kernel
 def device_event(m, devices, y, contact, ground, h, rest, which):
     """Let the event ``which`` of a device happen in state ``y``: its mode or direction changes."""
     j, what = (which - OF_PIER) // PER_DEVICE, (which - OF_PIER) % PER_DEVICE
@@ -279,7 +279,7 @@ def device_event(m, devices, y, contact, ground, h, rest, which):
     settle_friction(m, devices, y, devices.x, contact, ground)
 
 
-@inner
+@kernel
 def after_contact(m, devices, y, contact, rest, ground):
     """Choose directions and modes once an event at a pivot may have made all velocities jump."""
     at = attitude(m, y, devices.level[0])
@@ -325,7 +325,7 @@ def start_devices(m, devices, y, contact, rest, ground):
     after_contact(m, devices, y, contact, rest, ground)
 
 
-@inner
+@kernel
 def leave_rest(m, devices, y, side):
     """Let devices go as the pier at rest begins to turn about its pivot on ``side``, or to rise on NEITHER."""
     if devices is None:

@@ -30,7 +30,7 @@ from rockbatch.core.devices.laws import (
     slip_rate,
 )
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, inner, question
+from rockbatch.core.kernel import inlined, kernel, question
 from rockbatch.core.system import accelerations, lever, pulled
 from rockbatch.core.types import NO_EVENT
 
@@ -94,7 +94,7 @@ def devices_of(elements, states=(), level=math.nan):
     )
 
 
-@inner
+@kernel
 def sticking(devices, after):
     """Return the number of the next friction damper behind ``after`` that does not move, NO_EVENT without one."""
     for j in range(after + 1, len(devices.elements)):
@@ -103,7 +103,7 @@ def sticking(devices, after):
     return NO_EVENT
 
 
-@inner
+@kernel
 def _held_by_friction(m, first, second, y, contact, horizontal, vertical, strengths):
     """Return the forces [m/s²] at two places, whose Gaps are given, by which they do not move; the second is 0 if both are one.
 
@@ -140,7 +140,7 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
     ) / determinant
 
 
-@inner
+@kernel
 def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
     """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
     first, elements = sticking(devices, NO_EVENT), devices.elements
@@ -153,7 +153,7 @@ def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
     return pulled(m, m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm), one, two
 
 
-@inner
+@kernel
 def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     """Write the rates of the devices' states ``x``, and their gaps, to their ``place``.
 
@@ -178,7 +178,7 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     return under, one, two
 
 
-@inner
+@kernel
 def under_devices(m, devices, y, x, contact, ground):
     """Return what :func:`device_rates` does, of a state that is looked at beside a step."""
     return device_rates(m, devices, y, x, contact, ground.horizontal, ground.vertical, BESIDE)
@@ -197,21 +197,6 @@ def _alone(devices, m, y, contact, ground):
 @loaded.of(Devices)
 def _loaded(devices, m, y, contact, ground):
     return under_devices(m, devices, y, devices.x, contact, ground)[0]
-
-
-@question
-def with_pull(devices, m):
-    """Return the pier ``m`` under a pull of 0 if it has ``devices``, so that kernels see piers of one type."""
-
-
-@with_pull.of(type(None))
-def _without_pull(devices, m):
-    return m
-
-
-@with_pull.of(Devices)
-def _with_pull(devices, m):
-    return pulled(m, 0.0, 0.0)
 
 
 @question
@@ -239,7 +224,7 @@ def _devices_hold(devices, m, y, side, sense):
     return pulled(m, total, moment)
 
 
-@inner
+@kernel
 def way_of_opening(m, of, side):
     """Return where a device goes when the pier begins to turn about its pivot on ``side``, or to rise on NEITHER."""
     if side == 0.0:
@@ -272,7 +257,7 @@ def advance_states(devices, h):
         devices.end[i] = devices.stage[i] = end
 
 
-@inner
+@kernel
 def resolved(m, devices, y, contact, ground, h, dt):
     """Return the longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all
     along it, of a viscous one with an exponent below 1 near a velocity reversal or behind a brace, and of a stop that is met.
@@ -312,7 +297,7 @@ def resolved(m, devices, y, contact, ground, h, dt):
     return share * h
 
 
-@inner
+@kernel
 def _is_steep(of):
     """Return whether the force's slope is unbounded where the speed is 0, but for what ``linear_below`` sets."""
     return of.kind == VISCOUS and of.exponent < 1.0

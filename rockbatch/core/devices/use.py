@@ -3,11 +3,11 @@
 from rockbatch.core.devices.elongation import lifted
 from rockbatch.core.devices.laws import MAXWELL, OPENS, TAUT, TENDON, VISCOUS, force, slip_rate
 from rockbatch.core.devices.pull import END, START
-from rockbatch.core.kernel import inlined, inner
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import hermite, largest_within
 
 
-@inner
+@kernel
 def _of_braced(devices, j, h):
     """Bring the use of a braced viscous damper up to a smooth part of ``h`` [s]; return its greatest |force| there [m/s²].
 
@@ -24,7 +24,7 @@ def _of_braced(devices, j, h):
     return pull
 
 
-@inner
+@kernel
 def _of_braced_steel(devices, j, h):
     """Bring stroke and speed of a hysteretic damper, without its brace, up to a smooth part of ``h`` [s]."""
     of, line = devices.elements[j], devices.use[j]
@@ -36,7 +36,7 @@ def _of_braced_steel(devices, j, h):
     line.speed = max(line.speed, abs(speed), abs(speed_end))
 
 
-@inner
+@kernel
 def _take_in(devices, k, k_end, h):
     n = len(devices.elements)
     for j in range(n):

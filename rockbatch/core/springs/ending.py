@@ -10,7 +10,7 @@ from rockbatch.core import system
 from rockbatch.core.clock import UNSET, ground_rests
 from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.laws import CONTACT, HYSTERETIC, SPRING, TENDON, force, stored
-from rockbatch.core.kernel import inner
+from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
     DECIDED,
@@ -85,12 +85,12 @@ def peak_stands(traits, lanes, i):
     return decided_at >= 0.0 and lanes.peak.time[i] <= decided_at * lanes.clock.dt[i]
 
 
-@inner
+@kernel
 def _unstressed(m, position, z, on_spring, waiting):
     return position - m.yield_deflection * z if on_spring != 0.0 else waiting
 
 
-@inner
+@kernel
 def base_of(m, y, contact, supports):
     """Return the unstressed positions [m] of both supports."""
     at = geometry(m, y.theta)
@@ -99,27 +99,27 @@ def base_of(m, y, contact, supports):
     return left, right
 
 
-@inner
+@kernel
 def _tilt(m, y, contact, supports):
     """Return the |tilt| of the base [rad]."""
     left, right = base_of(m, y, contact, supports)
     return 0.5 * abs(left - right) / m.half_width
 
 
-@inner
+@kernel
 def _calm_from(lanes, i, m):
     """Return the time [s] from which on no pivot has moved for a period of rocking, and the ground has been at rest."""
     return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + rocking_period(m)
 
 
-@inner
+@kernel
 def _stands(lanes, i, m, contact):
     """Return whether the pier has stood on both pivots for a period of rocking while the ground was at rest."""
     both = contact.left != 0.0 and contact.right != 0.0
     return both and lanes.clock.sample[i] * lanes.clock.dt[i] >= _calm_from(lanes, i, m)
 
 
-@inner
+@kernel
 def _overturning_bound(lanes, i, m, y, contact, supports, devices):
     """Return OPEN, DECIDED or UNSTABLE (see ``free_vibration``); OPEN while the ground moves."""
     if not ground_rests(lanes, i):
@@ -140,7 +140,7 @@ def _overturning_bound(lanes, i, m, y, contact, supports, devices):
     return overturning_bound(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
 
 
-@inner
+@kernel
 def _read_base(lanes, i, m, y, contact, supports):
     """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
@@ -157,7 +157,7 @@ def _read_base(lanes, i, m, y, contact, supports):
     waiting.last_read[i], waiting.last_left[i], waiting.last_right[i] = sample, left, right
 
 
-@inner
+@kernel
 def _include_in_mean(lanes, i, m, y, contact, supports):
     """Bring the tilt, which is a mean over the time between the first two readings, up to this sample."""
     waiting = lanes.waiting
@@ -168,7 +168,7 @@ def _include_in_mean(lanes, i, m, y, contact, supports):
     waiting.read_right[i] -= higher
 
 
-@inner
+@kernel
 def _in_deck(m, devices, y):
     """Return the energy [J/kg] that springs and stops at the deck store in state ``y``, which depends on θ alone."""
     energy, at = 0.0, attitude(m, y, devices.level[0])
@@ -179,7 +179,7 @@ def _in_deck(m, devices, y):
     return energy
 
 
-@inner
+@kernel
 def _in_devices(lanes, i, m, devices, y, contact, supports):
     """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
 
@@ -266,7 +266,7 @@ def next_due(traits, lanes, i):
     return sample + 1.0
 
 
-@inner
+@kernel
 def _given_up(lanes, i, m, bound, y, contact, supports):
     """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
     if lanes.waiting.patience[i] == 0.0:

@@ -6,7 +6,7 @@ from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
 from rockbatch.core.ground import later
 from rockbatch.core.history import write
-from rockbatch.core.kernel import inlined, inner, kernel
+from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events, transitions  # noqa: F401  answers of the springs
@@ -65,7 +65,7 @@ def model_in(traits, lanes, i):
     m = get(lanes.model, i, Numbers)
     return Springs(
         m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.damping, m.law, m.guided, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, None,
+        m.damping, m.law, m.guided, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
     )  # fmt: skip
 
 
@@ -216,7 +216,7 @@ def write_reversals(traits, lanes, i, substep, history):
         _write_reversals(traits, lanes, i, substep, history)
 
 
-@inner
+@kernel
 def _write_reversals(traits, lanes, i, substep, history):
     m, after, h = model(traits, lanes, i), get(lanes.contact, i, Contact), lanes.clock.step[i]
     start = substep * h

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rockbatch.core.kernel import inner
+from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.laws import plastic_work
 
@@ -18,7 +18,7 @@ class Loading(NamedTuple):
     work_right: float
 
 
-@inner
+@kernel
 def _branch(m, was, now, begun, z_begun, place, z, work):
     """Start of a spring's branch and its plastic work, brought up to an event at position ``place`` and ``z``."""
     if was == now:
@@ -27,14 +27,14 @@ def _branch(m, was, now, begun, z_begun, place, z, work):
     return _closed(m, begun, z_begun, work, unstressed, z) if was != 0.0 else (unstressed, z, work)
 
 
-@inner
+@kernel
 def _closed(m, begun, z_begun, work, unstressed, z):
     """Return the same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
     work += plastic_work(m, z_begun, z, begun - unstressed)
     return unstressed, z, work
 
 
-@inner
+@kernel
 def branches(m, loading, before, after, y):
     """Return the Loading of both springs, brought up to an event that changed the contacts from ``before`` to ``after``."""
     at = geometry(m, y.theta)
@@ -49,14 +49,14 @@ def branches(m, loading, before, after, y):
     return Loading(left, z_left, work_left, right, z_right, work_right)
 
 
-@inner
+@kernel
 def close_left(m, loading, unstressed, z):
     """Return the Loading once the left spring has left its inelastic branch at ``z``, then unstressed at ``unstressed``."""
     left, z_left, work_left = _closed(m, loading.left, loading.z_left, loading.work_left, unstressed, z)
     return Loading(left, z_left, work_left, loading.right, loading.z_right, loading.work_right)
 
 
-@inner
+@kernel
 def close_right(m, loading, unstressed, z):
     """Do the same for the right spring."""
     right, z_right, work_right = _closed(m, loading.right, loading.z_right, loading.work_right, unstressed, z)

@@ -41,6 +41,7 @@ class SpringTraits(NamedTuple):
     exponent: float | int | None
     finite: bool | None
     damped: bool | None
+    pull: Pull | None = None
 
 
 NUMBERS = tuple((name, float) for name in Springs._fields[: Springs._fields.index("finite")])

@@ -4,7 +4,7 @@ Written for the left pivot; at the right one, the mirror image is handled (Î¸ â†
 """
 
 from rockbatch.core import system
-from rockbatch.core.kernel import kernel
+from rockbatch.core.kernel import kernel, question
 from rockbatch.core.springs.equations import geometry, on_ground, touching, without
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.impact import land, land_flat
@@ -41,10 +41,18 @@ def _mirrored(y):
     return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
 
 
-@kernel
+@question
 def _mirrored_pull(pull):
-    if pull is None:
-        return None
+    """Return the mirror image of a pull of devices, of the type that it has."""
+
+
+@_mirrored_pull.of(type(None))
+def _no_pull(pull):
+    return None
+
+
+@_mirrored_pull.of(Pull)
+def _pull_to_the_other_side(pull):
     return Pull(pull.force, -pull.moment)
 
 
