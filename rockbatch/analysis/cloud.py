@@ -27,6 +27,9 @@ SEED = 2017
 PROPOSALS = 10_000
 """Points from which the draws of a logistic part are chosen."""
 
+BLOCK = 1_000_000
+"""Products of points and records that are in memory at a time."""
+
 WIDER = 1.5
 """Width of the distribution of the proposals over that of the information at the maximum."""
 
@@ -334,12 +337,16 @@ def _posterior(mode: Values, covariance: Values, x: Values, happened: npt.NDArra
     normal = rng.standard_normal((PROPOSALS, 2))
     far = rng.chisquare(3, PROPOSALS) / 3
     proposed = mode + normal @ np.linalg.cholesky(covariance).T * (WIDER / np.sqrt(far))[:, None]
-    z = proposed @ x.T
-    p = expit(z)
-    weight = p * (1.0 - p)
-    information = np.linalg.det(np.einsum("mn,ni,nj->mij", weight, x, x))
-    with np.errstate(divide="ignore"):
-        likelihood = log_expit(np.where(happened, z, -z)).sum(axis=1) + 0.5 * np.log(np.maximum(information, 0.0))
+    products = np.column_stack((x[:, 0] ** 2, x[:, 0] * x[:, 1], x[:, 1] ** 2))
+    likelihood = np.empty(PROPOSALS)
+    block = max(1, BLOCK // len(x))
+    for some in (slice(k, k + block) for k in range(0, PROPOSALS, block)):
+        z = proposed[some] @ x.T
+        p = expit(z)
+        first, mixed, last = ((p * (1.0 - p)) @ products).T  # of the information, whose determinant is Jeffreys' prior
+        with np.errstate(divide="ignore"):
+            prior = 0.5 * np.log(np.maximum(first * last - mixed**2, 0.0))
+        likelihood[some] = z @ happened + log_expit(-z).sum(axis=1) + prior
     of_proposal = -2.5 * np.log1p((normal**2).sum(axis=1) / far / 3)
     logs = likelihood - of_proposal
     weights = np.exp(logs - logs.max())

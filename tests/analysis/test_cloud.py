@@ -11,6 +11,7 @@ from scipy.stats import linregress, norm, t
 from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analysis import cloud
 from rockbatch.analysis.cloud import Cloud, Demands, Line, Logistic, fit, fit_event
 from rockbatch.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
@@ -86,8 +87,9 @@ def test_censored_demands_make_the_line_of_a_tobit_model():
     assert (line.intercept, line.slope, line.sigma) == pytest.approx((*searched.x[:2], sigma), rel=1e-5)
 
 
-def test_what_is_censored_does_not_bend_the_line_as_leaving_it_out_would():
+def test_what_is_censored_does_not_bend_the_line_as_leaving_it_out_would(monkeypatch):
     """4000 records: censored, b and σ are those of the truth within 4 standard errors; left out, b is too small by a tenth."""
+    monkeypatch.setattr(cloud, "PROPOSALS", 100)
     runs = made_up(np.random.default_rng(4), 4000)
     floor = 0.2
     line = fitted(runs, floor).line
@@ -126,8 +128,9 @@ def test_of_two_intensities_the_share_is_the_closed_form():
         )
 
 
-def test_many_records_give_the_share_they_come_from():
-    """20 000 records: within four standard errors of the maximum likelihood, 4 × 0.03 and 4 × 0.05."""
+def test_many_records_give_the_share_they_come_from(monkeypatch):
+    """20 000 records: within four standard errors of the maximum likelihood, 4 × 0.03 and 4 × 0.05; no intervals."""
+    monkeypatch.setattr(cloud, "PROPOSALS", 100)
     runs = made_up(np.random.default_rng(6), 20_000)
     share = fitted(runs).overturning
     assert (share.intercept, share.slope) == pytest.approx(ALPHA, abs=0.2)

@@ -143,7 +143,7 @@ def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
     assert fitted.rate(x, rates)[1:] == pytest.approx(ends, rel=3e-4)
 
 
-@pytest.mark.parametrize("added", [0.0, 0.4])
+@pytest.mark.parametrize("added", [0.0, pytest.param(0.4, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "through",
     [lambda capacities: by_bisection(capacities, 0.7), lambda capacities: by_stripes(capacities, np.geomspace(0.2, 1.1, 8))],
