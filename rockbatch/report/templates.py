@@ -3,8 +3,11 @@
 import base64
 import hashlib
 import shlex
+import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from functools import cache
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +20,7 @@ from rockbatch.report.table import THETA
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+    from jinja2.bccache import Bucket
 
 HERE = Path(__file__).parent
 
@@ -57,9 +61,18 @@ def render(template: str, **values: object) -> Markup:
 
 @cache
 def _environment() -> "Environment":
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+
+    class Compiled(FileSystemBytecodeCache):
+        """Compiled templates beside Python's compiled modules; where these cannot be written, nor can they."""
+
+        def dump_bytecode(self, bucket: "Bucket") -> None:
+            if not sys.dont_write_bytecode:
+                with suppress(OSError):
+                    super().dump_bytecode(bucket)
 
     made = Environment(
+        bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), f"%s.{sys.implementation.cache_tag}.jinja"),
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined,
         finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
         trim_blocks=True, lstrip_blocks=True,

@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from jinja2 import Environment
 from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.report import write_report
+from rockbatch.report import templates, write_report
 from rockbatch.report.drawing.svg import COLOURS, MARKERS, curve, style_of, thin
 from rockbatch.report.finished import read
 from rockbatch.report.markup import escape, tag
@@ -310,6 +311,21 @@ def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path):
     assert len([svg for svg in figures(text) if "readings" in svg.attrib["class"]]) in (4, 5)  # rigid may stand behind
     shown = set(re.findall(r'<span class="muted">([^<,]*)', section[: section.index("</section>")]))
     assert shown <= worst
+
+
+@pytest.mark.parametrize(("folder", "compiled"), [("", [1, 0]), ("missing", [1, 1])])
+def test_templates_are_compiled_once_where_modules_are_kept(tmp_path, monkeypatch, folder, compiled):
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(templates, "cache_from_source", lambda file: str(tmp_path / folder / "templates.pyc"))
+    compilations = []
+    original = Environment.compile
+    monkeypatch.setattr(Environment, "compile", lambda *a, **k: compilations.append(1) or original(*a, **k))
+    counts = []
+    for _ in compiled:
+        compilations.clear()
+        templates._environment.__wrapped__().get_template("sections/notes.html")
+        counts.append(len(compilations))
+    assert counts == compiled
 
 
 def test_a_page_holds_the_table_once_whatever_the_number_of_runs(tmp_path):
