@@ -129,7 +129,7 @@ def _study() -> str:
             "A study is a TOML file. This page lists every table and key that rockbatch reads; it is made of the reader's own",
             "tables. A key that may have several values is marked *or a list*: the study then runs every combination.",
             "",
-            "Every mistake in a study is told at once, with its line and what to write instead, before anything runs. Editors",
+            "All mistakes in a study are reported together, each with its line and its remedy, before anything runs. Editors",
             "that know JSON Schema (Taplo, Even Better TOML) underline most of them while you write: put",
             "[study.schema.json](study.schema.json) beside the study and, as its first line,",
             "",

@@ -428,7 +428,7 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
             'measure = "PGA"\nperiod_s = 1.0\nlevels_g = [0.2]',
             [
                 'period_s = 1.0: does not apply to measure = "PGA"; leave it out, or write measure = "Sa"',
-                "one level tells no",
+                "one level does not determine",
             ],
         ),
         ('measure = "PGA"\nlevels_g = [0.4, 0.2]', ["levels_g = 0.2: after 0.4; write them in rising order"]),

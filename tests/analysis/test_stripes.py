@@ -148,7 +148,7 @@ def saved(found, tmp_path):
         (stripes((0.5, {"records": ["sine_0.4"], "scales": [2.0, 1.0]})), "1 records and 2 scales"),
         (stripes((0.5, {"records": ["sine_*"]}), (0.4, {"records": ["sine_*"]})), "after 0.5; write them in rising order"),
         (stripes((0.5, {})), "it has no records; write records ="),
-        (stripes((0.5, {"scales": [1.0]})), "scales: of which records?"),
+        (stripes((0.5, {"scales": [1.0]})), "scales: write records, too"),
         (stripes((0.5, {"file": "nowhere.csv"})), "nowhere.csv: no such file"),
         (stripes((0.5, {"records": ["sine_*"]})) | LEVELS, "levels_g: each [[fragility.stripe]] has its level"),
         (stripes((0.5, {"records": ["sine_*"]})) | {"method": "ida"}, 'records of their own are for "stripes"'),
