@@ -4,7 +4,8 @@
 
 "fixed" and "tolerance" run whole studies with `--jobs 1`, and the kernels of the same groups of runs alone, in turn.
 "fig7" is `rockbatch run` of the study of that name, then `check` and `report` of its folder; "dry" is `--dry-run` of a
-study with dampers. Medians; what is compiled is compiled before.
+study with dampers. Medians; what is compiled is compiled before, Python's modules too (PYTHONDONTWRITEBYTECODE, which would have
+each command compile them anew, is left out).
 """
 
 import argparse
@@ -86,7 +87,8 @@ STUDIES = {
 
 def processor_time(command: Sequence[str]) -> float:
     """User and system time [s] of a process; it may end with 1, where a check failed."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     assert os.waitstatus_to_exitcode(status) in (0, 1), " ".join(command)
     return usage.ru_utime + usage.ru_stime
