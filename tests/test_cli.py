@@ -320,8 +320,13 @@ def started(study, out, redirected, **more):
 @pytest.mark.parametrize(
     ("redirected", "more", "code"),
     [
-        ("", {"PYTHONIOENCODING": "ascii"}, 0), ("", {"PYTHONIOENCODING": "latin-1"}, 0), ("> /dev/full", {}, 1),
-        ("2> /dev/full", {}, 0), ("> /dev/full 2> /dev/full", {}, 1), (">&- 2>&-", {}, 0),
+        ("", {"PYTHONIOENCODING": "ascii"}, 0), ("> /dev/full", {}, 1), (">&- 2>&-", {}, 0),
+        *(
+            pytest.param(*way, marks=pytest.mark.slow)
+            for way in (
+                ("", {"PYTHONIOENCODING": "latin-1"}, 0), ("2> /dev/full", {}, 0), ("> /dev/full 2> /dev/full", {}, 1)
+            )
+        ),
     ],
 )  # fmt: skip
 def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_path, redirected, more, code):

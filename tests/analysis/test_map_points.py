@@ -134,6 +134,7 @@ def test_whole_maps_show_at_2000_random_points_what_their_simulation_says(spec):
     assert len(differ) <= 2
 
 
+@pytest.mark.slow
 def test_a_map_is_covered_once_by_its_strips_however_its_columns_differ():
     """Every strip starts where the one before ends, and in it each region where the one below ends, over the whole range."""
     shown = part("ricker")

@@ -22,6 +22,7 @@ BASES = [
     pytest.param(BOUC_WEN, id="bouc-wen"),
     pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
 ]
+RANDOM_BASES = [BASES[0], pytest.param(ELASTIC, id="elastic", marks=pytest.mark.slow), BASES[2]]
 SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)
 
 
