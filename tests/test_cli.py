@@ -101,6 +101,13 @@ def test_the_table_is_the_same_bytes_with_any_number_of_jobs(study, tmp_path):
     assert (tmp_path / "1/peaks.csv").read_bytes() == (tmp_path / "3/peaks.csv").read_bytes()
 
 
+def test_the_most_frequent_reasons_of_failed_runs_are_named(study, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("rockbatch.simulation.runs.MOST_STEPS", 10)
+    assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 1
+    printed = capsys.readouterr().err
+    assert "2 runs failed: the column reason of peaks.csv says why\n  1 ×: would take " in printed
+
+
 def test_motions_replace_those_of_the_study_and_a_bad_file_is_a_row_with_its_reason(study, tmp_path, capsys):
     records = tmp_path / "records"
     records.mkdir()

@@ -16,6 +16,7 @@ from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import flexible, summary, warnings
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
 
 
@@ -81,9 +82,12 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
             say(str(path))
     if separator:
         say(str(write_semicolons(saved.directory)))
-    failed = int(((peaks["status"] == "failed") & (peaks["case"] != "")).sum())
+    runs = peaks[peaks["case"] != ""]
+    failed = int((runs["status"] == "failed").sum())
     lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
     if words := " and ".join(f"{count(n, noun)} {state}" for n, noun, state in lost if n):
         say(f"{words}: the column reason of peaks.csv says why")
+        for reason, times in reasons_of_failure(runs).items():
+            say(f"  {times} ×: {reason}")
         code = 1
     return code

@@ -22,6 +22,13 @@ def worst_records(runs: "pd.DataFrame", most: int) -> list[str]:
     return list(worst.index[:most])
 
 
+def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
+    """Return how many runs failed for each of the two most frequent reasons, without what follows a colon in these."""
+    failed = runs.loc[runs["status"] == "failed", "reason"].astype(str)
+    counts = failed.str.split("[:;]", n=1).str[0].value_counts()
+    return {str(reason): int(times) for reason, times in counts.head(2).items()}
+
+
 @dataclass(frozen=True)
 class Suite:
     """Statistics of one quantity over the records of a case.

@@ -12,11 +12,11 @@ from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
 from rockbatch.report.templates import render
-from rockbatch.results.suite_statistics import NO_PEAK
+from rockbatch.results.suite_statistics import NO_PEAK, reasons_of_failure
 
-MOST_REASONS = 2
 MOST_COMPARED = 4
 """Cases whose greatest rotations stand beside each other."""
+
 LEAST_ERROR = 1e-6
 """Of α: smaller errors are given as this."""
 
@@ -34,7 +34,7 @@ def worst(finished: Finished) -> Markup:
     """Return the worst responses, and how the runs ended, first those that did not end standing."""
     runs = finished.runs
     stood, unread = runs["status"] == "ok", len(finished.info["unusable"])
-    failed = runs.loc[runs["status"] == "failed", "reason"].astype(str)
+    failed = int((runs["status"] == "failed").sum())
     guided = runs.loc[stood & runs["flight_s"].notna(), "flight_height_m"]
     lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
     return render(
@@ -43,8 +43,8 @@ def worst(finished: Finished) -> Markup:
         symbols=any("=" in words for words in (*(series.label for series in finished.series), *finished.piers)),
         over=runs[runs["status"] == "overturned"],
         flown=runs[runs["status"] == "flight"].sort_values("flight_s", kind="stable"),
-        lost=lost + ([f"{counted(len(failed), 'run')} failed"] if len(failed) else []),
-        reasons=failed.str.split("[:;]", n=1).str[0].value_counts().head(MOST_REASONS).to_dict(),
+        lost=lost + ([f"{counted(failed, 'run')} failed"] if failed else []),
+        reasons=reasons_of_failure(runs),
         responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
         went="every peak converged" if finished.info["numerics"].get("tolerance") else "none failed",
         without_peak=runs["status"].isin(NO_PEAK).any() and stood.any(),
