@@ -11,7 +11,7 @@ import pytest
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
 
 PIER = rb.Pier(alpha=0.2, p=1.0)
 BASE = rb.RigidBase()

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockbatch.files import csv_lines, csv_plain, csv_safe, csv_text, legible
+from rockbatch.common.files import csv_lines, csv_plain, csv_safe, csv_text, legible
 from rockbatch.toml import kinds
 
 FORMULAS = ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")', "＝1+1", "＋1", "－2", "＠A1"]

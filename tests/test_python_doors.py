@@ -13,7 +13,7 @@ import rockbatch as rb
 import rockbatch.analysis.error_and_time
 import rockbatch.batch.threads
 from rockbatch.cli import main
-from rockbatch.files import read_table
+from rockbatch.common.files import read_table
 
 STUDY = """
 title = "Doors"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rockbatch.units import acceleration_factor
+from rockbatch.common.units import acceleration_factor
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analysis.error_and_time import Clock, measure, references
 from rockbatch.analysis.folder import Analysis
-from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.files import is_plain, made_folder, read_text, write_whole
-from rockbatch.lazy import pd
 from rockbatch.report import write_report
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO

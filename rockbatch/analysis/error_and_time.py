@@ -15,8 +15,8 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Advance, Listener, count, silent
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome

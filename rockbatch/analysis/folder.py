@@ -17,8 +17,7 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of
 from rockbatch.batch.threads import Engine, Threads, engine_of
-from rockbatch.errors import InputError
-from rockbatch.files import (
+from rockbatch.common.files import (
     csv_text,
     is_plain,
     made_folder,
@@ -29,12 +28,13 @@ from rockbatch.files import (
     sha256_of,
     write_whole,
 )
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown, several
+from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet, Unusable
 from rockbatch.report import REPORT, write_analyses
 from rockbatch.report.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
-from rockbatch.showing import Shown, several
 from rockbatch.study import Case, Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 

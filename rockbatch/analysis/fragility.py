@@ -13,13 +13,13 @@ from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capaci
 from rockbatch.analysis.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
 from rockbatch.analysis.scale_factors import SCALES, described_scales, scales
 from rockbatch.analysis.waves import Waves
-from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
+from rockbatch.common.arguments import checked
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study

@@ -27,8 +27,8 @@ from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import Rule
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration

@@ -15,7 +15,7 @@ from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Values
 from rockbatch.analysis.risk import Risk, described_hazard
 from rockbatch.analysis.risk import described as described_risk
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
 

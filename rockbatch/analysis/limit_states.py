@@ -7,7 +7,7 @@ from rockbatch.checks.choices import chooses
 from rockbatch.checks.demands import DEMANDS, Case, has_device
 from rockbatch.checks.rules import Rule
 from rockbatch.checks.suite import of_runs
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.study.fragility import OVERTURNING
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2

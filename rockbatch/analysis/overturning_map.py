@@ -11,7 +11,7 @@ from typing import Any
 
 from rockbatch.analysis.map_search import End, Point, Points, Region, Search, regions
 from rockbatch.batch.plan import Made, PlannedRun, scaled
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
 from rockbatch.pier import Base

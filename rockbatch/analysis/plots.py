@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockbatch.analysis.fragility_curves import Curve
-from rockbatch.figures import COLOURS, figure, line, marks, styled
-from rockbatch.lazy import pd
+from rockbatch.common.figures import COLOURS, figure, line, marks, styled
+from rockbatch.common.lazy import pd
 from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR
 
 _OUTCOMES = {"safe": "0.93", "overturned with impact": "#E69F00", "overturned without impact": "#D55E00"}

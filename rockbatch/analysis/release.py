@@ -10,12 +10,12 @@ import numpy as np
 
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.release_fit import Fit, Passages, fitted
-from rockbatch.arguments import checked
 from rockbatch.batch.listening import Progress
 from rockbatch.batch.single import simulate
 from rockbatch.batch.threads import Engine
-from rockbatch.files import made_folder
-from rockbatch.lazy import pd
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import made_folder
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Base
 from rockbatch.simulation.half_cycles import apparent_restitution

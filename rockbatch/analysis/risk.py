@@ -13,7 +13,7 @@ import numpy as np
 
 from rockbatch.analysis.fragility_curves import Curve, Fitted
 from rockbatch.analysis.lognormal import Values
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.motions.hazard import MOST_RATE, HazardCurve
 from rockbatch.study.fragility import FragilitySpec
 from rockbatch.study.hazard import Hazard

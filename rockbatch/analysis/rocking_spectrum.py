@@ -16,8 +16,8 @@ from functools import lru_cache
 from typing import Any
 
 from rockbatch.batch.plan import Made, Plan, PlannedRun, Runs, scaled
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions import Motion, MotionSet, measures
 from rockbatch.results.columns import row
 from rockbatch.results.suite_statistics import suite

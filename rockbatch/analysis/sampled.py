@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.batch.plan import Made, PlannedRun, scaled
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Study

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.analysis.fragility_curves import LevelPlan
 from rockbatch.batch.listening import count
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.study.fragility import FragilitySpec
 
 SCALES = "fragility_scales.csv"

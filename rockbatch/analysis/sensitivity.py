@@ -17,13 +17,13 @@ import numpy as np
 from rockbatch.analysis import sampled
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.sampled import INDICES, Point, Points, Suite, indices
-from rockbatch.arguments import checked
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
 from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.files import opened_text
-from rockbatch.lazy import pd
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import opened_text
+from rockbatch.common.lazy import pd
 from rockbatch.study import Motions, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
 

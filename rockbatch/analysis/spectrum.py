@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rockbatch.analysis import overturning_map, rocking_spectrum
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
 from rockbatch.analysis.waves import Waves
-from rockbatch.arguments import checked
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import is_plain, read_table
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.files import is_plain, read_table
-from rockbatch.lazy import pd
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 from rockbatch.study.spectrum import AXES, SELF_SIMILAR, MapSpec, SpectrumSpec, read_spectrum

@@ -9,7 +9,7 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, silent
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.results.columns import COUNTS, TEXTS, as_table
 from rockbatch.study import Study
 

@@ -20,8 +20,8 @@ from rockbatch.batch.shocks import rows_by_shock, sequences_of
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.verdicts import CHECKS
+from rockbatch.common.files import legible, read_text
 from rockbatch.errors import InputError
-from rockbatch.files import legible, read_text
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.beside_peaks import SEMICOLONS, write

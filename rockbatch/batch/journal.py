@@ -14,8 +14,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
-from rockbatch.errors import InputError
-from rockbatch.files import (
+from rockbatch.common.files import (
     csv_line,
     csv_lines,
     csv_plain,
@@ -25,6 +24,7 @@ from rockbatch.files import (
     opened,
     replacing,
 )
+from rockbatch.errors import InputError
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000

@@ -11,8 +11,8 @@ import numpy as np
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.demands import FORCES
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier, places, vertical_frequency
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved

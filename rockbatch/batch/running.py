@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockbatch.arguments import checked
 from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
@@ -24,15 +23,16 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of, once
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import refuse_folders
+from rockbatch.common.grouping import closest
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.files import refuse_folders
-from rockbatch.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import PART, as_table, columns, unusable_rows
 from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
-from rockbatch.toml.kinds import closest
 
 
 @checked

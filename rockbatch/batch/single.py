@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples

@@ -9,7 +9,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 
 MOST_NAMES = 6
 MOST_CHECKS = 3

@@ -6,7 +6,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import Rule
-from rockbatch.toml.kinds import closest, shown
+from rockbatch.common.grouping import closest
+from rockbatch.toml.kinds import shown
 
 
 def is_about(rule: Rule, case: str) -> bool:

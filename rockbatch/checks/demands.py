@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockbatch.checks.statistics import Values
-from rockbatch.grouping import grouped
-from rockbatch.lazy import pd
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
 from rockbatch.pier.restraints import KINDS, what_of
 

@@ -27,8 +27,8 @@ from rockbatch.checks.suite import (
     with_case,
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.toml.kinds import shown
 
 MOST_NAMES = 5

@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.suite import OTHER_LAW, creeps, rows_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 
 PEAKS = frozenset(
     ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")

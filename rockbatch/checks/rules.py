@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from rockbatch.arguments import checked
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
+from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, shown, text
 from rockbatch.toml.section import Key, Section

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.statistics import Values
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.pier.bases import RATCHETING
 
 OTHER_LAW = "settlement_other_law_m"

@@ -10,9 +10,9 @@ from typing import Any
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.checks.statistics import STATISTICS
+from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.files import csv_plain, csv_text, legible, opened_text, write_whole
-from rockbatch.lazy import pd
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"

@@ -15,7 +15,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
 from rockbatch.commands.summary import named
-from rockbatch.files import is_plain
+from rockbatch.common.files import is_plain
 from rockbatch.report import report as make_report
 from rockbatch.report import write_report
 from rockbatch.results.checking import verdicts

@@ -8,7 +8,7 @@ from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import folder, tell_files
 from rockbatch.commands.streams import in_width, show
 from rockbatch.commands.summary import named
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.study import Study
 
 

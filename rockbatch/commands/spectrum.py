@@ -10,7 +10,7 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.options import analysis_arguments, tell_files
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.study import Study
 from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR, SpectrumSpec
 

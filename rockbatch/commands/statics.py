@@ -9,8 +9,8 @@ import numpy as np
 
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
+from rockbatch.common.files import csv_text, write_whole
 from rockbatch.errors import InputError
-from rockbatch.files import csv_text, write_whole
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.study import Case, Study, load_study

@@ -1,7 +1,7 @@
 """Output to the terminal.
 
-Text may come from untrusted files: control characters are escaped (:func:`rockbatch.files.legible`). A stream that fails, or
-cannot encode a letter, stops nothing: the results are on disk.
+Text may come from untrusted files: control characters are escaped (:func:`rockbatch.common.files.legible`). A stream that fails
+or cannot encode a letter, stops nothing: the results are on disk.
 """
 
 import errno
@@ -13,7 +13,7 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 from typing import TextIO
 
-from rockbatch.files import legible
+from rockbatch.common.files import legible
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
 """Colours of verdicts, by their ANSI numbers."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.streams import in_width
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.simulation.outcome import LEANS, LINEARISED, WOULD_SLIDE
 from rockbatch.study import PIER_KEYS, Study
 

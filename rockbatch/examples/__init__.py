@@ -6,8 +6,8 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+from rockbatch.common.files import made_folder
 from rockbatch.errors import InputError
-from rockbatch.files import made_folder
 
 FIRST = "first_study"
 """The example from which a new study begins."""

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 from rockbatch.motions.archives import bare
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
 from rockbatch.motions.formats import is_usual

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import h5py
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
-from rockbatch.grouping import grouped
-from rockbatch.lazy import h5py
 from rockbatch.motions.azimuths import resolved
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
-from rockbatch.units import GRAVITY
 
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 

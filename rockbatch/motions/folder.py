@@ -12,10 +12,11 @@ from typing import Literal
 
 import numpy as np
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import CHANGED
+from rockbatch.common.grouping import grouped
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
-from rockbatch.files import CHANGED
-from rockbatch.grouping import grouped
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.bounded import TooLongError, watch
@@ -30,7 +31,6 @@ from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.sequences import ShockSequence, with_sequences
 from rockbatch.motions.texts import with_legible_texts
-from rockbatch.units import GRAVITY
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 _MANY = 200  # files; fewer take no time worth a bar

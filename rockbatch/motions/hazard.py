@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
 
 Values = npt.NDArray[np.float64]

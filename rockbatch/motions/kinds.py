@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.limits import LONGEST_STEP, SHORTEST_STEP, STEPS
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, text
-from rockbatch.units import acceleration_factor
 
 _LONGEST_NAME = 1000
 

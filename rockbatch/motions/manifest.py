@@ -13,8 +13,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.files import opened_input
+from rockbatch.common.grouping import closest
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError
-from rockbatch.files import opened_input
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
@@ -22,10 +24,9 @@ from rockbatch.motions.formats import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.sequences import ShockSequence, read_sequences
-from rockbatch.toml.kinds import boolean, choice, closest, not_negative, number, positive, shown, text
+from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
-from rockbatch.units import acceleration_factor
 
 RECORD = Section(("record",), (
     "What is known about a record that its file does not say, or says wrongly. The file `motions.toml` lies in the folder of "

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.files import legible, write_whole
+from rockbatch.common.grouping import grouped
 from rockbatch.errors import InputError
-from rockbatch.files import legible, write_whole
-from rockbatch.grouping import grouped
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files

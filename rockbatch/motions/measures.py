@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Initial, Motion, Samples
-from rockbatch.units import GRAVITY
 
 _REST = Initial()
 _STRAIGHT = 2.5  # times: a lasting displacement, however sudden, leaves half of itself beside any straight line

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown
+from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration
-from rockbatch.showing import Shown
-from rockbatch.units import GRAVITY, acceleration_factor
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,12 +6,12 @@ from difflib import get_close_matches
 from numbers import Integral
 from typing import Any, overload
 
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown, several
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
-from rockbatch.showing import Shown, several
-from rockbatch.units import GRAVITY
 
 _COLUMNS: dict[str, tuple[type, Callable[[Motion], Any]]] = {
     "record": (str, lambda m: m.name),

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 
 
 @dataclass(frozen=True)

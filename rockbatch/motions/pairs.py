@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.lazy import pd
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, Samples, responses
-from rockbatch.units import GRAVITY
 
 Array = npt.NDArray[np.float64]
 

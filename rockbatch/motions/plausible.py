@@ -12,10 +12,10 @@ from fnmatch import fnmatchcase
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Finding, Motion, Samples
-from rockbatch.units import GRAVITY
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""

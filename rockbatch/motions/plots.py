@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from rockbatch.figures import figure, styled
-from rockbatch.units import GRAVITY
+from rockbatch.common.figures import figure, styled
+from rockbatch.common.units import GRAVITY
 
 
 @styled

@@ -24,10 +24,10 @@ from collections.abc import Callable, Collection
 
 import numpy as np
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions.motion import Initial, Motion, Samples
-from rockbatch.units import GRAVITY
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
 

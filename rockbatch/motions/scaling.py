@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from rockbatch.common.grouping import grouped
 from rockbatch.errors import InputError
-from rockbatch.grouping import grouped
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet

@@ -12,17 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.grouping import closest
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.origin import UNKNOWN_ORIGIN
-from rockbatch.toml.kinds import boolean, choice, closest, positive, shown, text
+from rockbatch.toml.kinds import boolean, choice, positive, shown, text
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual
-from rockbatch.units import GRAVITY
 
 PAUSE = 20.0
 """Pause between two shocks [s], unless another is given."""

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.grouping import grouped
 from rockbatch.errors import InputError
-from rockbatch.grouping import grouped
 from rockbatch.motions.design_spectra import Spectrum
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.pairs import DIRECTIONS, station_spectrum, unpaired

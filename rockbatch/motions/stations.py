@@ -13,7 +13,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from rockbatch.grouping import distinct, grouped
+from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions.common_span import overlap
 from rockbatch.motions.component import Component, file_of
 

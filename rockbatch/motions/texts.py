@@ -3,7 +3,7 @@
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar, cast
 
-from rockbatch.files import legible
+from rockbatch.common.files import legible
 
 T = TypeVar("T")
 

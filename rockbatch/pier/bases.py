@@ -7,13 +7,13 @@ import math
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
 from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier
 from rockbatch.pier.places import holds_a_tilt, prestress_over_weight
 from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
 from rockbatch.pier.restraints import Restraint, described_restraints
-from rockbatch.units import LEAST, MOST, POSITIVE, Bounds
 
 LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen and hardening springs would have to sink without end to carry the weight."""

@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
 from rockbatch.errors import InputError, remedy
-from rockbatch.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
 
 
 def _slenderness(alpha: float) -> str:

@@ -6,6 +6,7 @@ Implausible ones, as of a wrong unit, are refused until their ``confirm`` names 
 import math
 from typing import NamedTuple, get_args
 
+from rockbatch.common.units import POSITIVE
 from rockbatch.errors import remedy
 from rockbatch.pier.block import HIGHEST, Pier
 from rockbatch.pier.places import WAYS, offsets, symmetric
@@ -21,7 +22,6 @@ from rockbatch.pier.restraints import (
     Stop,
     Tendon,
 )
-from rockbatch.units import POSITIVE
 
 SPEED = 0.1
 """Speed of a viscous damper [m/s] at which it has less than the pier's weight; heels of piers that step reach 0.1 to 1 m/s."""

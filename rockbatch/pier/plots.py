@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from rockbatch.figures import figure, line, styled
+from rockbatch.common.figures import figure, line, styled
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import Equilibria
 from rockbatch.pier.free_rocking import Swings

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar, Literal, Self
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 from rockbatch.errors import InputError
 from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import Pier
-from rockbatch.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 

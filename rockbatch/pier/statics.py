@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.free_rocking import FreeRocking, Swings
 from rockbatch.pier.places import symmetric
 from rockbatch.pier.plausibility import unlikely_devices
-from rockbatch.showing import Shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from rockbatch.arguments import checked
 from rockbatch.checks import as_table, read_verdicts
-from rockbatch.files import is_plain, made_folder, read_text, write_whole
-from rockbatch.lazy import pd
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import read
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.page import comparison, page

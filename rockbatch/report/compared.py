@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, worst_of_all
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import counted, digits_that_tell, head, symbol
 from rockbatch.report.markup import Markup, join, tag

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.checks.suite import counts_as, simulated, with_case
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.report.markup import Markup, join, number, tag

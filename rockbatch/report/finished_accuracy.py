@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from rockbatch.files import opened_text
+from rockbatch.common.files import opened_text
 
 
 @dataclass(frozen=True)

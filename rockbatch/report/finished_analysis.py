@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.files import read_table, read_text, sha256_of
+from rockbatch.common.lazy import pd
 from rockbatch.errors import EditedTable, InputError
-from rockbatch.files import read_table, read_text, sha256_of
-from rockbatch.lazy import pd
 from rockbatch.report.labels import counted, quantity
 from rockbatch.report.markup import Markup, tag
 

@@ -5,7 +5,7 @@ import math
 import re
 from functools import cache
 
-from rockbatch.files import legible
+from rockbatch.common.files import legible
 
 
 class Markup(str):

@@ -7,7 +7,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import PEAKS
 from rockbatch.checks.statistics import STATISTICS
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing import dots
 from rockbatch.report.drawing.panels import said_of
 from rockbatch.report.finished import Finished

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
 from rockbatch.study import PIER_KEYS

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rockbatch._version import __version__
-from rockbatch.files import legible
+from rockbatch.common.files import legible
 from rockbatch.report.drawing.svg import markers
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, escape, number

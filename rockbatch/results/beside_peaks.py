@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.checks.suite import simulated
-from rockbatch.files import csv_text, opened_text, replacing, write_whole
-from rockbatch.lazy import pd
+from rockbatch.common.files import csv_text, opened_text, replacing, write_whole
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.results.columns import PEAKS, TEXTS

@@ -8,8 +8,8 @@ from typing import Any
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
 from rockbatch.checks.choices import implausible
 from rockbatch.checks.reading import Checks
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.study import Study, load_study

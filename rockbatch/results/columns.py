@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple
 
 from rockbatch.checks.demands import ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Pier
 from rockbatch.simulation.outcome import TERMS, Outcome

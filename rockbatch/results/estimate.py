@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Pier

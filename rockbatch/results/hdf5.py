@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.lazy import h5py
+from rockbatch.common.lazy import h5py
 
 MOST_OF_A_TEXT = 10_000_000
 """Characters of a text that is kept in an attribute: the study's is the longest."""

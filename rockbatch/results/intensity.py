@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.grouping import grouped
-from rockbatch.lazy import pd
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, measures
 from rockbatch.motions.pairs import station_spectra, unpaired
 from rockbatch.motions.spectrum import spectral_acceleration

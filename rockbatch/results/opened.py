@@ -7,20 +7,21 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.arguments import checked
 from rockbatch.checks.suite import simulated
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import read_table
+from rockbatch.common.grouping import closest
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown, several
 from rockbatch.errors import InputError
-from rockbatch.files import read_table
-from rockbatch.lazy import pd
 from rockbatch.results.columns import in_words
 from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.shocks import SHOCKS, read_shocks
-from rockbatch.showing import Shown, several
 from rockbatch.simulation.response import Response
-from rockbatch.toml.kinds import closest, shown
+from rockbatch.toml.kinds import shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

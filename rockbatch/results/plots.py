@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
 from rockbatch.checks.suite import counts_as, simulated
+from rockbatch.common.figures import figure, line, marks, styled
+from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.figures import figure, line, marks, styled
-from rockbatch.lazy import pd
 from rockbatch.results.beside_peaks import case_key
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 from rockbatch.study import PIER_KEYS

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.arguments import checked
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
+from rockbatch.common.lazy import pd
 from rockbatch.errors import EditedTable, InputError, MissingColumns
-from rockbatch.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
-from rockbatch.lazy import pd
 from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit

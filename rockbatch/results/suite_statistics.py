@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.statistics import Values, quantiles
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 
 NO_PEAK = ("overturned", "flight")
 """Outcomes without a largest rotation: they count as larger than any."""

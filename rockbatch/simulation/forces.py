@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedRun, forces_of_run
-from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
 
-from rockbatch.figures import COLOURS, figure, line, styled
+from rockbatch.common.figures import COLOURS, figure, line, styled
 from rockbatch.pier import Base, Pier, YieldingBase
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown
 from rockbatch.errors import InputError
-from rockbatch.lazy import pd
 from rockbatch.pier import Base, Pier
-from rockbatch.showing import Shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,6 +5,7 @@ from collections import Counter
 
 import numpy as np
 
+from rockbatch.common.lazy import pd
 from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.laws import (
     CONTACT,
@@ -23,7 +24,6 @@ from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.core.observe.peaks import RecordedDevices, recorded_force
 from rockbatch.core.observe.rows import state_of
 from rockbatch.core.types import Result
-from rockbatch.lazy import pd
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
 from rockbatch.simulation.models import elements, model, prestress, springs

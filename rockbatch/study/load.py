@@ -9,17 +9,18 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rockbatch.arguments import checked
 from rockbatch.checks.choices import implausible, unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
+from rockbatch.common.arguments import checked
+from rockbatch.common.showing import Shown, several
+from rockbatch.common.units import MOST, Bounds
 from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
-from rockbatch.showing import Shown, several
 from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
@@ -30,7 +31,6 @@ from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual, homes
-from rockbatch.units import MOST, Bounds
 
 TOP = Section((), "", {
     "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; the file's name if there is none."),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.units import GRAVITY, Bounds
 from rockbatch.errors import InputError, remedy
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
@@ -33,7 +34,6 @@ from rockbatch.toml.kinds import (
 )
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
-from rockbatch.units import GRAVITY, Bounds
 
 
 def _table(value: Any) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import Any
 
-from rockbatch.files import whole_input
+from rockbatch.common.files import whole_input
 from rockbatch.study.load import Study
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import Number, choice, positive, shown, text

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockbatch.common.grouping import closest
 from rockbatch.errors import InputError
 from rockbatch.study.csv_columns import columns_of
-from rockbatch.toml.kinds import closest, positive, shown, text
+from rockbatch.toml.kinds import positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Clash, Key, Section
 

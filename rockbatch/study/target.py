@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.grouping import closest
 from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import (
     EUROCODE,
@@ -21,7 +22,7 @@ from rockbatch.motions.design_spectra import (
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
-from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, closest, not_negative, positive, shown, text
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, shown, text
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual
 

@@ -1,17 +1,15 @@
 """Kinds of values: each returns a value as the program uses it, says what it expects, and gives its JSON schema."""
 
-import difflib
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any, Protocol
 
-from rockbatch.files import legible
-from rockbatch.units import LEAST, MOST, Bounds
-
-_LONGEST = 100  # characters of a word that others are compared with
+from rockbatch.common.files import legible
+from rockbatch.common.grouping import closest
+from rockbatch.common.units import LEAST, MOST, Bounds
 
 Schema = dict[str, Any]
 """A JSON schema, draft 7."""
@@ -202,13 +200,6 @@ nonzero = Number("a number other than 0", but=0.0)
 count = Whole()
 boolean = Choice((True, False), "true or false (without quotes)")
 text = Text()
-
-
-def closest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that ``word`` was probably meant to be, whatever its case."""
-    by_lower = {name.lower(): name for name in known}
-    matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
-    return by_lower[matches[0]] if matches else None
 
 
 def shown(value: Any, limit: int = 60) -> str:

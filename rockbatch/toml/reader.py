@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rockbatch.common.files import legible, opened_input
+from rockbatch.common.grouping import closest
 from rockbatch.errors import InputError, remedy
-from rockbatch.files import legible, opened_input
-from rockbatch.toml.kinds import KindError, closest, shown
+from rockbatch.toml.kinds import KindError, shown
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.section import CONFIRM, Key, Section, options
 

@@ -11,8 +11,8 @@ from scipy.interpolate import CubicSpline
 import rockbatch as rb
 from rockbatch.analysis.release_fit import Passages, fitted
 from rockbatch.cli import main
+from rockbatch.common.files import read_table
 from rockbatch.errors import InputError
-from rockbatch.files import read_table
 
 BLOCK = rb.Pier.rectangle(0.3, 1.2)
 START, IMPACTS = 0.1, 10

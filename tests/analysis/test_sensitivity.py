@@ -16,6 +16,7 @@ from rockbatch.analysis.sampled import Point, Points, Suite, design, indices, lo
 from rockbatch.analysis.sensitivity import answers, counted_as, tornado, values_of
 from rockbatch.batch.threads import Threads
 from rockbatch.cli import main
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import EditedTable, InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
@@ -25,7 +26,6 @@ from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.sensitivity import Input, own_values, read_sensitivity, varied
 from rockbatch.study.suite import ground_motions
-from rockbatch.units import GRAVITY
 
 STUDY = study_text(
     pulses=(

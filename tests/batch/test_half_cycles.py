@@ -5,7 +5,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch.half_cycles import HALF_CYCLES
-from rockbatch.files import read_table
+from rockbatch.common.files import read_table
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS
 
 PIER = {"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": [0.05, 0.1]}

@@ -16,7 +16,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch.batch.groups
 import rockbatch.batch.threads
 from rockbatch.cli import main
-from rockbatch.files import only_writer
+from rockbatch.common.files import only_writer
 
 SIMULATED = 18 * 7
 RUNS = 2 * SIMULATED  # with the mirror images

@@ -6,7 +6,7 @@ import pytest
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.files import read_table
+from rockbatch.common.files import read_table
 from rockbatch.motions import read_motions
 from rockbatch.results.shocks import MEANING, SHOCKS
 

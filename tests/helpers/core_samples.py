@@ -6,9 +6,9 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
-from rockbatch.units import GRAVITY
 
 FIG5 = Pier(alpha=0.20, p=1.0)
 FIG6 = Pier(alpha=0.15, p=1.0)

@@ -69,7 +69,7 @@ def test_a_file_that_is_gone_once_it_was_read_is_a_record(tmp_path, monkeypatch)
 
 def test_what_is_written_between_two_looks_at_a_file_is_noticed(tmp_path):
     path = write_at2(tmp_path, "a.AT2", wiggle(60))
-    with pytest.raises(InputError, match="changed while it was read"), rb.files.whole_input(path):
+    with pytest.raises(InputError, match="changed while it was read"), rb.common.files.whole_input(path):
         grown(path)
 
 

@@ -456,7 +456,7 @@ def test_a_report_that_fails_leaves_the_earlier_one_and_no_litter(tmp_path, monk
     def no_space(*_):
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("rockbatch.files.os.replace", no_space)
+    monkeypatch.setattr("rockbatch.common.files.os.replace", no_space)
     with pytest.raises(OSError, match="no space"):
         write_report(tmp_path)
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == earlier

@@ -15,7 +15,7 @@ from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.cli import main
-from rockbatch.files import csv_line, is_plain, opened, read_text
+from rockbatch.common.files import csv_line, is_plain, opened, read_text
 from rockbatch.results import reading
 from rockbatch.results.run_json import SHAPE
 from rockbatch.results.shape import Maybe, fits, unfit

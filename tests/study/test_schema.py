@@ -15,6 +15,7 @@ from studies import study_text, write_study
 import rockbatch.checks
 import rockbatch.motions
 import rockbatch.study
+from rockbatch.common.units import Bounds
 from rockbatch.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
@@ -23,7 +24,6 @@ from rockbatch.toml import kinds
 from rockbatch.toml.kinds import KindError, Text, Whole
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Key, options
-from rockbatch.units import Bounds
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 STUDIES = Draft7Validator(schema_of(STUDY, "study"))

@@ -12,11 +12,11 @@ from scipy.signal import lsim
 from stopped_piers import BASES, ELASTIC, RANDOM_BASES, SHAKEN, stiffness, stopped
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, RigidBase, problems
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.models import first_substeps
-from rockbatch.units import GRAVITY
 
 BRACED = {
     "linear": (Damper("viscous", nu=1.0, brace=2.0),),

@@ -9,13 +9,13 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from reference_solver import reference
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.core import types
 from rockbatch.core.springs.recovery import decay
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase, problems, rocking_frequency, vertical_frequency
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.runs import LEFT_ALONE
-from rockbatch.units import GRAVITY
 
 
 def test_the_decay_is_the_exponential_to_rounding():

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.core.block.equations import on_pivot
 from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.system import at_rest, clearances, lever, transition
@@ -29,7 +30,6 @@ from rockbatch.core.types import (
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
-from rockbatch.units import GRAVITY
 
 PIER = Pier(alpha=0.2, p=1.0)
 MODEL = block(PIER, RigidBase())

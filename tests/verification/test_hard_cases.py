@@ -16,12 +16,12 @@ from reference_solver import reference
 from scipy.optimize import brentq
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, problems
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
 from rockbatch.study import load_study
-from rockbatch.units import GRAVITY
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 INERTIA = FIG5.inertia + FIG5.height**2  # I0/M + h²

@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.core import types
 from rockbatch.core.block import lanes
 from rockbatch.core.devices.pull import devices_of
@@ -24,7 +25,6 @@ from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, problem
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import block, elements
 from rockbatch.simulation.runs import LEFT_ALONE
-from rockbatch.units import GRAVITY
 
 ONE_SINE = pulse("sine", 0.5, 1.0, dt=1e-4, end=3.0)
 STILL = np.zeros(4001)

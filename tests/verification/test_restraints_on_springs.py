@@ -11,11 +11,11 @@ from restrained_reference import TiedTwoSprings
 from scipy.signal import lsim
 
 import rockbatch as rb
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, RigidBase, Tendon, YieldingBase, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
-from rockbatch.units import GRAVITY
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
@@ -19,7 +20,6 @@ from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_of, split_stem
 from rockbatch.motions.origin import origin_of
-from rockbatch.units import acceleration_factor
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = tuple(

@@ -4,10 +4,10 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.orientation import orientation_in, orientation_of
-from rockbatch.units import acceleration_factor
 
 SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3}
 """Units of time [s]."""

@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
@@ -21,7 +22,6 @@ from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
-from rockbatch.units import acceleration_factor
 
 _UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
 _DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # beyond azimuths

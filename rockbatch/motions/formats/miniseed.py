@@ -4,8 +4,9 @@ import re
 
 import numpy as np
 
+from rockbatch.common.lazy import obspy
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError
-from rockbatch.lazy import obspy
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile
@@ -13,7 +14,6 @@ from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
-from rockbatch.units import acceleration_factor
 
 _YEARS = 1900, 2100
 _TOLD = 5  # of the .xml files that could not be read

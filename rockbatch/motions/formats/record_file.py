@@ -5,10 +5,10 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.errors import InputError
 from rockbatch.motions.formats.column_header import SAME_STEP
 from rockbatch.motions.limits import STEPS, is_step
-from rockbatch.units import GRAVITY, acceleration_factor
 
 LAYOUTS = ("columns", "wrapped")
 """Of numbers in text files: a column for each component, or one series that goes on from line to line."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.errors import InputError
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
@@ -13,7 +14,6 @@ from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
-from rockbatch.units import acceleration_factor, length_factor
 
 _SAME_PEAK = 1e-4  # relative: half of the last of five digits, of 1.0000
 _PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")

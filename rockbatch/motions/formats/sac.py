@@ -4,15 +4,15 @@ from typing import Literal
 
 import numpy as np
 
+from rockbatch.common.lazy import obspy
+from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError, UnstatedError
-from rockbatch.lazy import obspy
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import Origin, origin_of
-from rockbatch.units import acceleration_factor
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _KIND_AT = 86 * 4  # header word IDEP

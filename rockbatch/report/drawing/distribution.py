@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rockbatch.checks.suite import counts_as
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
 from rockbatch.report.labels import Series

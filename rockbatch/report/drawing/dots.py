@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Scale, written
 from rockbatch.report.drawing.svg import NO_PEAK, Entry, ends, key, marker, sign_of, style_of, text
 from rockbatch.report.finished import as_dicts

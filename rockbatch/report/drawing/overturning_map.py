@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import Array, Entry, curve, line, lowered, rectangle, svg, text
 from rockbatch.report.markup import Markup

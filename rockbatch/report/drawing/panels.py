@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from rockbatch.grouping import grouped
-from rockbatch.lazy import pd
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import ends, key, line, lowered, marker, rectangle, sign_of, style_of, svg, text
 from rockbatch.report.finished import Finished, as_dicts

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.files import read_table
+from rockbatch.common.files import read_table
 from rockbatch.report.finished import Finished, as_dicts
 from rockbatch.report.markup import Markup
 from rockbatch.report.table import THETA_FORMAT, Head, alarm, table

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import head
 from rockbatch.report.markup import Markup, join, number

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 from rockbatch.report.drawing import cloud
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text

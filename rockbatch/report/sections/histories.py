@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.history import LOOPS_HEIGHT, QUANTITIES, History, reduced
 from rockbatch.report.drawing.svg import Array, curve, line, lowered, marker, rectangle, svg, text

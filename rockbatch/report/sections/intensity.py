@@ -2,8 +2,8 @@
 
 import math
 
-from rockbatch.files import read_table
-from rockbatch.lazy import pd
+from rockbatch.common.files import read_table
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.table import Head, table

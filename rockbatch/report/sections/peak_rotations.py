@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from itertools import islice
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.panels import draw
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.markup import Markup, figure, join, tag

@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.checks.suite import OTHER_LAW, creeps
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished, as_dicts, worst_first
 from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, line, marker, side_by_side, svg, text
 from rockbatch.report.finished import as_dicts

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.checks.statistics import STATISTICS
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Entry, key, line, lowered, rectangle, svg, text
 from rockbatch.report.finished import as_dicts

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.drawing import overturning_map
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.checks.suite import counts_as
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag

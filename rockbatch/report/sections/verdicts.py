@@ -7,7 +7,7 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
-from rockbatch.grouping import grouped
+from rockbatch.common.grouping import grouped
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, paragraphs, tag

@@ -1,4 +1,4 @@
-"""Packages that take long to load, loaded when they are first used: ``from rockbatch.lazy import pd``."""
+"""Packages that take long to load, loaded when they are first used: ``from rockbatch.common.lazy import pd``."""
 
 from importlib import import_module
 from types import ModuleType

@@ -1,11 +1,14 @@
-"""Things in groups, and names that tell them apart."""
+"""Things in groups, names that tell them apart, and the name that was meant."""
 
+import difflib
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import TypeVar
 
 T = TypeVar("T")
 K = TypeVar("K", bound=Hashable)
+
+_LONGEST = 100  # characters of a word that others are compared with
 
 
 def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
@@ -31,3 +34,10 @@ def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[s
         if counts[name] > 1:
             names[i] = f"{name} ({counts[name]})"
     return names
+
+
+def closest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that ``word`` was probably meant to be, whatever its case."""
+    by_lower = {name.lower(): name for name in known}
+    matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
+    return by_lower[matches[0]] if matches else None

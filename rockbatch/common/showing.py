@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from html import escape
 
-from rockbatch.lazy import pd
+from rockbatch.common.lazy import pd
 
 MOST_ROWS = 12
 """Greatest number of rows of a table in a notebook."""
