@@ -73,7 +73,7 @@ def passes(traits, lanes_table, runs, ground, count):
         m = model(traits, lanes, i)
         start_clock(lanes, i, i, runs[i], at_rest(m), math.atan2(m.half_width, m.height), 0.0)
         read_ground(lanes, i, ground)
-        lanes.news.watched[i] = 0.0
+        lanes.step_status.watched[i] = 0.0
     for k in range(count):
         one_pass(traits, lanes, len(runs), k, SETTINGS)
 

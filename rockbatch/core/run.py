@@ -276,9 +276,9 @@ def _attend_with_devices(devices, traits, lanes, i, marks, substep, settings, gr
 
 @_attend.of(type(None))
 def _attend_alone(devices, traits, lanes, i, marks, substep, settings, ground, history):
-    if lanes.news.kind[i] >= EVENTFUL:
+    if lanes.step_status.kind[i] >= EVENTFUL:
         return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
-    if lanes.news.kind[i] == ATTEND:
+    if lanes.step_status.kind[i] == ATTEND:
         write_reversals(traits, lanes, i, substep, history)
         _include_peak_of_lane(lanes, i, substep)
         attend(traits, lanes, i)
@@ -334,7 +334,7 @@ def _pass(devices, traits, lanes, count, substep, settings):
 
 @_pass.of(Devices)
 def _pass_with_devices(devices, traits, lanes, count, substep, settings):
-    lanes.news.kind[0] = EVENTFUL  # a lane with devices is taken event by event
+    lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is taken event by event
     return count
 
 
@@ -343,7 +343,7 @@ def _pass_alone(devices, traits, lanes, count, substep, settings):
     one_pass(traits, lanes, count, substep, settings)
     busy = 0
     for i in range(count):
-        busy += 1 if lanes.news.kind[i] != CALM else 0
+        busy += 1 if lanes.step_status.kind[i] != CALM else 0
     return busy
 
 
@@ -375,7 +375,7 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
             i = NONE if busy > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
-                if lanes.news.kind[i] != CALM:
+                if lanes.step_status.kind[i] != CALM:
                     status, t = _attend(devices, traits, lanes, i, marks, substep, settings, ground, history)
                 if status == SURVIVED:
                     i += 1

@@ -118,8 +118,8 @@ def begin(traits, lanes, i, run):
 def one_pass(traits, lanes, count, substep, settings):
     """Take the first ``count`` lanes through a sub-step, from ``now`` to ``end``.
 
-    One that is calm goes on from the end, its extremes brought up to it. Of others ``news`` says whether their sub-step stands
-    (ATTEND) or has to be taken event by event (EVENTFUL).
+    One that is calm goes on from the end, its extremes brought up to it. Of others ``step_status`` says whether their sub-step
+    stands (ATTEND) or has to be taken event by event (EVENTFUL).
     """
 
 

@@ -13,7 +13,7 @@ from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import LEFT, RIGHT
 
 
-class News(NamedTuple):
+class StepStatus(NamedTuple):
     """Outcome of the pass."""
 
     kind: float
@@ -37,7 +37,8 @@ class Bounds(NamedTuple):
 
 
 LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": Rocking, "end": Tilt, "contact": Stance, "news": News, "ending": Ending, "bounds": Bounds,
+    "model": Numbers, "now": Rocking, "end": Tilt, "contact": Stance, "step_status": StepStatus, "ending": Ending,
+    "bounds": Bounds,
 })  # fmt: skip
 
 

@@ -66,7 +66,7 @@ def _pass_over(lanes, i, substep, settings):
     lanes.peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if higher else lanes.peak.time[i]
     lanes.now.theta[i] = end.theta if calm else y.theta
     lanes.now.omega[i] = end.omega if calm else y.omega
-    lanes.news.kind[i] = CALM if calm else (ATTEND if stands else EVENTFUL)
+    lanes.step_status.kind[i] = CALM if calm else (ATTEND if stands else EVENTFUL)
 
 
 @system.one_pass.of(BlockTraits)

@@ -72,7 +72,7 @@ def _powers(m, y, k, contact, horizontal, vertical):
 
 
 @kernel
-def _crept(m, contact, y, y_end):
+def _recovered(m, contact, y, y_end):
     """Return the energy [J/kg] that supports without their pivots have lost to their dashpots: all that was stored."""
     left = (1.0 - contact.left) * (y.z_left * y.z_left - y_end.z_left * y_end.z_left)
     right = (1.0 - contact.right) * (y.z_right * y.z_right - y_end.z_right * y_end.z_right)
@@ -146,7 +146,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
             plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
             p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
             constraint += h / 6.0 * (c0 + 4.0 * c1 + c2)
-            damping += h / 6.0 * (q0 + 4.0 * q1 + q2) + _crept(m, contact, y, y_end)
+            damping += h / 6.0 * (q0 + 4.0 * q1 + q2) + _recovered(m, contact, y, y_end)
         kinetic, potential, elastic = _stored(m, y_end, contact)
         line = out[i]
         line.kinetic, line.potential, line.elastic = kinetic - kinetic0, potential - potential0, elastic - elastic0

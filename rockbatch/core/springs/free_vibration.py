@@ -117,15 +117,15 @@ def _returned(m, theta):
 
 
 @kernel
-def _swept(m, lean, drift, sinking, swollen):
+def _swept(m, lean, drift, sinking, amplification):
     """Return by how much [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
 
     A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
-    by the factor exp(n h swollen · sinking/b²) while both sink by ``sinking`` [m] on average.
+    by the factor exp(n h amplification · sinking/b²) while both sink by ``sinking`` [m] on average.
     """
     if not ratchets(m.law):
         return max(drift, 0.0)
-    grows = number(m.exponent) * m.height * swollen * sinking / (m.half_width * m.half_width)
+    grows = number(m.exponent) * m.height * amplification * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
         return max(drift, 0.0)
     factor = math.expm1(min(grows, 50.0))
@@ -161,10 +161,10 @@ def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
     stiffness = rocking_stiffness(m)
     softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
     tilt = 0.5 * (base.left - base.right) / b
-    swollen = (stiffness + g * h) / stiffness
-    lean = tilt * swollen
-    drift_right = _swept(m, lean, drift.right * swollen, drift.sinking, swollen)
-    drift_left = _swept(m, -lean, drift.left * swollen, drift.sinking, swollen)
+    amplification = (stiffness + g * h) / stiffness
+    lean = tilt * amplification
+    drift_right = _swept(m, lean, drift.right * amplification, drift.sinking, amplification)
+    drift_left = _swept(m, -lean, drift.left * amplification, drift.sinking, amplification)
     limit = min(peak, unstable_equilibrium(m, load))
     if abs(lean) >= unstable_equilibrium(m, load):
         return UNSTABLE
@@ -185,7 +185,7 @@ def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
         reach = math.sqrt(rocking / softened)
         sway = lean * (stiffness / softened)  # the lean swells with the weight
         if m.finite is not None:  # to second order, sin² θ stores less than θ²
-            reach *= 1.0 + swollen * limit * limit / 6.0
+            reach *= 1.0 + amplification * limit * limit / 6.0
         furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
         return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
     at = geometry(m, y.theta)

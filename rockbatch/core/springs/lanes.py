@@ -14,7 +14,7 @@ from rockbatch.core.springs.ending import Waiting, base_of
 from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
 from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
-from rockbatch.core.springs.passing import News
+from rockbatch.core.springs.passing import StepStatus
 from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.system import Kind, model, moment, rates
 from rockbatch.core.table import get, lanes_of, put, taken
@@ -31,7 +31,7 @@ class Lowest(NamedTuple):
 
 LANE = lanes_of(COMMON | {
     "model": Numbers, "now": State, "end": State, "rates": State, "contact": Contact, "supports": Supports,
-    "loading": Loading, "lowest": Lowest, "news": News, "waiting": Waiting,
+    "loading": Loading, "lowest": Lowest, "step_status": StepStatus, "waiting": Waiting,
 })  # fmt: skip
 
 
@@ -130,7 +130,7 @@ def begin(traits, lanes, i, run):
     put_moment(traits, lanes, i, y, contact, supports)
     put(lanes.loading, i, Loading(unstressed_left, y.z_left, 0.0, unstressed_right, y.z_right, 0.0))
     put(lanes.lowest, i, Lowest(min(level, left.position), min(level, right.position), plastic))
-    lanes.news.watched[i] = 1.0
+    lanes.step_status.watched[i] = 1.0
 
 
 @system.include.of(SpringTraits)
@@ -161,28 +161,28 @@ def after_step(traits, lanes, i, marks, contact, whole):
     clear = whole and contact.held == 0.0 and min(marks.now[0], marks.now[1]) > 0.0
     for j in (2, 3):  # a velocity leaves zero
         clear = clear and (marks.now[j] > 0.0 or marks.now_slopes[j] > 0.0)
-    lanes.news.watched[i] = 0.0 if clear else 1.0
+    lanes.step_status.watched[i] = 0.0 if clear else 1.0
 
 
 @system.attend.of(SpringTraits)
 def attend(traits, lanes, i):
     """Take in extremes, plastic work and yield points of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
-    m, news, h = model(traits, lanes, i), lanes.news, lanes.clock.step[i]
+    m, step_status, h = model(traits, lanes, i), lanes.step_status, lanes.clock.step[i]
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), get(lanes.contact, i, Contact)
     if system.airborne(m, contact):
         include_height(lanes, i, m, get(lanes.supports, i, Supports), y, end, h)
     include(traits, lanes, i, m, y, y, end, end, contact, h)
     put(lanes.now, i, end)
-    if news.closes[i] == 0.0:
+    if step_status.closes[i] == 0.0:
         return
     left, right = pivots(m, end)
     loading = get(lanes.loading, i, Loading)
-    if news.left[i] >= 0.0 and contact.left_yields == 0.0:
-        loading = close_left(m, loading, left.position - m.yield_deflection * end.z_left, news.z_left[i])
-        lanes.supports.yield_left[i] = yield_point(m.law, lanes.supports.yield_left[i], news.z_left[i])
-    if news.right[i] >= 0.0 and contact.right_yields == 0.0:
-        loading = close_right(m, loading, right.position - m.yield_deflection * end.z_right, news.z_right[i])
-        lanes.supports.yield_right[i] = yield_point(m.law, lanes.supports.yield_right[i], news.z_right[i])
+    if step_status.left[i] >= 0.0 and contact.left_yields == 0.0:
+        loading = close_left(m, loading, left.position - m.yield_deflection * end.z_left, step_status.z_left[i])
+        lanes.supports.yield_left[i] = yield_point(m.law, lanes.supports.yield_left[i], step_status.z_left[i])
+    if step_status.right[i] >= 0.0 and contact.right_yields == 0.0:
+        loading = close_right(m, loading, right.position - m.yield_deflection * end.z_right, step_status.z_right[i])
+        lanes.supports.yield_right[i] = yield_point(m.law, lanes.supports.yield_right[i], step_status.z_right[i])
     put(lanes.loading, i, loading)
 
 
@@ -221,7 +221,7 @@ def _write_reversals(traits, lanes, i, substep, history):
     m, after, h = model(traits, lanes, i), get(lanes.contact, i, Contact), lanes.clock.step[i]
     start = substep * h
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
-    y, left, right = get(lanes.now, i, State), lanes.news.left[i], lanes.news.right[i]
+    y, left, right = get(lanes.now, i, State), lanes.step_status.left[i], lanes.step_status.right[i]
     was_left = after.left_yields if left < 0.0 else 1.0 - after.left_yields
     was_right = after.right_yields if right < 0.0 else 1.0 - after.right_yields
     contact, at = Contact(after.left, after.right, was_left, was_right, 0.0), 0.0

@@ -20,7 +20,7 @@ from rockbatch.core.system import model, rates
 from rockbatch.core.table import get, put
 
 
-class News(NamedTuple):
+class StepStatus(NamedTuple):
     """Outcome of the pass, and the velocity reversals that it has corrected: when [s], UNSET without one, and z then."""
 
     kind: float
@@ -79,7 +79,7 @@ def _turned(traits, lanes, i, settings):
     """Correct reversals in the sub-step of lane ``i``, and say whether it stands."""
     m = model(traits, lanes, i)
     y, end, contact, h = get(lanes.now, i, State), get(lanes.end, i, State), _free(lanes, i), lanes.clock.step[i]
-    supports, rest, news = lanes.supports, lanes.clock.rest[i], lanes.news
+    supports, rest, step_status = lanes.supports, lanes.clock.rest[i], lanes.step_status
     (left, right), (left_end, right_end) = pivots(m, y), pivots(m, end)
     sign_left = kept_sign(m.law, contact.left, contact.left_yields)
     sign_right = kept_sign(m.law, contact.right, contact.right_yields)
@@ -97,7 +97,7 @@ def _turned(traits, lanes, i, settings):
         ),
     )  # fmt: skip
     surely = clear > 0.0 and abs(end.theta) < ON_ITS_SIDE  # never of what is no number
-    nothing_else = surely and not news.watched[i] > 0.0
+    nothing_else = surely and not step_status.watched[i] > 0.0
     stands = nothing_else and not turn_left.doubts and not turn_right.doubts and settings.locate
     turned_left, turned_right = stands and turn_left.happened, stands and turn_right.happened
     turned = turned_left or turned_right
@@ -113,18 +113,18 @@ def _turned(traits, lanes, i, settings):
     at, loading = lanes.contact, lanes.loading
     at.left_yields[i] = 1.0 - contact.left_yields if turned_left else contact.left_yields
     at.right_yields[i] = 1.0 - contact.right_yields if turned_right else contact.right_yields
-    news.left[i] = h - turn_left.after if turned_left else UNSET
-    news.right[i] = h - turn_right.after if turned_right else UNSET
-    news.z_left[i] = turn_left.z
-    news.z_right[i] = turn_right.z
+    step_status.left[i] = h - turn_left.after if turned_left else UNSET
+    step_status.right[i] = h - turn_right.after if turned_right else UNSET
+    step_status.z_left[i] = turn_left.z
+    step_status.z_right[i] = turn_right.z
     loads_left, loads_right = turned_left and sign_left > 0.0, turned_right and sign_right > 0.0
     loading.left[i] = left_end.position - m.yield_deflection * end.z_left if loads_left else loading.left[i]
     loading.right[i] = right_end.position - m.yield_deflection * end.z_right if loads_right else loading.right[i]
     loading.z_left[i] = turn_left.z if loads_left else loading.z_left[i]
     loading.z_right[i] = turn_right.z if loads_right else loading.z_right[i]
     closes = (turned_left and sign_left < 0.0) or (turned_right and sign_right < 0.0)
-    news.closes[i] = 1.0 if closes else 0.0
-    news.kind[i] = CALM if stands else EVENTFUL
+    step_status.closes[i] = 1.0 if closes else 0.0
+    step_status.kind[i] = CALM if stands else EVENTFUL
 
 
 @inlined
@@ -133,7 +133,13 @@ def _closed(traits, lanes, i, substep, settings):
 
     Extremes at the end are taken here; a sub-step that may hold one between its ends is not calm.
     """
-    m, news, clock, peak, lowest = model(traits, lanes, i), lanes.news, lanes.clock, lanes.peak, lanes.lowest
+    m, step_status, clock, peak, lowest = (
+        model(traits, lanes, i),
+        lanes.step_status,
+        lanes.clock,
+        lanes.peak,
+        lanes.lowest,
+    )
     y, end, h = get(lanes.now, i, State), get(lanes.end, i, State), clock.step[i]
     (left, right), (left_end, right_end) = pivots(m, y), pivots(m, end)
     on_left, on_right, low_left, low_right = (
@@ -149,9 +155,9 @@ def _closed(traits, lanes, i, substep, settings):
         or _new_low(on_right, right, right_end, low_right, h)
     )
     flies = on_left + on_right == 0.0
-    stands = news.kind[i] == CALM
-    shown = settings.recording and max(news.left[i], news.right[i]) >= 0.0
-    calm = stands and not (new or flies or shown or news.closes[i] > 0.0)
+    stands = step_status.kind[i] == CALM
+    shown = settings.recording and max(step_status.left[i], step_status.right[i]) >= 0.0
+    calm = stands and not (new or flies or shown or step_status.closes[i] > 0.0)
     higher = calm and tilt_end > peak.theta[i]
     peak.theta[i] = tilt_end if higher else peak.theta[i]
     peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if higher else peak.time[i]
@@ -165,7 +171,7 @@ def _closed(traits, lanes, i, substep, settings):
         end.z_left if calm else y.z_left,
         end.z_right if calm else y.z_right,
     ))  # fmt: skip
-    news.kind[i] = ATTEND if stands and not calm else news.kind[i]
+    step_status.kind[i] = ATTEND if stands and not calm else step_status.kind[i]
 
 
 @system.one_pass.of(SpringTraits)
