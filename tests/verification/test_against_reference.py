@@ -241,14 +241,18 @@ def test_random_hard_cases_agree_with_the_reference(block):
 
     The estimate itself covers the error but for one run of a block at most (case 118: 1.1e-8 α for 1.0e-9 α reported);
     1e-9 α is the reference's own error. Where no note says otherwise counts agree but for a hop so low that it is within
-    the errors of either (one of 64 in case 206; one of 30 in case 138, which the reference misses).
+    the errors of either (one of 64 in case 206; one of 30 in case 138, which the reference misses). Where a pier rests after
+    450 impacts is not settled to 1e-6 α in case 138 (5.04e-4 to 5.16e-4 rad with 1280 to 5120 substeps); its peak is held too.
     """
-    compared, other_counts, not_covered = 0, 0, 0
+    compared, other_counts, not_covered, elsewhere = 0, 0, 0, 0
     for seed in range(20 * block, 20 * block + 20):
         pier, base, motion = hard_case(seed)
         settled = run_to_tolerance(pier, base, motion, tolerance=1e-6, quiet_s=1.0)
         left_alone = settled.reason in LEFT_ALONE
-        if settled.status == "failed" and not left_alone:  # chaos: nothing is lost at impacts with ε = 1
+        rests_elsewhere = "still changed theta_res" in settled.reason
+        if settled.status == "failed" and not (
+            left_alone or rests_elsewhere
+        ):  # chaos: nothing is lost at impacts with ε = 1
             assert base.epsilon > 0.99, f"case {seed}: {settled.reason}"
             continue
         outcome = run_fixed(pier, base, motion, settled.substeps, 1.0, wait=False)
@@ -259,6 +263,7 @@ def test_random_hard_cases_agree_with_the_reference(block):
         error = abs(outcome.theta_max - expected.theta_max)
         assert error <= 1e-6 * pier.alpha, seed
         compared += 1
+        elsewhere += rests_elsewhere
         if left_alone:
             continue
         if outcome.theta_max == settled.theta_max:
@@ -268,4 +273,5 @@ def test_random_hard_cases_agree_with_the_reference(block):
             other_counts += outcome.impacts != expected.impacts
     assert other_counts <= 1
     assert not_covered <= 1
+    assert elsewhere <= 1
     assert compared >= 8
