@@ -186,7 +186,7 @@ class Scripted(Clock):
         super().__init__()
         self.questions = questions
 
-    def left(self, share=1.0):
+    def remaining(self, share=1.0):
         self.questions -= 1
         return math.inf if self.questions >= 0 else -1.0
 
