@@ -8,7 +8,7 @@ from rockbatch.batch.finishing import FinishedBatch
 from rockbatch.batch.listening import count
 from rockbatch.batch.running import merge, run_into
 from rockbatch.batch.threads import cores
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.commands import check
 from rockbatch.commands.messages import Terminal
@@ -82,7 +82,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
             say(str(path))
     if separator:
         say(str(write_semicolons(saved.directory)))
-    runs = peaks[peaks["case"] != ""]
+    runs = with_case(peaks)
     failed = int((runs["status"] == "failed").sum())
     lost = ((failed, "run", "failed"), (len(saved.info["unusable"]), "file", "not used"))
     if words := " and ".join(f"{count(n, noun)} {state}" for n, noun, state in lost if n):

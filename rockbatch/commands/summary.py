@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.listening import count
+from rockbatch.checks.suite import with_case
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
 from rockbatch.simulation.outcome import LEANS, LINEARISED, WOULD_SLIDE
@@ -20,7 +21,7 @@ def summary(table: "pd.DataFrame", varied: tuple[str, ...], records: Mapping[str
 
     ``records`` maps each name in the table to what is written in its place.
     """
-    runs = table[table["case"] != ""]
+    runs = with_case(table)
     if len(runs) > MOST_RUNS:
         return _worst(runs.assign(record=runs["record"].map(records)), varied)
     place = {name: i for i, name in enumerate(records)}

@@ -61,6 +61,8 @@ def render(template: str, **values: object) -> Markup:
 
 @cache
 def _environment() -> "Environment":
+    from importlib.metadata import version
+
     from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
     class Compiled(FileSystemBytecodeCache):
@@ -71,8 +73,11 @@ def _environment() -> "Environment":
                 with suppress(OSError):
                     super().dump_bytecode(bucket)
 
+    # Jinja looks at a template's text and at Python's version only, but its own version and the options below count, too
+    compiler = hashlib.sha256(version("jinja2").encode() + Path(__file__).read_bytes()).hexdigest()[:8]
+    pattern = f"%s.{sys.implementation.cache_tag}-{compiler}.jinja"
     made = Environment(
-        bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), f"%s.{sys.implementation.cache_tag}.jinja"),
+        bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), pattern),
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined,
         finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
         trim_blocks=True, lstrip_blocks=True,

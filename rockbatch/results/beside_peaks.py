@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import simulated, with_case
 from rockbatch.common.files import csv_text, opened_text, replacing, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
@@ -39,7 +39,7 @@ def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iter
     by_name = {motion.name: motion for motion in motions}
     piers = {case_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
     columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
-    table = simulated(peaks[peaks["case"] != ""])[columns_kept]
+    table = simulated(with_case(peaks))[columns_kept]
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
         pier = piers[case_key(row["case"], row, study.varied)]

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.checks.suite import simulated
+from rockbatch.checks.suite import simulated, with_case
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
@@ -151,7 +151,7 @@ class Results(Shown, Saved):
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
-        runs = simulated(self.peaks[self.peaks["case"] != ""])
+        runs = simulated(with_case(self.peaks))
         counts = runs["status"].value_counts()
         facts = {"runs": f"{len(runs)}: " + ", ".join(f"{n} {status}" for status, n in counts.items())}
         stood = runs[runs["status"] == "ok"]

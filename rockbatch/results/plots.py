@@ -16,7 +16,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
-from rockbatch.checks.suite import counts_as, simulated
+from rockbatch.checks.suite import counts_as, simulated, with_case
 from rockbatch.common.figures import figure, line, marks, styled
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
@@ -114,7 +114,7 @@ def plot(peaks: "pd.DataFrame", info: Mapping[str, Any], width_mm: float) -> Fig
 def _runs(peaks: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
     """Return the rows that were simulated, each with its ``foundation`` in words, True for a ``rigid`` one, and its ``group``:
     the varied values of its pier, and its scale."""
-    runs = simulated(peaks[peaks["case"] != ""])
+    runs = simulated(with_case(peaks))
     varied = info["varied"]
     rigid = {case["case"] for case in info["cases"] if case["base"] == "rigid"}
     if len(rigid) == len({case["case"] for case in info["cases"]}):
@@ -174,7 +174,7 @@ def _legend(figure: Figure, columns: int) -> None:
 def plot_cdf(peaks: "pd.DataFrame", varied: Sequence[str], count: str, width_mm: float) -> Figure:
     """See :meth:`rockbatch.results.opened.Results.plot_cdf`, which hands over the rows of peaks.csv, the varied keys,
     and what counts as one record."""
-    runs = simulated(peaks[peaks["case"] != ""])
+    runs = simulated(with_case(peaks))
     keys = [name for name in ("case", *varied, "scale") if name == "case" or runs[name].nunique() > 1]
     groups = runs.groupby(keys, sort=False, dropna=False)
     drawn = figure(width_mm, 0.5 * width_mm + 12.0 + 3.6 * math.ceil(len(groups) / 2))

@@ -133,13 +133,8 @@ def _closed(traits, lanes, i, substep, settings):
 
     Extremes at the end are taken here; a sub-step that may hold one between its ends is not calm.
     """
-    m, step_status, clock, peak, lowest = (
-        model(traits, lanes, i),
-        lanes.step_status,
-        lanes.clock,
-        lanes.peak,
-        lanes.lowest,
-    )
+    m, step_status = model(traits, lanes, i), lanes.step_status
+    clock, peak, lowest = lanes.clock, lanes.peak, lanes.lowest
     y, end, h = get(lanes.now, i, State), get(lanes.end, i, State), clock.step[i]
     (left, right), (left_end, right_end) = pivots(m, y), pivots(m, end)
     on_left, on_right, low_left, low_right = (
