@@ -87,7 +87,13 @@ def _numbers(
     for i, line in enumerate(lines):
         place = i * per_line
         row = fields(line, first + i, min(per_line, count - place))
-        values[place : place + per_line] = [number_in(field, first + i) for field in row]
+        try:
+            numbers = list(map(float, row))  # as nearly all are written
+        except ValueError:
+            numbers = [np.nan]
+        if "_" in line or not sum(map(abs, numbers)) < HUGE:
+            numbers = [number_in(field, first + i) for field in row]
+        values[place : place + per_line] = numbers
     return values
 
 
