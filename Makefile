@@ -7,6 +7,9 @@ BIN := $(VENV)/bin
 # Where this is set, every process compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
+# As in the command itself: with several workers, threads of BLAS mostly wait for a processor.
+export OMP_NUM_THREADS := 1
+
 # What is imported is compiled then: compiling all of the packages takes as long as unpacking them.
 INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --editable
 
