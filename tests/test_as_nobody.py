@@ -11,6 +11,7 @@ from motion_files import wiggle, write_at2
 from studies import RIGID, study_text, write_study
 
 import rockbatch
+from rockbatch.cli import main
 
 NOBODY = 200_000 + os.getpid() % 100_000
 """A number that no user has, and no other process of these tests."""
@@ -60,13 +61,12 @@ def test_where_processes_are_too_few_a_sentence_says_so_and_no_record_is_to_blam
 
 
 def test_with_three_processes_one_thread_finishes_the_batch(study):
-    outs = [study.with_name(name) for name in ("few", "many")]
-    for out, processes in zip(outs, (3, 300), strict=True):
-        done = rockbatch_as_nobody(processes, "run", str(study), "--out", str(out), "--jobs", "1")
-        assert done.returncode == 0, done.stderr
-        assert (out / "report.html").is_file()
-    few, many = ((out / "peaks.csv").read_bytes() for out in outs)
-    assert few == many
+    few, many = (study.with_name(name) for name in ("few", "many"))
+    done = rockbatch_as_nobody(3, "run", str(study), "--out", str(few), "--jobs", "1")
+    assert done.returncode == 0, done.stderr
+    assert (few / "report.html").is_file()
+    assert main(["run", str(study), "--out", str(many), "--jobs", "1"]) == 0
+    assert (few / "peaks.csv").read_bytes() == (many / "peaks.csv").read_bytes()
 
 
 def test_whoever_has_no_home_is_told_of_a_path_from_there(study):

@@ -2,6 +2,7 @@
 
 import os
 import warnings
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,27 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # ObsPy's own use of the standard library, when it is first loaded
     import obspy  # noqa: F401
 
+from rockbatch.motions import MotionSet, ReadOptions, read_motions
+from rockbatch.motions.component import Component
+from rockbatch.motions.folder import read_files
+
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
 """Folder of real records, most of which may not be redistributed; its path comes from the environment."""
 
 needs_records = pytest.mark.skipif(not RECORDS.is_dir(), reason="ROCKBATCH_RECORDS names no folder of real records")
+
+
+@cache
+def real_motions(*folders: str, unit: str | None = None) -> MotionSet:
+    """Return the motions of all real records, or of some of their folders; read once."""
+    return read_motions([RECORDS / folder for folder in folders] or RECORDS, options=ReadOptions(unit=unit))
+
+
+@cache
+def real_components(unit: str | None = None) -> list[Component]:
+    """Return the components of all real records, copies included; read once."""
+    readings, _, _ = read_files([RECORDS], options=ReadOptions(unit=unit))
+    return [reading for reading in readings if isinstance(reading, Component)]
 
 
 def e15_7(value: float) -> str:

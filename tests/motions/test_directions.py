@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from agency_files import dyna_text, geonet_text
 from fixed_column_files import cosmos_text
-from motion_files import RECORDS, needs_records, wiggle, write_at2
+from motion_files import needs_records, real_motions, wiggle, write_at2
 from obspy import Trace
 from studies import FOLDER_STUDY, write_study
 
@@ -321,7 +321,7 @@ def test_a_sac_component_that_is_neither_level_nor_upright_is_asked_for(tmp_path
 
 @needs_records
 def test_no_real_record_is_asked_for():
-    found = read_motions([RECORDS / "formats", RECORDS / "suite", RECORDS / "table1", RECORDS / "open"])
+    found = real_motions()
     assert len(found.motions) > 50
     assert not any("direction not known" in u.reason for u in found.unusable)
 

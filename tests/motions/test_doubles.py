@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from agency_files import geonet_text, renadic_channel
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
-from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
+from motion_files import RECORDS, at2_text, needs_records, real_components, real_motions, wiggle, write_at2
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.doubles import correlation, without_doubles
-from rockbatch.motions.folder import read_files
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.manifest_draft import draft
 
@@ -269,7 +268,7 @@ def test_of_real_recordings_in_several_files_one_is_used():
 
 @needs_records
 def test_all_real_records_at_once_hold_each_recording_once():
-    found = read_motions(RECORDS)
+    found = real_motions()
     samples = [(motion.dt, motion.horizontal.tobytes()) for motion in found.motions]
     assert len(set(samples)) == len(samples)
 
@@ -277,8 +276,7 @@ def test_all_real_records_at_once_hold_each_recording_once():
 @needs_records
 def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
     """The limit lies between both; halves of a record stand for the parts of a long one."""
-    readings, _, _ = read_files([RECORDS])
-    components = [reading for reading in readings if isinstance(reading, Component)]
+    components = real_components()
     short = [component for component in components if len(component.acceleration) < 9000]
 
     def way(component: Component) -> tuple[object, ...]:

@@ -1,11 +1,12 @@
 """What is odd about a record: it is told, and where it is gross, nothing is run until somebody confirms it."""
 
 import csv
+from functools import cache
 
 import numpy as np
 import pytest
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
-from motion_files import RECORDS, needs_records, wiggle, write_at2
+from motion_files import needs_records, real_components, wiggle, write_at2
 from studies import FOLDER_STUDY, write_study
 
 from rockbatch.cli import main
@@ -13,8 +14,6 @@ from rockbatch.errors import InputError
 from rockbatch.motions import fema_p695, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.folder import read_files
-from rockbatch.motions.formats import ReadOptions
 from rockbatch.motions.manifest_draft import draft
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
@@ -235,16 +234,16 @@ def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_pat
 # Against real records
 
 
-def real_components() -> list[Component]:
-    readings, _, _ = read_files([RECORDS], options=ReadOptions(unit="g"))
-    return [r for r in readings if isinstance(r, Component)] + fema_p695.all_components()
+@cache
+def components() -> list[Component]:
+    return real_components(unit="g") + fema_p695.all_components()
 
 
 @needs_records
 def test_no_real_record_comes_near_the_limit_of_alternation():
     """The largest of 200 real components is 7 % of its PGA; an instrument's is all of it."""
     pytest.importorskip("hdf5plugin")
-    shares = [alternating(c.acceleration) / c.pga for c in real_components()]
+    shares = [alternating(c.acceleration) / c.pga for c in components()]
     assert len(shares) > 190
     assert max(shares) < 0.3 * ALTERNATION
 
@@ -253,7 +252,7 @@ def test_no_real_record_comes_near_the_limit_of_alternation():
 def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
     pytest.importorskip("hdf5plugin")
     ratios = []
-    for station in by_station(without_doubles(real_components())[0]):
+    for station in by_station(without_doubles(components())[0]):
         peaks = [c.pga for c in station if not c.orientation.vertical]
         if len(peaks) == 2:
             ratios.append(max(peaks) / min(peaks))
@@ -266,7 +265,7 @@ def test_what_lasts_is_told_from_what_runs_away_in_real_records():
     """Lucerne moved for good, by 2.4 m; straight lines take a third off that, and three fifths off what runs away."""
     pytest.importorskip("hdf5plugin")
     away = {True: 0, False: 0, None: 0}
-    for c in {c.acceleration.tobytes(): c for c in real_components()}.values():
+    for c in {c.acceleration.tobytes(): c for c in components()}.values():
         away[c.processed] += c.initial is None and measures.runs_away(measures.displacement(c.acceleration, c.dt))
     assert away == {True: 2, False: 15, None: 1}  # True: 0111b and 0111c
 
@@ -274,7 +273,7 @@ def test_what_lasts_is_told_from_what_runs_away_in_real_records():
 @needs_records
 def test_no_corrected_real_record_is_doubted_and_all_have_a_pgd():
     pytest.importorskip("hdf5plugin")
-    corrected = [c for c in real_components() if c.processed]
+    corrected = [c for c in components() if c.processed]
     found = to_motions(corrected, confirmed=())
     assert len(found.motions) > 130
     for motion in found.motions:

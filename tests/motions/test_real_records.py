@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from motion_files import RECORDS, needs_records
+from motion_files import RECORDS, needs_records, real_motions
 
-from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions import ReadOptions
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
@@ -71,13 +71,13 @@ def test_count_step_and_signed_peak_are_those_of_the_description(path, entry):
     ],
 )
 def test_table_1_of_the_paper_has_its_peaks(name, dt, pga):
-    motions = {motion.name: motion for motion in read_motions(RECORDS / "table1").motions}
+    motions = {motion.name: motion for motion in real_motions("table1").motions}
     assert motions[name].dt == dt
     assert motions[name].pga / 9.81 == pytest.approx(pga, abs=6e-4)
 
 
 def test_table_1_has_two_verticals_and_nothing_is_left_over():
-    found = read_motions(RECORDS / "table1")
+    found = real_motions("table1")
     assert len(found.motions) == 6
     assert sorted(motion.vertical_source for motion in found.motions if motion.vertical is not None) == [
         "RSN1063_NORTHR_RRS-UP.AT2",
@@ -87,16 +87,14 @@ def test_table_1_has_two_verticals_and_nothing_is_left_over():
 
 
 def test_the_suite_is_eleven_station_events_of_three_components():
-    found = read_motions(RECORDS / "suite")
+    found = real_motions("suite")
     assert len(found.motions) == 22
     assert all(motion.vertical is not None for motion in found.motions)
     assert {unusable.name for unusable in found.unusable} <= {"meta"}
 
 
 def test_down_verticals_of_the_suite_are_turned():
-    turned = [
-        m.name for m in read_motions(RECORDS / "suite" / "at2").motions if any("sign reversed" in n for n in m.notes)
-    ]
+    turned = [m.name for m in real_motions("suite/at2").motions if any("sign reversed" in n for n in m.notes)]
     assert turned == [
         "RSN164_IMPVALL.H_H-CPE147",
         "RSN164_IMPVALL.H_H-CPE237",
@@ -108,19 +106,19 @@ def test_down_verticals_of_the_suite_are_turned():
 
 
 def test_manjil_is_cut_to_what_its_components_share():
-    motions = {m.name: m for m in read_motions(RECORDS / "suite" / "at2").motions}
+    motions = {m.name: m for m in real_motions("suite/at2").motions}
     assert motions["RSN1633_MANJIL_ABBAR--L"].npts == 2671
     assert motions["RSN1633_MANJIL_ABBAR--T"].npts == 2300
 
 
 def test_ground_comes_nearly_to_rest_in_records_whose_offset_was_removed():
-    found = read_motions(RECORDS / "formats" / "tohoku2011_tkyh12")
+    found = real_motions("formats/tohoku2011_tkyh12")
     for motion in found.motions:
         assert abs(motion.horizontal.mean()) < 1e-12
 
 
 def test_every_file_of_every_agency_is_a_motion_or_has_a_reason():
-    found = read_motions(RECORDS / "formats", options=ReadOptions(unit="g"))
+    found = real_motions("formats", unit="g")
     files = [p for p in (RECORDS / "formats").rglob("*") if p.is_file() and p.suffix != ".xml"]
     told = " ".join([*(m.files for m in found.motions), *(u.source for u in (*found.unusable, *found.left_out))])
     assert [p for p in files if p.relative_to(RECORDS / "formats").as_posix() not in told] == []

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from motion_files import RECORDS, needs_records, wiggle, write_at2
+from motion_files import needs_records, real_motions, wiggle, write_at2
 
 from rockbatch.cli import main
 from rockbatch.errors import InputError
@@ -148,8 +148,8 @@ def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, 
 @needs_records
 def test_what_some_files_of_a_folder_need_costs_none_of_the_formats_that_always_have_theirs():
     """SAC files need a unit; those beside them from GeoNet, CGS, USGS, DYNA have theirs, in mm/s² and cm/s²."""
-    before = {motion.name: motion for motion in read_motions(RECORDS / "formats").motions}
-    after = {m.name: m for m in read_motions(RECORDS / "formats", options=ReadOptions(unit="g")).motions}
+    before = {motion.name: motion for motion in real_motions("formats").motions}
+    after = {m.name: m for m in real_motions("formats", unit="g").motions}
     assert len(before) > 25
     assert {"20190706031952.CJ.T001230.HNE"} <= after.keys() - before.keys()
     for name, motion in before.items():

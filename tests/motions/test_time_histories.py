@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from motion_files import RECORDS, needs_records, wiggle, write_at2
+from motion_files import needs_records, real_motions, wiggle, write_at2
 
 from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
 from rockbatch.motions.component import Component
@@ -148,9 +148,7 @@ def test_few_samples_and_silence_tell_nothing():
 
 @needs_records
 def test_every_real_record_swings_about_zero_by_a_wide_margin():
-    folders = [RECORDS / name for name in ("suite", "table1", "open", "formats")]
-    motions = [*read_motions(folders).motions]
-    motions += read_motions(RECORDS / "formats" / "ridgecrest_csn_t001230", options=ReadOptions(unit="g")).motions
+    motions = [*real_motions().motions, *real_motions("formats/ridgecrest_csn_t001230", unit="g").motions]
     motions += [Motion(c.name, c.dt, c.acceleration) for c in fema_p695.all_components()]
     assert len(motions) > 150
     shares = [
