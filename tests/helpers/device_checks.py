@@ -13,9 +13,9 @@ from rockbatch.pier import problems
 from rockbatch.simulation import Run, run_to_tolerance, written_run
 
 SEEDS = [
-    pytest.param(range(4), id="few"),
-    pytest.param(range(4, 14), id="more", marks=pytest.mark.slow),
-    pytest.param(range(14, 34), id="most", marks=THOROUGH),
+    pytest.param(range(3), id="few"),
+    pytest.param(range(3, 12), id="more", marks=pytest.mark.slow),
+    pytest.param(range(12, 34), id="most", marks=THOROUGH),
 ]
 
 
@@ -48,8 +48,8 @@ def assert_agreement(cases, base, rounding):
 
 def assert_fourth_order(tied, rounding):
     """Assert that errors of the peak fall with the fourth power of the step, or below ``rounding``."""
-    peaks = [written_run(Run(FIG5, tied, SHAKEN), k, 0.0, 1, wait=False)[0].theta_max for k in (4, 8, 16, 128)]
-    first, _, third = (abs(peak - peaks[-1]) for peak in peaks[:-1])
+    peaks = [written_run(Run(FIG5, tied, SHAKEN), k, 0.0, 1, wait=False)[0].theta_max for k in (4, 16, 128)]
+    first, third = (abs(peak - peaks[-1]) for peak in peaks[:-1])
     assert third < rounding or math.log2(first / third) / 2 > 3.4, f"errors {first} and {third}"
 
 

@@ -17,12 +17,13 @@ class Looking(Leg):
         super().__init__(peak, h)
         self.look = look
 
-    def _turning(self, dense, a, ya, b, yb, theta, omega):
-        super()._turning(dense, a, ya, b, yb, theta, omega)
-        self.look(a, ya)
-        for s in np.linspace(a, b, LOOKS + 1)[1:-1]:
-            self.look(s, dense(s).tolist())
-        self.look(b, yb)
+    def _turning(self, dense, times, states, theta, omega):
+        super()._turning(dense, times, states, theta, omega)
+        within = np.linspace(times[0], times[-1], LOOKS + 1)[1:-1]
+        self.look(times[0], states[0])
+        for s, state in zip(within.tolist(), dense(within).T.tolist(), strict=True):
+            self.look(s, state)
+        self.look(times[-1], states[-1])
 
 
 class WithForces(TiedTwoSprings):

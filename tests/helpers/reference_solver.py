@@ -111,7 +111,7 @@ class Leg:
             b, dense = solver.t, solver.dense_output()
             hit: tuple[float, int] | None = None
             times = [a + f * (b - a) for f in FRACTIONS]
-            states = [dense(s).tolist() for s in times[:-1]] + [solver.y.tolist()]
+            states = [*dense(np.array(times[:-1])).T.tolist(), solver.y.tolist()]
             for k, (g, tiny) in enumerate(surfaces):
                 before = a
                 for s, state in zip(times, states, strict=True):
@@ -131,9 +131,11 @@ class Leg:
             if hit is not None:
                 root, k = hit
                 root, state = self._polish(rhs, surfaces[k][0], a, ya, root, b)
-                self._turning(dense, a, ya, root, state, theta, omega)
+                times = [a + f * (root - a) for f in FRACTIONS]
+                states = [*dense(np.array(times[:-1])).T.tolist(), state]
+                self._turning(dense, [a, *times], [ya, *states], theta, omega)
                 return root, state, k
-            self._turning(dense, a, ya, b, states[-1], theta, omega)
+            self._turning(dense, [a, *times], [ya, *states], theta, omega)
         return t1, solver.y.tolist(), None
 
     @staticmethod
@@ -178,20 +180,21 @@ class Leg:
             root, state = moved, state_at(moved)
         return root, state
 
-    def _turning(self, dense, a, ya, b, yb, theta, omega) -> None:
-        self.peak(b, yb[theta])
-        times = [a + f * (b - a) for f in FRACTIONS]
-        rates = [ya[omega], *(float(dense(s)[omega]) for s in times[:-1]), yb[omega]]
-        times = [a, *times]
+    def _turning(self, dense, times, states, theta, omega) -> None:
+        self.peak(times[-1], states[-1][theta])
         for i in range(len(times) - 1):
-            if rates[i] * rates[i + 1] < 0.0 and dense(times[i])[omega] * dense(times[i + 1])[omega] < 0.0:
-                s = brentq(lambda x: float(dense(x)[omega]), times[i], times[i + 1], xtol=1e-15)
-                self.peak(s, float(dense(s)[theta]))
+            if states[i][omega] * states[i + 1][omega] < 0.0:
+                pair = times[i : i + 2]
+                if dense(pair[0])[omega] * dense(pair[1])[omega] < 0.0:
+                    s = brentq(lambda x: float(dense(x)[omega]), *pair, xtol=1e-15)
+                    self.peak(s, float(dense(s)[theta]))
 
 
 V, TH, VD, OM, ZL, ZR, WL, WR, INPUT, PDELTA, LOST = range(11)
 SIDES = ("left", "right")
 CURVED = ("bouc-wen", "hardening")
+OFF = ("free", "held")
+"""Modes of a pivot that its spring does not bear."""
 
 
 class TwoSprings:
@@ -272,8 +275,7 @@ class TwoSprings:
     def forces(self, modes: Sequence[str], y: Sequence[float]) -> list[float]:
         if not self.zeta:
             return [self.fy * y[ZL], self.fy * y[ZR]]
-        off = ("free", "held")
-        return [0.0 if modes[i] in off else self.fy * y[ZL + i] + self.c * self.rate(i, y) for i in (0, 1)]
+        return [0.0 if modes[i] in OFF else self.fy * y[ZL + i] + self.c * self.rate(i, y) for i in (0, 1)]
 
     def top(self, i: int, y: Sequence[float]) -> float:
         return self.rest[i] + (self.dy * y[ZL + i] if self.zeta else 0.0)
@@ -299,7 +301,7 @@ class TwoSprings:
         else:
             moment = -fl * (self.b + self.h * th) + fr * (self.b - self.h * th)
             thdd = (moment - H * ah) / (self.inertia + self.h**2)
-        for i in (0, 1):
+        for i in (0, 1) if "held" in modes else ():
             if modes[i] == "held":  # grazing contact: between the two equations, so that the pivot stays
                 thdd = -(vdd - self.top_acceleration(i, y) + self.bend(i, y) * y[OM] ** 2) / self.arm(i, y)
         return vdd, thdd
@@ -310,33 +312,37 @@ class TwoSprings:
         vdd, thdd = self.accelerations(modes, y, ah, av)
         return vdd - self.top_acceleration(i, y) + self.arm(i, y) * thdd + self.bend(i, y) * y[OM] ** 2
 
-    def z_rate(self, i: int, y: Sequence[float]) -> float:
-        mode = self.mode[i]
-        if mode in ("free", "held") and self.zeta:
-            return -y[ZL + i] * self.quick
-        if mode in ("free", "held", "yield"):
+    def z_rate(self, mode: str, z: float, rate: float) -> float:
+        """Return ż of a pivot that moves at ``rate``."""
+        if mode in OFF and self.zeta:
+            return -z * self.quick
+        if mode in OFF or mode == "yield":
             return 0.0
-        z, rate = y[ZL + i], self.rate(i, y) / self.dy
         if mode == "load" and self.law in CURVED:
-            return rate * (1.0 - min(abs(z), 1.0) ** self.n)  # a trial of a large step may leave the law
-        return rate
+            return rate / self.dy * (1.0 - min(abs(z), 1.0) ** self.n)  # a trial of a large step may leave the law
+        return rate / self.dy
 
     def rhs(self, leg: tuple[float, ...]) -> Callable[[float, Sequence[float]], list[float]]:
         t0, _, h0, hs, v0, vs = leg
 
+        modes, dy, undamped = tuple(self.mode), self.dy, not self.zeta
+        left, right = modes[0] not in OFF, modes[1] not in OFF
+
         def f(t: float, y: Sequence[float]) -> list[float]:
             y = y.tolist() if isinstance(y, np.ndarray) else y
             ah, av = h0 + hs * (t - t0), v0 + vs * (t - t0)
-            vdd, thdd = self.accelerations(self.mode, y, ah, av)
-            zl, zr = self.z_rate(0, y), self.z_rate(1, y)
-            on = [mode not in ("free", "held") for mode in self.mode]
-            wl = self.fy * y[ZL] * (self.rate(0, y) - self.dy * zl) if on[0] else 0.0
-            wr = self.fy * y[ZR] * (self.rate(1, y) - self.dy * zr) if on[1] else 0.0
-            lost = self.c * sum((self.rate(i, y) if on[i] else self.top_rate(i, y)) ** 2 for i in (0, 1))
-            fl, fr = self.forces(self.mode, y)
-            H, _ = self.lever(self.mode, y)
-            work = -ah * H * y[OM] - av * y[VD]
-            pd = 0.0 if self.finite else -self.h * y[TH] * (fl + fr) * y[OM]
+            vdd, thdd = self.accelerations(modes, y, ah, av)
+            sunk = self.rate(0, y), self.rate(1, y)
+            zl, zr = self.z_rate(modes[0], y[ZL], sunk[0]), self.z_rate(modes[1], y[ZR], sunk[1])
+            wl = self.fy * y[ZL] * (sunk[0] - dy * zl) if left else 0.0
+            wr = self.fy * y[ZR] * (sunk[1] - dy * zr) if right else 0.0
+            lost = (
+                0.0
+                if undamped
+                else self.c * sum((sunk[i] if on else self.top_rate(i, y)) ** 2 for i, on in enumerate((left, right)))
+            )
+            work = -ah * self.lever(modes, y)[0] * y[OM] - av * y[VD]
+            pd = 0.0 if self.finite else -self.h * y[TH] * sum(self.forces(modes, y)) * y[OM]
             return [y[VD], y[OM], vdd, thdd, zl, zr, wl, wr, work, pd, lost]
 
         return f

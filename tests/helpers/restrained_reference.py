@@ -26,18 +26,23 @@ class TiedTwoSprings(TwoSprings):
         self.p, self.size = pier.p, math.hypot(self.b, self.h)
         self.places = [place for device in base.restraints for place in places(pier, device)]
         self.elements = [(device, place.offset) for device in base.restraints for place in places(pier, device)]
+        self.slopes = [  # ∂e/∂v and ∂e/∂θ in first-order kinematics
+            (0.0, (place.way or 1.0) * place.height) if place.height else (1.0, -place.offset) for place in self.places
+        ]
         load = 1.0 + sum(device.psi for device, _ in self.elements if isinstance(device, Tendon))
         share = load * 0.5 * self.g / self.fy
         self.v0, self.z0 = -self.dy * self._static_integral(share), -share
         self.deepest = [self.z0, self.z0]
         self.y = [self.v0, 0.0, 0.0, 0.0, self.z0, self.z0] + [0.0] * (5 + len(self.elements))
-        self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # 0 while friction holds
         self.hold = [0.0] * len(self.elements)
         self.state = ["taut"] * len(self.elements)
         for j, (device, _) in enumerate(self.elements):
             if isinstance(device, Tendon) and device.psi == 0.0:
                 self.state[j] = "slack"
         scale = self.g * self.size / self.b**2
+        self.friction = [j for j, (d, _) in enumerate(self.elements) if isinstance(d, Damper) and d.kind == "friction"]
+        self.braces = [d.brace * scale if isinstance(d, Damper) else math.inf for d, _ in self.elements]
+        self.way = [0.0 if self.rubs(j) else 1.0 for j in range(len(self.elements))]  # 0 while friction holds
         self.stops = {
             j: Memory(d, d.lam * scale) for j, (d, _) in enumerate(self.elements) if isinstance(d, Stop | DeckSpring)
         }
@@ -48,14 +53,14 @@ class TiedTwoSprings(TwoSprings):
         The point (s, −h) of the block, as seen from its centre of mass, has risen by u. With finite kinematics e = w u,
         w² = 2/(1 + cos θ), so that w' = w q and q' = 1/(2 + 2 cos θ), where q = sin θ/(2 + 2 cos θ).
         """
-        s, theta, turn = self.elements[j][1], y[TH], y[OM]
+        theta = y[TH]
+        if not self.finite:
+            by_v, by_theta = self.slopes[j]
+            return by_v * (y[V] - self.v0) + by_theta * theta, by_v, by_theta, 0.0
+        s, turn = self.elements[j][1], y[OM]
         if height := self.places[j].height:
             way = (self.places[j].way or 1.0) * height
-            if not self.finite:
-                return way * theta, 0.0, way, 0.0
             return way * math.sin(theta), 0.0, way * math.cos(theta), -way * math.sin(theta) * turn * turn
-        if not self.finite:
-            return y[V] - self.v0 - s * theta, 1.0, -s, 0.0
         sine, cosine = math.sin(theta), math.cos(theta)
         u = y[V] - self.v0 + (-self.h * cosine - s * sine) + self.h
         by_theta, bend = self.h * sine - s * cosine, self.h * cosine + s * sine
@@ -71,8 +76,7 @@ class TiedTwoSprings(TwoSprings):
         return by_v * y[VD] + by_theta * y[OM]
 
     def rubs(self, j: int) -> bool:
-        device = self.elements[j][0]
-        return isinstance(device, Damper) and device.kind == "friction"
+        return j in self.friction
 
     def lift(self, j: int, y: Sequence[float], accelerations: tuple[float, float]) -> float:
         """Return the second rate of the elongation."""
@@ -100,18 +104,15 @@ class TiedTwoSprings(TwoSprings):
         device, _ = self.elements[j]
         if j in self.stops:
             return self.stops[j].force(self.elongation(j, y))
-        if self.rubs(j):
+        if j in self.friction:
             return self.way[j] * device.f * self.g if self.way[j] else self.hold[j]
-        speed = self.speed(j, y)
         if isinstance(device, Tendon):
             if self.state[j] == "slack":
                 return 0.0
             return device.strength * self.g if self.state[j] == "yields" else self.tension(j, y)
-        if device.kind == "viscous" and device.brace < math.inf:
-            return y[FIRST + j]
-        if device.kind == "viscous":
-            return self.viscous(device, self.elements[j][1], speed)
-        return device.f * self.g * y[FIRST + j]
+        if device.kind == "hysteretic":
+            return device.f * self.g * y[FIRST + j]
+        return y[FIRST + j] if device.brace < math.inf else self.viscous(device, self.elements[j][1], self.speed(j, y))
 
     def viscous(self, damper: Damper, s: float, speed: float) -> float:
         """Return C |ė|^a; if a < 1, linear where it would damp faster than the supports vibrate (THEORY.md)."""
@@ -128,7 +129,7 @@ class TiedTwoSprings(TwoSprings):
         return tendon.psi * self.g + stiffness * (self.elongation(j, y) - y[FIRST + j])
 
     def accelerations(self, modes, y, ah, av):
-        holding = [j for j in range(len(self.elements)) if self.rubs(j) and not self.way[j]]
+        holding = [j for j in self.friction if not self.way[j]]
         if holding:
             free, by = self.still(modes, y, ah, av, holding)
             for j, force in zip(holding, np.linalg.solve(by, -free), strict=True):
@@ -136,41 +137,42 @@ class TiedTwoSprings(TwoSprings):
         return self.under_pulls(modes, y, ah, av)
 
     def under_pulls(self, modes, y, ah, av):
-        pulls = [self.pull(j, y) for j in range(len(self.elements))]
-        shapes = [self.shape(j, y) for j in range(len(self.elements))]
-        down = sum(pull * by_v for pull, (_, by_v, _, _) in zip(pulls, shapes, strict=True))
-        vdd, thdd = super().accelerations(modes, y, ah, av + down)
+        pulls = [(self.pull(j, y), self.shape(j, y), place) for j, place in enumerate(self.places)]
+        vdd, thdd = super().accelerations(modes, y, ah, av + sum([pull * shape[1] for pull, shape, _ in pulls]))
         if "held" in modes:
             return vdd, thdd
-        for pull, (_, _, by_theta, _), place in zip(pulls, shapes, self.places, strict=True):
+        H = self.lever(modes, y)[0] if self.finite else self.h
+        for pull, (_, _, by_theta, _), place in pulls:
             arm = by_theta if self.finite or place.height else self.h * y[TH] + by_theta  # with P–Δ
-            H = self.lever(modes, y)[0] if self.finite else self.h
             thdd -= pull * arm / (self.inertia + H * H)
         return vdd, thdd
 
     def rhs(self, leg):
         plain = super().rhs(leg)
+        change = [
+            brace < math.inf or self.state[j] == "yields" or getattr(device, "kind", "") == "hysteretic"
+            for j, ((device, _), brace) in enumerate(zip(self.elements, self.braces, strict=True))
+        ]
 
         def f(t, y):
-            y = [float(x) for x in y]
-            return plain(t, y) + [self._rate(j, y) for j in range(len(self.elements))]
+            y = y.tolist() if isinstance(y, np.ndarray) else y
+            return plain(t, y) + [self._rate(j, y) if changes else 0.0 for j, changes in enumerate(change)]
 
         return f
 
     def _rate(self, j: int, y: Sequence[float]) -> float:
-        device, _ = self.elements[j]
-        speed = self.speed(j, y)
-        brace = device.brace * self.g * self.size / self.b**2 if isinstance(device, Damper) else math.inf
+        device, brace = self.elements[j][0], self.braces[j]
         if isinstance(device, Damper) and device.kind == "hysteretic":
-            z = y[FIRST + j]
+            z, speed = y[FIRST + j], self.speed(j, y)
             by_slip = (1.0 - (min(abs(z), 1.0) ** 5 if self.way[j] * z > 0.0 else 0.0)) / device.yield_m
             if brace < math.inf:  # F_d ż = k (ė − ẇ) with ż = ẇ by_slip
                 speed *= brace / (brace + device.f * self.g * by_slip)
             return speed * by_slip
         if brace < math.inf:
             pull = y[FIRST + j]
-            return brace * (speed - math.copysign((abs(pull) / (device.nu * self.p)) ** (1.0 / device.exponent), pull))
-        return speed if self.state[j] == "yields" else 0.0
+            slip = math.copysign((abs(pull) / (device.nu * self.p)) ** (1.0 / device.exponent), pull)
+            return brace * (self.speed(j, y) - slip)
+        return self.speed(j, y)
 
     def surfaces(self, leg):
         surfaces = super().surfaces(leg)

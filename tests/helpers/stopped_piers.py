@@ -23,6 +23,26 @@ BASES = [
     pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
 ]
 RANDOM_BASES = [BASES[0], pytest.param(ELASTIC, id="elastic", marks=pytest.mark.slow), BASES[2]]
+
+
+def crossed(bases, devices, on_all):
+    """Return parameters of every base with every one of the named ``devices``.
+
+    Fast tests have all of them on rigid ground and on Bouc–Wen springs, and those named ``on_all`` on springs of other laws too:
+    that of a spring has no part in what devices do.
+    """
+    return [
+        pytest.param(
+            *base.values,
+            each,
+            id=f"{base.id}-{name}",
+            marks=base.marks if base.id in ("rigid", "bouc-wen") or name == on_all else (*base.marks, pytest.mark.slow),
+        )
+        for base in bases
+        for name, each in devices.items()
+    ]
+
+
 SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)
 
 

@@ -9,7 +9,7 @@ from core_samples import FIG5, broadband, pulse
 from device_checks import SEEDS, assert_agreement, assert_balance, assert_fourth_order
 from restrained_reference import TiedTwoSprings
 from scipy.signal import lsim
-from stopped_piers import BASES, ELASTIC, RANDOM_BASES, SHAKEN, stiffness, stopped
+from stopped_piers import BASES, ELASTIC, RANDOM_BASES, SHAKEN, crossed, stiffness, stopped
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -66,11 +66,12 @@ def test_vertical_vibration_is_that_of_one_mass_and_a_maxwell_element():
     np.testing.assert_allclose(rows.state[:, 0], exact[:, 2], atol=1e-6 * np.abs(exact[:, 2]).max())
 
 
-@pytest.mark.parametrize("base", BASES)
-@pytest.mark.parametrize("kind", ["linear", "root", "steel"])
-def test_a_rigid_brace_is_none(base, kind):
+@pytest.mark.parametrize(
+    ("base", "devices"), crossed(BASES, {name: BRACED[name] for name in ("linear", "root", "steel")}, "steel")
+)
+def test_a_rigid_brace_is_none(base, devices):
     """The difference falls with the brace's give: a tenth at ten times the stiffness."""
-    (damper,) = BRACED[kind]
+    (damper,) = devices
     without = run_fixed(FIG5, stopped(base, (replace(damper, brace=math.inf),)), SHAKEN, 8, 0.0, wait=False)
     bases = [stopped(base, (replace(damper, brace=brace),)) for brace in (20.0, 200.0)]
     soft, hard = (
@@ -81,8 +82,7 @@ def test_a_rigid_brace_is_none(base, kind):
     assert hard.damper_stroke == pytest.approx(without.damper_stroke, rel=0.02)
 
 
-@pytest.mark.parametrize("devices", BRACED.values(), ids=BRACED)
-@pytest.mark.parametrize("base", BASES[1:])
+@pytest.mark.parametrize(("base", "devices"), crossed(BASES[1:], BRACED, "deck"))
 def test_runs_agree_with_the_reference(base, devices):
     base = stopped(base, devices)
     end = TiedTwoSprings(FIG5, base, SHAKEN, 0.0).run()
@@ -110,8 +110,7 @@ def test_random_braces_agree_with_the_reference_within_the_reported_error(base, 
     assert_agreement([drawn(seed) for seed in seeds], base, 1e-8)
 
 
-@pytest.mark.parametrize("devices", BRACED.values(), ids=BRACED)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "devices"), crossed(BASES, BRACED, "deck"))
 def test_the_order_is_four_and_the_ledger_closes(base, devices):
     """But for the root, whose force has no Taylor series where it vanishes."""
     tied = stopped(base, devices)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5, broadband, pulse, steady
 from device_checks import SEEDS, assert_agreement, assert_balance, assert_fourth_order, reference
-from stopped_piers import BASES, ELASTIC, RANDOM_BASES, SHAKEN, stiffness, stopped, thrown
+from stopped_piers import BASES, ELASTIC, RANDOM_BASES, SHAKEN, crossed, stiffness, stopped, thrown
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
@@ -81,8 +81,7 @@ def test_a_linear_spring_is_two_without_a_gap(base):
     assert both.deck_spring_force == pytest.approx(pair.deck_spring_force, rel=1e-7)
 
 
-@pytest.mark.parametrize("springs", SPRINGS.values(), ids=SPRINGS)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "springs"), crossed(BASES, SPRINGS, "abutments"))
 def test_runs_agree_with_the_reference(base, springs):
     base = stopped(base, springs)
     end = reference(FIG5, base, SHAKEN).run()
@@ -113,8 +112,7 @@ def test_random_springs_agree_with_the_reference_within_the_reported_error(base,
     assert_agreement([drawn(seed) for seed in seeds], base, 1e-10)
 
 
-@pytest.mark.parametrize("springs", SPRINGS.values(), ids=SPRINGS)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "springs"), crossed(BASES, SPRINGS, "abutments"))
 def test_the_order_is_four_and_the_ledger_closes(base, springs):
     tied = stopped(base, springs)
     assert_fourth_order(tied, 1e-11)

@@ -9,6 +9,7 @@ import pytest
 from core_samples import FIG5, TOWER, broadband, hard_case, pulse, steady
 from restrained_reference import TiedTwoSprings
 from scipy.signal import lsim
+from stopped_piers import crossed
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -62,8 +63,7 @@ def test_runs_agree_with_the_reference(base, restraints):
     _agree(base, restraints, Motion("both", SHAKEN.dt, SHAKEN.horizontal, vertical))
 
 
-@pytest.mark.parametrize("restraints", FRICTION.values(), ids=FRICTION)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "restraints"), crossed(BASES, FRICTION, "mixed"))
 def test_friction_without_vertical_motion_agrees_with_the_reference(base, restraints):
     """At both pivots it then reaches its force, and comes to rest, at the same instants."""
     _agree(base, restraints, SHAKEN)
@@ -84,20 +84,18 @@ def _agree(base, restraints, motion):
 SMOOTH = {name: each for name, each in (RESTRAINTS | FRICTION).items() if name != "root"}
 
 
-@pytest.mark.parametrize("restraints", SMOOTH.values(), ids=SMOOTH)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "restraints"), crossed(BASES, SMOOTH, "mixed"))
 def test_the_order_across_events_is_four(base, restraints):
     """The mean of two halvings, since single ones ripple. But for |ė|^a with a < 1, whose slope is infinite at ė = 0."""
     peaks = [
         written_run(Run(FIG5, tied(base, restraints), SHAKEN), steps, 0.0, 1, wait=False)[0].theta_max
-        for steps in (4, 8, 16, 64)
+        for steps in (4, 16, 64)
     ]
-    first, _, third = (abs(each - peaks[-1]) for each in peaks[:-1])
+    first, third = (abs(each - peaks[-1]) for each in peaks[:-1])
     assert third < 1e-11 or math.log2(first / third) / 2 > 3.4
 
 
-@pytest.mark.parametrize("restraints", (RESTRAINTS | FRICTION).values(), ids=RESTRAINTS | FRICTION)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "restraints"), crossed(BASES, RESTRAINTS | FRICTION, "mixed"))
 def test_the_ledger_closes(base, restraints):
     response = rb.simulate(FIG5, tied(base, restraints), SHAKEN, substeps=32, wait=False, quiet_s=0.0, ledger=True)
     ledger = response.ledger
@@ -149,11 +147,17 @@ def test_friction_holds_until_the_inertia_exceeds_it():
         assert (found.theta_max > 1e-12) == moves
 
 
+def with_peak(motion):
+    """The first 52 s of a record, in which the pier comes to its peak."""
+    end = round(52.0 / motion.dt) + 1
+    return replace(motion, horizontal=motion.horizontal[:end], vertical=motion.vertical[:end])
+
+
 @pytest.mark.parametrize("base", BASES)
 def test_friction_at_both_pivots_lets_go_at_one_time(base):
     """Without vertical motion both dampers reach their force at the same instant, time and again, and neither can go alone."""
     for motion in rb.read_motions(NEAR_FAULT)[:3]:
-        alone = replace(motion, vertical=None)
+        alone = replace(with_peak(motion), vertical=None)
         coarse, fine = (run_fixed(TOWER, tied(base, FRICTION["both"]), alone, steps) for steps in (8, 64))
         assert (coarse.status, fine.status) == ("ok", "ok")
         assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-6 * TOWER.alpha)
@@ -171,7 +175,7 @@ def test_friction_at_both_pivots_lets_go_at_one_time(base):
 def test_friction_beside_a_viscous_damper_lets_go(base, at):
     """Both are still until friction goes: to rounding, neither has turned then."""
     restraints = (Damper("viscous", nu=0.1, exponent=0.5, at=at), Damper("friction", f=0.06, at=at))
-    (motion,) = (m for m in rb.read_motions(NEAR_FAULT) if m.name.endswith("PRPC_20.N00E"))
+    (motion,) = (with_peak(m) for m in rb.read_motions(NEAR_FAULT) if m.name.endswith("PRPC_20.N00E"))
     coarse, fine = (run_fixed(rb.Pier(0.25, 2.0), tied(base, restraints), motion, steps) for steps in (8, 32))
     assert (coarse.status, fine.status) == ("ok", "ok")
     assert coarse.theta_max == pytest.approx(fine.theta_max, abs=1e-3 * 0.25)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5, TOWER, broadband, pulse
 from device_checks import SEEDS, assert_agreement, assert_balance, assert_fourth_order, reference
-from stopped_piers import BASES, BOUC_WEN, ELASTIC, RANDOM_BASES, SHAKEN, stiffness, stopped, thrown
+from stopped_piers import BASES, BOUC_WEN, ELASTIC, RANDOM_BASES, SHAKEN, crossed, stiffness, stopped, thrown
 
 import rockbatch as rb
 from rockbatch.motions.motion import Motion
@@ -84,8 +84,7 @@ def test_an_elastic_stop_without_a_gap_in_the_middle_is_a_tendon_without_prestre
         assert one.stop_force == pytest.approx(other.tendon_force, rel=1e-5)  # of a tendon that at the end of a step
 
 
-@pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "stops"), crossed(BASES, STOPS, "crushes"))
 def test_runs_agree_with_the_reference(base, stops):
     base = stopped(base, stops)
     solver = reference(FIG5, base, SHAKEN)
@@ -121,14 +120,12 @@ def test_random_stops_agree_with_the_reference_within_the_reported_error(base, s
     assert_agreement([drawn(seed, FIG5) for seed in seeds], base, 1e-10)
 
 
-@pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "stops"), crossed(BASES, STOPS, "crushes"))
 def test_the_order_across_blows_is_four(base, stops):
     assert_fourth_order(stopped(base, stops), 1e-11)
 
 
-@pytest.mark.parametrize("stops", STOPS.values(), ids=STOPS)
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize(("base", "stops"), crossed(BASES, STOPS, "crushes"))
 def test_the_ledger_closes_with_what_stops_take_and_store(base, stops):
     assert_balance(stopped(base, stops))
     lossless = all(stop.restitution == 1.0 for stop in stops)
