@@ -16,7 +16,7 @@ from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion
-from rockbatch.simulation.compilation import kernel_of, on_compilation
+from rockbatch.simulation.compilation import kernel_of, load_numba, on_compilation
 from rockbatch.study import Numerics, Output, Study
 
 Task = tuple[PlannedRun, Numerics, Output]
@@ -29,6 +29,7 @@ def make_ready(study: Study, listener: Listener) -> None:
     Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
     on the other processors compile the last ones, and leave them there.
     """
+    load_numba()
     tasks = _tasks(study)
     waiting, assistants = deque(tasks), list[Thread]()
 

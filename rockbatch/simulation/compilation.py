@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any
 
 from numba.core import event
+from numba.np import linalg
 
 from rockbatch.core.system import Kind
 from rockbatch.pier import Base, Pier
@@ -14,6 +16,19 @@ from rockbatch.simulation.models import kind_of, model
 def kernel_of(pier: Pier, base: Base) -> tuple[Kind, bool]:
     """Return what runs of ``pier`` on ``base`` are compiled for: their kind, and whether there are devices."""
     return kind_of(model(pier, base)), bool(base.restraints)
+
+
+def load_numba() -> None:
+    """Load Numba's functions of arrays without SciPy's linear algebra, which takes 0.2 s and serves no kernel.
+
+    Numba loads it only to see whether it is installed; a function that multiplies matrices loads it when it is compiled.
+    """
+    look: Any = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look
 
 
 @contextmanager
