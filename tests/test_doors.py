@@ -12,7 +12,7 @@ from rockbatch.study import load_study
 TOP = Path(__file__).parents[1] / "rockbatch"
 OF_FOLDERS = ("analysis", "batch", "checks", "report", "results")
 ROUND = re.compile(
-    r"(?<!temporary)\.open\(|(?<![.\w])open\(|(?<!joinpath\(name\))\.read_text\(|\.read_bytes\(|\.write_text\(|\.touch\("
+    r"(?<!temporary)(?<!h5[ao])\.open\(|(?<![.\w])open\(|(?<!joinpath\(name\))\.read_text\(|\.read_bytes\(|\.write_text\(|\.touch\("
 )
 
 

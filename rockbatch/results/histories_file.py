@@ -190,9 +190,14 @@ class Responses(Sequence[Response]):
         if isinstance(which, slice):
             return [self[number] for number in range(*which.indices(len(self)))]
         number = range(len(self))[which]  # IndexError as of any sequence
-        with self._opened() as runs:
-            response = _read(group_in(runs, _name(number)))
+        (response,) = self.without_rows([number])
         return response if self._peaks is None else replace(response, row=_row_of(response, self._peaks))
+
+    def without_rows(self, numbers: Iterable[int]) -> Iterator[Response]:
+        """Yield the responses of these ``numbers``, without their rows of ``peaks``; the file is opened once."""
+        with self._opened() as runs:
+            for number in numbers:
+                yield _read(group_in(runs, _name(number)))
 
     @contextmanager
     def _opened(self) -> Iterator["h5py.Group"]:

@@ -48,8 +48,9 @@ def _pictures(finished: Finished, responses: Sequence[Response]) -> list[dict[st
     behind = {number: None if rows[number]["rigid"] else rigid.get(same_motion(rows[number])) for number in numbers}
     # A rigid base drawn behind another column needs none of its own
     columns = [number for number in numbers if number not in behind.values()]
-    needed = {number for number in (*columns, *behind.values()) if number is not None}
-    drawn = {number: reduced(responses[number], LEFT, WIDTH) for number in sorted(needed)}
+    needed = sorted({number for number in (*columns, *behind.values()) if number is not None})
+    chosen = responses.without_rows(needed) if isinstance(responses, Responses) else map(responses.__getitem__, needed)
+    drawn = {number: reduced(response, LEFT, WIDTH) for number, response in zip(needed, chosen, strict=True)}
     pictures = []
     for pier, of_pier in grouped(columns, lambda number: rows[number]["pier"]).items():
         of_pier.sort(key=lambda number: (not rows[number]["rigid"], rows[number]["index"]))
