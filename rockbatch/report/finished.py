@@ -8,6 +8,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.checks.suite import counts_as, simulated, with_case
@@ -222,7 +224,12 @@ def _given(text: str) -> dict[str, set[str]]:
 
 def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
     """Return the rows of ``runs``, each as a mapping from column names to values."""
-    columns = {str(name): column.to_numpy(object, na_value=math.nan).tolist() for name, column in runs.items()}
+    columns = {
+        str(name): column.tolist()
+        if isinstance(column.dtype, np.dtype) and column.dtype.kind in "fib"
+        else column.to_numpy(object, na_value=math.nan).tolist()
+        for name, column in runs.items()
+    }
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
