@@ -41,7 +41,7 @@ def can_be_nobody():
 def study(tmp_path):
     write_at2(tmp_path / "records", "r000.AT2", wiggle())
     motions = {"path": "records", "scale": [i / 100 for i in range(1, 301)]}  # more than one group
-    return write_study(tmp_path, study_text(motions=motions, pulses=(), cases=(RIGID,)))
+    return write_study(tmp_path, study_text(motions=motions, pulses=(), cases=(RIGID,), output={"histories": "none"}))
 
 
 @pytest.mark.parametrize(("processes", "jobs", "otherwise"), [(1, 1, ""), (2, 4, ", or write --jobs 1")])

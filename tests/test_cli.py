@@ -337,7 +337,7 @@ def started(study, out, redirected, **more):
     ],
 )  # fmt: skip
 def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_path, redirected, more, code):
-    study = write_study(tmp_path, study_text(cases=[{"name": "θ-é-地", "base": "rigid"}]))
+    study = write_study(tmp_path, study_text(cases=[{"name": "θ-é-地", "base": "rigid"}], output={"histories": "none"}))
     ended, told = started(study, tmp_path / "out", redirected, **more)
     assert (tmp_path / "out/report.html").exists()
     assert ended == code

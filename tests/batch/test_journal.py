@@ -317,8 +317,8 @@ def test_a_share_of_another_study_or_with_another_row_for_the_same_run_is_refuse
 
 
 def test_memory_holds_where_the_rows_are_and_not_the_rows(path):
-    """16 bytes a run, in arrays that grow by an eighth at a time, beside a group; all rows of this one are 12 MB."""
-    many, group = 20_000, 100
+    """16 bytes a run, in arrays that grow by an eighth at a time, beside a group; all rows of this one are 6 MB."""
+    many, group = 10_000, 100
     row = {"record": "x" * 600, "theta": 0.5, "reason": ""}
     tracemalloc.start()
     try:

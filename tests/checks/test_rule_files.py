@@ -1,8 +1,8 @@
 """Checks as users meet them: rules in TOML, ``rockbatch check``, ``rb.check`` and checks.csv."""
 
+import io
 import json
 import math
-import os
 import re
 import runpy
 import subprocess
@@ -321,13 +321,13 @@ def test_verdicts_are_coloured_on_a_terminal_unless_nobody_wants_it(monkeypatch,
         ("ascii", ["+ pass", "x FAIL", "? NOT DECIDED", "- does not apply"]),
     ],
 )
-def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing, encoding, expected):
-    code = "from rockbatch.commands.check import mark\n"
-    code += "for way in ('pass', 'fail', 'not decided', 'does not apply'): print(mark(way))\n"
-    code += f"from rockbatch.cli import main; main(['check', {str(passing)!r}])"
-    environment = os.environ | {"PYTHONIOENCODING": encoding}
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment)
-    assert done.stdout.decode(encoding).splitlines()[:4] == expected
+def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing, encoding, expected, monkeypatch):
+    terminal = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    assert [check.mark(way) for way in ("pass", "fail", "not decided", "does not apply")] == expected
+    assert main(["check", str(passing)]) == 0
+    terminal.flush()
+    assert expected[0] in terminal.buffer.getvalue().decode(encoding)
 
 
 def test_the_verdicts_stand_in_the_report(tmp_path):

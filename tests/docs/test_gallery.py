@@ -19,7 +19,7 @@ def drawn(path):
     return module.draw()
 
 
-LONG = "fragility", "overturning_map", "self_similar", "spectrum"  # `make docs` draws them, too
+LONG = "fragility", "overturning_map", "peaks", "self_similar", "spectrum"  # `make docs` draws them, too
 
 
 @pytest.mark.parametrize(

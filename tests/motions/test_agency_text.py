@@ -531,7 +531,7 @@ def test_a_file_cut_after_any_line_but_its_components_last_is_refused(case):
 
 
 @every_format
-@settings(max_examples=150, deadline=1000, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=1000, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_damaged_file_ends_in_components_or_an_input_error(case, data):
     good = case.text.encode("latin-1")

@@ -173,7 +173,7 @@ def test_what_is_written_is_read_back(values, dt):
 GOOD = at2_text(wiggle(150)).encode()
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(st.data())
 def test_a_damaged_file_gives_an_input_error_or_all_of_its_points_never_anything_else(data):
     damaged = bytearray(GOOD[: data.draw(st.integers(0, len(GOOD)), "length")])

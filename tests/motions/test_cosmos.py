@@ -231,7 +231,7 @@ def test_obspy_gets_the_files_own_unit_and_the_channels_codes(tmp_path):
 GOOD = cosmos_text().encode("latin-1")
 
 
-@settings(max_examples=300, deadline=1000)
+@settings(max_examples=100, deadline=1000)
 @given(damaged(GOOD))
 def test_a_damaged_file_ends_in_components_or_an_input_error(data):
     assert_components_or_input_error(data, "x.V1c")

@@ -232,7 +232,7 @@ def test_obspy_gets_the_files_own_unit_and_the_codes_of_its_record(tmp_path):
 
 
 @pytest.mark.parametrize("good", [csmip_text(1).encode("latin-1"), csmip_text(2).encode("latin-1")], ids=["V1", "V2"])
-@settings(max_examples=200, deadline=1000)
+@settings(max_examples=80, deadline=1000)
 @given(data=st.data())
 def test_a_damaged_file_ends_in_components_or_an_input_error(good, data):
     assert_components_or_input_error(data.draw(damaged(good)), "x.V1")

@@ -205,7 +205,7 @@ def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> C
 
 @pytest.mark.parametrize("name", MANIFESTS)
 def test_a_damaged_manifest_is_read_or_refused(tmp_path, name):
-    counts = read_damaged_manifests(tmp_path, name, 150, seed=1)
+    counts = read_damaged_manifests(tmp_path, name, 80, seed=1)
     assert counts.good > 0
     assert counts.refused > 20
 

@@ -151,7 +151,7 @@ def test_nothing_else_is_taken_for_smc(other):
 GOOD = smc_text().encode("latin-1")
 
 
-@settings(max_examples=300, deadline=1000)
+@settings(max_examples=100, deadline=1000)
 @given(damaged(GOOD))
 def test_a_damaged_file_ends_in_components_or_an_input_error(data):
     assert_components_or_input_error(data, "x.smc")

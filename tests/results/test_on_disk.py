@@ -68,6 +68,14 @@ def results(tmp_path_factory):
     return rb.open_results(folder)
 
 
+FEW = study_text(
+    pulses=(SINE | {"duration_s": 1.0},),
+    cases=(RIGID, PADS | {"spring": ["bouc-wen", "epp"]}),
+    output={"histories": "all", "ledger": True},
+)
+"""A study of three runs."""
+
+
 TABLES = ("history", "events", "ledger", "forces", "impacts")
 
 
@@ -104,9 +112,10 @@ def at_rest(name="still", case="rigid"):
 
 
 def test_every_response_comes_back_equal_to_the_bit(results):
-    """Another simulation with the substeps of the table gives the very same numbers."""
+    """Another simulation with the substeps of the table gives the very same numbers: every third, of all kinds."""
     assert len(results.responses) == 2 * 2 * 2 * 4 == len(results.peaks)
-    for row, response in zip(results.peaks.itertuples(), results.responses, strict=True):
+    for row in results.peaks[::3].itertuples():
+        response = results.responses[row.Index]
         motion = rb.pulse(
             "sine", name=row.record, amplitude=(0.5 if row.record == "weak" else 1.0) * 9.81, period=0.5, dt=0.01,
             duration=1.0,
@@ -122,7 +131,8 @@ def test_every_response_comes_back_equal_to_the_bit(results):
 
 def test_the_greatest_rotation_of_a_history_is_that_of_its_row(results):
     """The peak lies between samples: 1e-3 is what a parabola through samples 0.01 s apart misses, at most."""
-    for row, response in zip(results.peaks.itertuples(), results.responses, strict=True):
+    for row in results.peaks[1::3].itertuples():
+        response = results.responses[row.Index]
         found = np.abs(response.theta).max() / response.pier.alpha
         assert found == pytest.approx(row.theta_max_over_alpha, rel=1e-3)
 
@@ -386,23 +396,23 @@ def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
 
 
 def test_runs_that_were_refused_have_no_history(tmp_path):
-    saved, study, runs = carried_out(tmp_path)
+    saved, study, runs = carried_out(tmp_path, FEW)
     saved.peaks.loc[1, ["status", "theta_max_over_alpha"]] = ["failed", np.nan]
     assert to_keep(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
 
 
 def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path, monkeypatch):
-    saved, study, runs = carried_out(tmp_path)
-    saved.peaks.loc[3, "substeps"] = 1_000  # of its ledger, a hundred thousand rows and more
+    saved, study, runs = carried_out(tmp_path, FEW)
+    saved.peaks.loc[1, "substeps"] = 1_000  # of its ledger, a hundred thousand rows and more
     monkeypatch.setattr("rockbatch.simulation.histories.MOST_ROWS", 100_000)
-    with pytest.raises(rb.InputError, match=r"weak: a history of \d+ rows, more than 100000;") as error:
+    with pytest.raises(rb.InputError, match=r"one-sine: a history of \d+ rows, more than 100000;") as error:
         keep_histories(saved, study, runs)
     assert len(error.value.problems) == 1
     assert len(rb.open_results(tmp_path).responses) == len(runs) - 1
 
 
 def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
-    saved, study, runs = carried_out(tmp_path)
+    saved, study, runs = carried_out(tmp_path, FEW)
     calls = []
     keep_histories(saved, study, runs, calls.append)
     assert len(calls) == len(to_keep(study, runs, saved.peaks).numbers)

@@ -84,8 +84,8 @@ def test_more_runs_than_a_table_holds_are_refused_before_the_first(tmp_path, mon
 def test_as_many_cases_as_there_may_be_are_told_to_the_end(tmp_path, monkeypatch, capsys):
     """Stages after the runs say what they are if they take long; a case is a line of run.json, and the page stays small."""
     monkeypatch.setattr("rockbatch.batch.listening.PATIENCE_S", 0.0)
-    monkeypatch.setattr(lists, "MOST_CASES", 600)
-    cases = {"beta": [50 + 0.1 * i for i in range(12)], "eta": [2 + 0.01 * i for i in range(50)]}
+    monkeypatch.setattr(lists, "MOST_CASES", 360)
+    cases = {"beta": [50 + 0.1 * i for i in range(12)], "eta": [2 + 0.01 * i for i in range(30)]}
     text = study_text(
         pulses=(SINE | {"duration_s": 0.5},), cases=(PADS | cases,), numerics={"substeps": 1, "quiet_s": 0.0},
         output={"both_laws": False, "histories": "none"},
@@ -95,8 +95,8 @@ def test_as_many_cases_as_there_may_be_are_told_to_the_end(tmp_path, monkeypatch
     assert "writing run.json" in said
     assert "writing report.html" in said
     info = (tmp_path / "out/run.json").read_text(encoding="utf-8")
-    assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == 600
-    assert len(info) < 600 * 500
+    assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == 360
+    assert len(info) < 360 * 500
     page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
-    assert "The first 300 of 600 foundations, in the order of the study" in page
+    assert "The first 300 of 360 foundations, in the order of the study" in page
     assert len(page) < 2_500_000
