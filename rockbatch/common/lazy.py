@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 
 class _Lazy(ModuleType):
-    """Module whose names are looked up in the one of the same name, which is loaded for the first of them."""
+    """Module whose names are looked up, once each, in the one of the same name, which is loaded for the first of them."""
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(import_module(self.__name__), name)
+        value = vars(self)[name] = getattr(import_module(self.__name__), name)
+        return value
 
 
 if TYPE_CHECKING:

@@ -61,8 +61,7 @@ def render(template: str, **values: object) -> Markup:
 
 @cache
 def _environment() -> "Environment":
-    from importlib.metadata import version
-
+    import jinja2
     from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
     class Compiled(FileSystemBytecodeCache):
@@ -73,8 +72,9 @@ def _environment() -> "Environment":
                 with suppress(OSError):
                     super().dump_bytecode(bucket)
 
-    # Jinja looks at a template's text and at Python's version only, but its own version and the options below count, too
-    compiler = hashlib.sha256(version("jinja2").encode() + Path(__file__).read_bytes()).hexdigest()[:8]
+    # Jinja looks at a template's text and at Python's version only, but its own sources and the options below count, too
+    sources = (*sorted(Path(jinja2.__file__).parent.glob("*.py")), Path(__file__))
+    compiler = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:8]
     pattern = f"%s.{sys.implementation.cache_tag}-{compiler}.jinja"
     made = Environment(
         bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), pattern),

@@ -332,9 +332,10 @@ def test_templates_are_compiled_anew_by_another_jinja(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(templates, "cache_from_source", lambda file: str(tmp_path / "templates.pyc"))
     for version in ("3.1.6", "99.0"):
-        monkeypatch.setattr("importlib.metadata.version", lambda name, version=version: version)
+        (tmp_path / "__init__.py").write_text(version)
+        monkeypatch.setattr("jinja2.__file__", str(tmp_path / "__init__.py"))
         templates._environment.__wrapped__().get_template("sections/notes.html")
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(list(tmp_path.glob("*.jinja"))) == 2
 
 
 def test_a_page_holds_the_table_once_whatever_the_number_of_runs(tmp_path):

@@ -2,7 +2,6 @@
 
 import math
 import os
-import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -65,11 +64,13 @@ def _channels(path: Path, state: tuple[int, ...]) -> list[Channel]:
 
     Raises ``InputError`` for a file that is too large, damaged, or in an encoding that nobody knows.
     """
+    from xml.etree.ElementTree import XMLParser
+
     data = archives.content(path, LARGEST + 1)
     if len(data) > LARGEST:
         raise InputError(f"larger than {LARGEST // 2**20} MiB")
     reader = _Reader()
-    parser = ElementTree.XMLParser(target=reader)
+    parser = XMLParser(target=reader)
     try:
         parser.feed(data)
         parser.close()
