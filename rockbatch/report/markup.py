@@ -3,7 +3,7 @@
 import html
 import math
 import re
-from functools import cache
+from functools import cache, lru_cache
 
 from rockbatch.common.files import legible
 
@@ -18,9 +18,11 @@ class Markup(str):
 
 def escape(content: object) -> str:
     """Return ``content`` as HTML, legible; only :class:`Markup` goes through as it is."""
-    if isinstance(content, Markup):
-        return content
-    text = str(content)
+    return content if isinstance(content, Markup) else _escaped(str(content))
+
+
+@lru_cache(maxsize=4096)
+def _escaped(text: str) -> str:
     return text if _PLAIN.fullmatch(text) else Markup(html.escape(legible(text, keep="\t\r\n")))
 
 
