@@ -46,6 +46,13 @@ def study(tmp_path):
     return of
 
 
+def without_histories(path):
+    path.write_text(
+        path.read_text(encoding="utf-8").replace('histories = "all"', 'histories = "none"'), encoding="utf-8"
+    )
+    return path
+
+
 class Watched(Threads):
     """Notes what it simulates."""
 
@@ -179,7 +186,7 @@ def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_pa
     assert "8 runs. Polarity: mirror images, counted once." in page
     verdicts = pd.read_csv(out / "checks.csv")
     alone = tmp_path / "alone"
-    assert main(["run", str(study('"+"')), "--out", str(alone)]) == 1
+    assert main(["run", str(without_histories(study('"+"'))), "--out", str(alone)]) == 1
     pd.testing.assert_frame_equal(verdicts, pd.read_csv(alone / "checks.csv"))
     peaks = rb.open_results(out).peaks
     once = simulated(peaks)
@@ -189,7 +196,7 @@ def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_pa
 
 
 def test_a_check_of_the_reversed_direction_is_one_of_the_mirror_image(study, tmp_path, capsys):
-    path = study()
+    path = without_histories(study())
     path.write_text(path.read_text(encoding="utf-8") + 'polarity = "-"\n', encoding="utf-8")
     assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 1
     verdicts = pd.read_csv(tmp_path / "out" / "checks.csv")

@@ -5,6 +5,7 @@ import hashlib
 import itertools
 import json
 import math
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -152,6 +153,12 @@ def three_piers() -> list[dict[str, Any]]:
 def response(record: str, case: str, base: Base, *, pier: Pier | None = None, **columns: float | str) -> Response:
     """Return histories that look like rocking: two decaying cycles with a ripple at the springs' frequency."""
     pier = pier or Pier(alpha=0.20, p=1.0)
+    events = pd.DataFrame({"t": [0.3], "kind": ["separation"], "pivot": ["right"]})
+    return Response(record, case, dict(columns), pier, base, "ok", _rocking(pier, base).copy(), events)
+
+
+@cache
+def _rocking(pier: Pier, base: Base) -> pd.DataFrame:
     t = np.linspace(0, 8, 8001)
     rate = 1.5 if isinstance(base, RigidBase) else 1.7
     theta = 0.15 * pier.alpha * np.exp(-0.2 * t) * np.sin(rate * t)
@@ -174,5 +181,4 @@ def response(record: str, case: str, base: Base, *, pier: Pier | None = None, **
                 z[i] = min(0.0, max(-1.0, z[i - 1] + (v[i] - v[i - 1]) / yielding))
             history[f"v_{side}"], history[f"z_{side}"] = v, z
         history["v"] = (history["v_left"] + history["v_right"]) / 2
-    events = pd.DataFrame({"t": [0.3], "kind": ["separation"], "pivot": ["right"]})
-    return Response(record, case, dict(columns), pier, base, "ok", history, events)
+    return history

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from agency_files import dyna_text, geonet_text
 from fixed_column_files import cosmos_text
-from motion_files import needs_records, real_motions, wiggle, write_at2
+from motion_files import wiggle, write_at2
 from obspy import Trace
 from studies import FOLDER_STUDY, write_study
 
@@ -317,13 +317,6 @@ def test_a_sac_component_that_is_neither_level_nor_upright_is_asked_for(tmp_path
     found = read_motions(tmp_path, options=ReadOptions(unit="g"))
     assert [(m.name, m.azimuth) for m in found.motions] == [("a", 45.0)]
     assert [u.name for u in found.unusable] == ["b", "c"]
-
-
-@needs_records
-def test_no_real_record_is_asked_for():
-    found = real_motions()
-    assert len(found.motions) > 50
-    assert not any("direction not known" in u.reason for u in found.unusable)
 
 
 def test_agencies_numbers_of_one_digit_are_azimuths():

@@ -3,18 +3,17 @@
 import gzip
 import zipfile
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 import pytest
 from agency_files import geonet_text, renadic_channel
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
-from motion_files import RECORDS, at2_text, needs_records, real_components, real_motions, wiggle, write_at2
+from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.doubles import correlation, without_doubles
+from rockbatch.motions.component import Sensor
+from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.manifest_draft import draft
 
@@ -264,41 +263,3 @@ def test_of_real_recordings_in_several_files_one_is_used():
     }
     doubles = [double for double in found.left_out if "which is used" in double.reason]
     assert len(doubles) == 6
-
-
-@needs_records
-def test_all_real_records_at_once_hold_each_recording_once():
-    found = real_motions()
-    samples = [(motion.dt, motion.horizontal.tobytes()) for motion in found.motions]
-    assert len(set(samples)) == len(samples)
-
-
-@needs_records
-def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
-    """The limit lies between both; halves of a record stand for the parts of a long one."""
-    components = real_components()
-    short = [component for component in components if len(component.acceleration) < 9000]
-
-    def way(component: Component) -> tuple[object, ...]:
-        orientation = component.orientation
-        return orientation.vertical, orientation.azimuth, orientation.azimuth is None and orientation.label
-
-    of_one = [
-        correlation(one.acceleration, two.acceleration)
-        for one, two in combinations(components, 2)
-        if one.sensor.may_be_same_as(two.sensor)
-        and way(one) == way(two)
-        and one.dt == two.dt
-        and one.source != two.source
-    ]
-    of_others = [
-        correlation(one.acceleration, two.acceleration)
-        for one, two in combinations(short, 2)
-        if not one.sensor.may_be_same_as(two.sensor) and one.folder != two.folder and one.dt == two.dt
-    ]
-    halves = [(c.acceleration[: len(c.acceleration) // 2], c.acceleration[len(c.acceleration) // 2 :]) for c in short]
-    assert len(of_one) > 15
-    assert min(of_one) > 0.98
-    assert len(of_others) > 400
-    assert max(of_others) < 0.64
-    assert max(correlation(*half) for half in halves) < 0.47

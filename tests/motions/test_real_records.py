@@ -2,15 +2,18 @@
 
 import json
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
-from motion_files import RECORDS, needs_records, real_motions
+from motion_files import RECORDS, needs_records, real_components, real_motions
 
-from rockbatch.motions import ReadOptions
+from rockbatch.motions import Motion, ReadOptions, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
+from rockbatch.motions.doubles import correlation
 from rockbatch.motions.formats import RecordFile, read_record
+from rockbatch.motions.plausible import FARTHEST_MEAN
 
 pytestmark = needs_records
 
@@ -123,3 +126,72 @@ def test_every_file_of_every_agency_is_a_motion_or_has_a_reason():
     told = " ".join([*(m.files for m in found.motions), *(u.source for u in (*found.unusable, *found.left_out))])
     assert [p for p in files if p.relative_to(RECORDS / "formats").as_posix() not in told] == []
     assert not any("reader failed" in u.reason for u in found.unusable)
+
+
+# All of them: here, so that they are read once
+
+
+def test_no_real_record_is_asked_for():
+    found = real_motions()
+    assert len(found.motions) > 50
+    assert not any("direction not known" in u.reason for u in found.unusable)
+
+
+def test_every_real_record_swings_about_zero_by_a_wide_margin():
+    motions = [*real_motions().motions, *real_motions("formats/ridgecrest_csn_t001230", unit="g").motions]
+    motions += [Motion(c.name, c.dt, c.acceleration) for c in fema_p695.all_components()]
+    assert len(motions) > 150
+    shares = [
+        abs(samples.mean()) / np.abs(samples).max()
+        for motion in motions
+        for samples in (motion.horizontal, motion.vertical)
+        if samples is not None
+    ]
+    assert max(shares) < FARTHEST_MEAN / 100
+    assert not any(finding.what == "zero line" for motion in motions for finding in motion.findings)
+
+
+def test_what_some_files_of_a_folder_need_costs_none_of_the_formats_that_always_have_theirs():
+    """SAC files need a unit; those beside them from GeoNet, CGS, USGS, DYNA have theirs, in mm/s² and cm/s²."""
+    before = {motion.name: motion for motion in real_motions("formats").motions}
+    after = {m.name: m for m in real_motions("formats", unit="g").motions}
+    assert len(before) > 25
+    assert {"20190706031952.CJ.T001230.HNE"} <= after.keys() - before.keys()
+    for name, motion in before.items():
+        assert after[name].pga == motion.pga
+
+
+def test_all_real_records_at_once_hold_each_recording_once():
+    found = real_motions()
+    samples = [(motion.dt, motion.horizontal.tobytes()) for motion in found.motions]
+    assert len(set(samples)) == len(samples)
+
+
+def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
+    """The limit lies between both; halves of a record stand for the parts of a long one."""
+    components = real_components()
+    short = [component for component in components if len(component.acceleration) < 9000]
+
+    def way(component: Component) -> tuple[object, ...]:
+        orientation = component.orientation
+        return orientation.vertical, orientation.azimuth, orientation.azimuth is None and orientation.label
+
+    of_one = [
+        correlation(one.acceleration, two.acceleration)
+        for one, two in combinations(components, 2)
+        if one.sensor.may_be_same_as(two.sensor)
+        and way(one) == way(two)
+        and one.dt == two.dt
+        and one.source != two.source
+    ]
+    of_others = [
+        correlation(one.acceleration, two.acceleration)
+        for one, two in combinations(short, 2)
+        if not one.sensor.may_be_same_as(two.sensor) and one.folder != two.folder and one.dt == two.dt
+    ]
+    halves = [(c.acceleration[: len(c.acceleration) // 2], c.acceleration[len(c.acceleration) // 2 :]) for c in short]
+    assert len(of_one) > 15
+    assert min(of_one) > 0.98
+    assert len(of_others) > 400
+    assert max(of_others) < 0.64
+    assert max(correlation(*half) for half in halves) < 0.47

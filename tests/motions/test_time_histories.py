@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from motion_files import needs_records, real_motions, wiggle, write_at2
+from motion_files import wiggle, write_at2
 
-from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
+from rockbatch.motions import Motion, ReadOptions, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.plausible import FARTHEST_MEAN, Judged, no_zero_line
 
@@ -144,21 +144,6 @@ def test_few_samples_and_silence_tell_nothing():
     for samples in (np.array([0.1, 0.2, 0.3]), np.zeros(100)):
         motion, component = Motion("m", 0.01, samples), Component("m", 0.01, samples)
         assert no_zero_line(Judged(motion, component, (), 9.81)) is None
-
-
-@needs_records
-def test_every_real_record_swings_about_zero_by_a_wide_margin():
-    motions = [*real_motions().motions, *real_motions("formats/ridgecrest_csn_t001230", unit="g").motions]
-    motions += [Motion(c.name, c.dt, c.acceleration) for c in fema_p695.all_components()]
-    assert len(motions) > 150
-    shares = [
-        abs(samples.mean()) / np.abs(samples).max()
-        for motion in motions
-        for samples in (motion.horizontal, motion.vertical)
-        if samples is not None
-    ]
-    assert max(shares) < FARTHEST_MEAN / 100
-    assert not any(finding.what == "zero line" for motion in motions for finding in motion.findings)
 
 
 def test_motions_made_in_python_are_nobodys_business(tmp_path):
