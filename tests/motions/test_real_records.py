@@ -170,7 +170,7 @@ def test_all_real_records_at_once_hold_each_recording_once():
 def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
     """The limit lies between both; halves of a record stand for the parts of a long one."""
     components = real_components()
-    short = [component for component in components if len(component.acceleration) < 9000]
+    short = [component for component in components if len(component.acceleration) < 8000]
 
     def way(component: Component) -> tuple[object, ...]:
         orientation = component.orientation

@@ -556,7 +556,7 @@ def loaded(code):
 
 
 def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
-    carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))
+    carried_out(tmp_path, FEW.replace('histories = "all"', 'histories = "none"'))
     run = f"""
 import rockbatch as rb
 from rockbatch.batch.journal import Journal
