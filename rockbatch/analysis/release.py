@@ -4,6 +4,7 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -164,6 +165,7 @@ class _Test:
         duration = max(1.25 * last + quarter, 1.5 * (2 * len(measured.t) + 3) * quarter)
         step = min(STEP, quarter / STEPS_IN_QUARTER)
         self.still = Motion.still(duration, step)
+        self.model = cache(self._model)  # fits to times, to amplitudes and to both begin with the same values
 
     def base(self, value: float) -> Base:
         """Return the base with this value of the parameter."""
@@ -172,7 +174,7 @@ class _Test:
             changes = {"epsilon": 0.0, "zeta": None} | changes
         return replace(self.case.base, **changes)
 
-    def model(self, value: float) -> Passages:
+    def _model(self, value: float) -> Passages:
         """Return the impacts that the pier has with this value; one that it does not come to has no amplitude, at the end."""
         run = Run(self.case.pier, self.base(value), self.still)
         substeps = 2 * first_substeps(run.pier, run.base, run.motion.dt)

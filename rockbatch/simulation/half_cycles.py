@@ -121,8 +121,10 @@ def _peak(path: Path, first: int, last: int) -> tuple[float, float]:
         travel = float(theta[i + 1] - theta[i])
         a, b = h * float(omega[i]), h * float(omega[i + 1])
         square, linear = 3.0 * (a + b - 2.0 * travel), 2.0 * (3.0 * travel - 2.0 * a - b)
-        root = np.roots([square, linear, a])
-        for s in root[(np.abs(root.imag) < 1e-9) & (root.real > 0.0) & (root.real < 1.0)].real:
+        larger = -0.5 * (linear + math.copysign(math.sqrt(linear * linear - 4.0 * square * a), linear))
+        for s in (larger / square if square else math.inf, a / larger):  # of which one is between 0 and 1
+            if not 0.0 < s < 1.0:
+                continue
             value = float(theta[i]) + s * travel + s * (1 - s) * ((1 - s) * (a - travel) + s * (travel - b))
             if abs(value) > best:
                 best, t = abs(value), float(path.t[first + i]) + s * h

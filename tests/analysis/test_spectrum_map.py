@@ -223,6 +223,7 @@ STUDY = study_text(
                 "amplitude": [1.0, 8.0],
                 "amplitudes": 15,
                 "tolerance": 0.01,
+                "width": 0.5,
             },
             {
                 "name": "near-fault",
@@ -233,6 +234,7 @@ STUDY = study_text(
                 "frequencies": 2,
                 "amplitude": [1.0, 4.0],
                 "amplitudes": 4,
+                "width": 0.5,
             },
         ]
     },
