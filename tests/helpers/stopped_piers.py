@@ -25,22 +25,19 @@ BASES = [
 RANDOM_BASES = [BASES[0], pytest.param(ELASTIC, id="elastic", marks=pytest.mark.slow), BASES[2]]
 
 
-def crossed(bases, devices, on_all):
+def crossed(bases, devices, on_all, once=""):
     """Return parameters of every base with every one of the named ``devices``.
 
     Fast tests have all of them on rigid ground and on Bouc–Wen springs, and those named ``on_all`` on springs of other laws too:
-    that of a spring has no part in what devices do.
+    that of a spring has no part in what devices do. The one named ``once``, of many steps, they have on Bouc–Wen springs only.
     """
-    return [
-        pytest.param(
-            *base.values,
-            each,
-            id=f"{base.id}-{name}",
-            marks=base.marks if base.id in ("rigid", "bouc-wen") or name == on_all else (*base.marks, pytest.mark.slow),
-        )
-        for base in bases
-        for name, each in devices.items()
-    ]
+    parameters = []
+    for base in bases:
+        for name, each in devices.items():
+            fast = base.id == "bouc-wen" or (base.id == "rigid" and name != once) or name == on_all
+            marks = base.marks if fast else (*base.marks, pytest.mark.slow)
+            parameters.append(pytest.param(*base.values, each, id=f"{base.id}-{name}", marks=marks))
+    return parameters
 
 
 SHAKEN = pulse("sine", 0.5, 1.0, end=3.0)

@@ -52,8 +52,8 @@ def drawn(seeds, kinds):
 @pytest.mark.parametrize(
     "seeds",
     [
-        pytest.param(drawn(range(30), "common"), id="common"),
-        pytest.param(drawn(range(30, 60), "common"), id="common, more", marks=pytest.mark.slow),
+        pytest.param(drawn(range(20), "common"), id="common"),
+        pytest.param(drawn(range(20, 60), "common"), id="common, more", marks=pytest.mark.slow),
         pytest.param(drawn(range(60), "pairs"), id="pairs", marks=pytest.mark.slow),
         pytest.param(drawn(range(60), "others"), id="damped, n not 5", marks=THOROUGH),
     ],
