@@ -167,7 +167,7 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
     ]
     run: dict[str, Any] = {}
     if deciding is not None:
-        run = {name: str(suite.iloc[deciding][name]) for name in ("station", "record", "polarity")}
+        run = {name: str(suite[name].iloc[deciding]) for name in ("station", "record", "polarity")}
         run["governing"] = float(runs.value[deciding])
     return replace(
         none,

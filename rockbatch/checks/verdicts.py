@@ -3,7 +3,7 @@
 import csv
 import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +112,7 @@ def as_table(verdicts: Iterable[Verdict]) -> "pd.DataFrame":
 
 def _table(verdicts: Iterable[Verdict]) -> tuple[list[str], list[dict[str, Any]]]:
     """Return columns and rows of checks.csv."""
-    rows = [asdict(verdict) for verdict in verdicts]
+    rows = [vars(verdict) for verdict in verdicts]
     varied = dict.fromkeys(name for row in rows for name in row["columns"])
     first, last = ("check", "case"), [name for name in _KINDS if name not in ("check", "case", "columns")]
     return [*first, *varied, *last], [row | row["columns"] for row in rows]
