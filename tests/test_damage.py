@@ -20,7 +20,7 @@ def sample(tmp_path_factory):
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize(
-    ("what", "times"), [("study", 40), ("journal", 75), ("folder", 8), ("analysis", 3), ("rules", 30)]
+    ("what", "times"), [("study", 25), ("journal", 75), ("folder", 6), ("analysis", 2), ("rules", 30)]
 )
 def test_a_damaged_one_ends_in_words_or_in_what_is_right(sample, what, times):
     ends, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=3)

@@ -126,7 +126,9 @@ SEQUENCE = {
 
 def study(folder, name="study.toml", **more):
     motions = {"sequence": [SEQUENCE], "polarity": ["+", "-"], "scale": [1.0, 1.2]} | more
-    text = study_text(motions=motions, pulses=[SINE, COSINE], cases=[RIGID, PADS | {"beta": [40, 50]}])
+    text = study_text(
+        motions=motions, pulses=[SINE, COSINE], cases=[RIGID, PADS | {"beta": [40, 50]}], output={"histories": "none"}
+    )
     return write_study(folder, text, name)
 
 

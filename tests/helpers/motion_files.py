@@ -35,6 +35,18 @@ def real_components(unit: str | None = None) -> list[Component]:
     return [reading for reading in readings if isinstance(reading, Component)]
 
 
+def state_of(found: MotionSet) -> list[object]:
+    """Return names and numbers of a folder, as people see them."""
+    return [
+        *(
+            (m.name, m.named, m.station, m.dt, m.horizontal.tobytes(), m.vertical_source, m.notes)
+            for m in found.motions
+        ),
+        *found.unusable,
+        *found.left_out,
+    ]
+
+
 def e15_7(value: float) -> str:
     """Return a number as PEER's Fortran writes it in E15.7: ``  -.2415593E-03``."""
     mantissa, exponent = f"{abs(value):.6e}".split("e")

@@ -89,7 +89,7 @@ def test_a_large_manifest_without_a_mistake_is_read(folder):
     [
         (b"file,scale\n" + b'"' + b"a" * 200_000 + b'",2\n', "field larger than field limit"),
         (b'file,scale\n"a000.AT2,2\n' + b"x,1\n" * 100_000, "field larger than field limit"),
-        (b"file,scale\n" + b"nobody.AT2,2\n" * 30_000, "no such file"),
+        (b"file,scale\n" + b"nobody.AT2,2\n" * 10_000, "no such file"),
         (b"file," + b",".join(b"k%d" % i for i in range(100_000)) + b"\na000.AT2\n", "unknown column"),
         (b"file,scale\na000.AT2\x00,2\n", "the name of a file"),
         (b"file,scale\n" + b"a000.AT2," + b"2" * 1000 + b"\n", "a finite number"),
@@ -111,8 +111,8 @@ def test_a_csv_manifest_has_any_of_the_three_line_ends(folder, end):
     np.testing.assert_allclose(np.abs(motion.horizontal).max(), 2 * np.abs(wiggle()).max(), rtol=1e-6)
 
 
-def test_a_folder_of_ten_thousand_files_and_a_manifest_of_mistakes_is_told_soon(folder):
-    for i in range(5000):
+def test_a_folder_of_thousands_of_files_and_a_manifest_of_mistakes_is_told_soon(folder):
+    for i in range(2000):
         (folder / f"a{i:06d}.json").touch()
-    text = "".join(f'[[record]]\nfile = "b{i:06d}.AT2"\n' for i in range(5000))
+    text = "".join(f'[[record]]\nfile = "b{i:06d}.AT2"\n' for i in range(2000))
     assert len(problems(folder, "motions.toml", text)) == MOST_TOLD + 1

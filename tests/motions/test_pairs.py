@@ -34,18 +34,16 @@ def exact_peak(acceleration, dt, period, damping):
     system = np.zeros((4, 4))
     system[0, 1], system[1], system[2, 3] = 1.0, [-(omega**2), -2.0 * damping * omega, -1.0, 0.0], 1.0
     step = expm(system * dt)
-    state, most = np.zeros(2), 0.0
+    state, most = np.zeros((2, *acceleration.shape[1:])), 0.0
     for a, b in itertools.pairwise(acceleration):
-        state = (step @ [*state, a, (b - a) / dt])[:2]
-        most = max(most, abs(state[0]))
+        state = (step @ np.stack([*state, a, (b - a) / dt]))[:2]
+        most = np.maximum(most, np.abs(state[0]))
     return omega**2 * most
 
 
 def brute_force(first, second, dt, period, damping=0.05, angles=range(180)):
-    return [
-        exact_peak(first * math.cos(math.radians(k)) + second * math.sin(math.radians(k)), dt, period, damping)
-        for k in angles
-    ]
+    turned = np.outer(first, np.cos(np.radians(angles))) + np.outer(second, np.sin(np.radians(angles)))
+    return exact_peak(turned, dt, period, damping)
 
 
 def test_rotd_is_that_of_another_solver_turned_by_brute_force():

@@ -6,13 +6,14 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from motion_files import RECORDS, needs_records, real_components, real_motions
+from motion_files import RECORDS, needs_records, real_components, real_motions, state_of
 
-from rockbatch.motions import Motion, ReadOptions, fema_p695
+from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import correlation
 from rockbatch.motions.formats import RecordFile, read_record
+from rockbatch.motions.manifest_draft import write_draft
 from rockbatch.motions.plausible import FARTHEST_MEAN
 
 pytestmark = needs_records
@@ -195,3 +196,14 @@ def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not
     assert len(of_others) > 400
     assert max(of_others) < 0.64
     assert max(correlation(*half) for half in halves) < 0.47
+
+
+@pytest.mark.parametrize("folder", ["formats", "suite", "table1", "open"])
+def test_the_draft_of_real_records_loads_and_changes_no_name_and_no_number(tmp_path, folder):
+    for path in sorted((RECORDS / folder).rglob("*")):
+        target = tmp_path / "copy" / path.relative_to(RECORDS)
+        if path.is_file():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(path.read_bytes())
+    write_draft(tmp_path / "copy" / folder)
+    assert state_of(read_motions(tmp_path / "copy" / folder)) == state_of(real_motions(folder)) != []

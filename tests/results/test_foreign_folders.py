@@ -61,8 +61,9 @@ def test_a_file_that_is_no_plain_one_is_not_opened(foreign, tmp_path, name, kind
     moved = shutil.move(foreign / name, tmp_path / name)
     make = {"link": lambda: (foreign / name).symlink_to(moved), "pipe": lambda: os.mkfifo(foreign / name)}
     make.get(kind, lambda: (foreign / name).mkdir())()
-    assert f"{foreign / name}: " in told(foreign)
-    assert "neither read nor written in a folder of results; remove it" in told(foreign)
+    words = told(foreign)
+    assert f"{foreign / name}: " in words
+    assert "neither read nor written in a folder of results; remove it" in words
 
 
 @pytest.mark.parametrize("name", ["peaks.csv", "run.json", "report.html", "checks.csv", "histories.h5"])
@@ -372,8 +373,9 @@ def test_a_place_that_does_not_fit_is_named_with_what_was_expected():
 def test_a_table_that_no_run_can_have_left_is_told_with_its_line(foreign, old, new, words):
     peaks = foreign / "peaks.csv"
     peaks.write_text(peaks.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
-    assert f"{peaks}:2: " in told(foreign)
-    assert words in told(foreign)
+    said = told(foreign)
+    assert f"{peaks}:2: " in said
+    assert words in said
 
 
 @pytest.mark.parametrize("word", ["demand", "statistic", "count", "sense", "verdict"])
