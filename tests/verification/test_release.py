@@ -150,7 +150,9 @@ SPRINGS = {
 
 
 @pytest.mark.parametrize("share", [0.01, 0.4], ids=["in full contact", "lifted"])
-@pytest.mark.parametrize("name", SPRINGS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "damped-hardening" else name for name in SPRINGS]
+)
 def test_springs_are_held_and_let_go_as_in_the_reference(name, share):
     """The held state to 1e-10; after 4 s 1e-7 α, as without a release (test_against_reference.py)."""
     base, theta = SPRINGS[name], share * FIG5.alpha
