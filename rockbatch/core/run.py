@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.clock import (
-    ATTEND,
     CALM,
     EVENTFUL,
     WINDOWS,
@@ -29,7 +28,7 @@ from rockbatch.core.devices.events import after_contact, device_event, start_dev
 from rockbatch.core.devices.pull import Devices, loaded, resolved
 from rockbatch.core.devices.use import take_in
 from rockbatch.core.history import history_of, take_back, write
-from rockbatch.core.kernel import entry, inlined, kernel, question
+from rockbatch.core.kernel import entry, inlined, inlined_once, kernel, question
 from rockbatch.core.search import first_event, marks_for, start_rates
 from rockbatch.core.system import (
     after_event,
@@ -194,7 +193,7 @@ def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
     return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), Moment(y, after, supports)
 
 
-@inlined
+@inlined_once
 def _through(traits, lanes, i, devices, marks, substep, settings, ground, history):
     """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
     h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
@@ -265,24 +264,23 @@ def _finish(traits, lanes, i, status, t, history, results):
 
 
 @question
-def _attend(devices, traits, lanes, i, marks, substep, settings, ground, history):
-    """Do what the pass has left to do in lane ``i``: status and time [s]."""
+def _stands(devices, traits, lanes, i, substep, history):
+    """Return whether the sub-step of lane ``i`` stands as the pass took it, and take in what the pass could not."""
 
 
-@_attend.of(Devices)
-def _attend_with_devices(devices, traits, lanes, i, marks, substep, settings, ground, history):
-    return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
+@_stands.of(Devices)
+def _stands_with_devices(devices, traits, lanes, i, substep, history):
+    return False
 
 
-@_attend.of(type(None))
-def _attend_alone(devices, traits, lanes, i, marks, substep, settings, ground, history):
+@_stands.of(type(None))
+def _stands_alone(devices, traits, lanes, i, substep, history):
     if lanes.step_status.kind[i] >= EVENTFUL:
-        return _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
-    if lanes.step_status.kind[i] == ATTEND:
-        write_reversals(traits, lanes, i, substep, history)
-        _include_peak_of_lane(lanes, i, substep)
-        attend(traits, lanes, i)
-    return SURVIVED, lanes.clock.sample[i] * lanes.clock.dt[i] + substep * lanes.clock.step[i]
+        return False
+    write_reversals(traits, lanes, i, substep, history)
+    _include_peak_of_lane(lanes, i, substep)
+    attend(traits, lanes, i)
+    return True
 
 
 @inlined
@@ -375,8 +373,8 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
             i = NONE if busy > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
-                if lanes.step_status.kind[i] != CALM:
-                    status, t = _attend(devices, traits, lanes, i, marks, substep, settings, ground, history)
+                if lanes.step_status.kind[i] != CALM and not _stands(devices, traits, lanes, i, substep, history):
+                    status, t = _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
                 if status == SURVIVED:
                     i += 1
                 else:

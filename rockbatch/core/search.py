@@ -7,7 +7,7 @@ import numpy as np
 from rockbatch.core.devices.events import PER_DEVICE, device_functions
 from rockbatch.core.devices.pull import END, START, stage_states
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import inlined, inlined_once, kernel
 from rockbatch.core.rk4 import rates_with, rk4
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
 from rockbatch.core.system import event_functions
@@ -89,7 +89,7 @@ def start_rates(m, devices, y, contact, ground):
     return rates_with(devices, m, y, contact, ground.horizontal, ground.vertical, START)
 
 
-@inlined
+@inlined_once
 def first_event(m, devices, marks, start, k, rest, ground, h, locate):
     """Take a step of ``h`` [s] from the Moment ``start``, whose rates are ``k``, or to the first event before its end.
 
