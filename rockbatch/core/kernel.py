@@ -134,7 +134,7 @@ def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def inlined_once(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block that becomes part of its only caller: optimising it before, too, doubled the time of large ones."""
+    """Compile a building block that becomes part of its only caller, and is optimised there only."""
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART | {"pipeline_class": _OnlyPartCompiler})(function))
 
 

@@ -23,7 +23,9 @@ def load_numba() -> None:
 
     Numba loads it only to see whether it is installed; a function that multiplies matrices loads it when it is compiled.
     """
-    look: Any = linalg.ensure_blas
+    look: Any = getattr(linalg, "ensure_blas", None)
+    if look is None:  # a Numba that looks for it otherwise
+        return
     linalg.ensure_blas = lambda: None
     try:
         import_module("numba.np.arraymath")
