@@ -203,7 +203,7 @@ def test_a_full_disk_is_told_and_when_there_is_room_the_same_command_goes_on(stu
     disk.mkdir()
     kept.mkdir()
     script = f"""
-import contextlib, pathlib, shutil, subprocess, sys
+import contextlib, shutil, subprocess, sys
 from rockbatch.cli import main
 
 sizes = {{"first": "{len(undisturbed) // 2}", "second": "{len(undisturbed) * 3 // 2}", "third": "50m"}}

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import numba
+import pytest
 
 import rockbatch
-from rockbatch.core.kernel import core_digest, entry, kernel
+from rockbatch.core.kernel import core_digest, entry, inlined_once, kernel
 
 SCRIPT = """
 import numpy as np
@@ -77,10 +78,11 @@ def test_no_two_processes_write_one_file_of_machine_code():
     assert len(names) == 2
 
 
-def test_a_building_block_is_part_of_its_callers_only_and_python_may_call_it_too():
+@pytest.mark.parametrize("building_block", [kernel, inlined_once])
+def test_a_building_block_is_part_of_its_callers_only_and_python_may_call_it_too(building_block):
     """Machine code of its own would take a quarter of all compilation, and nobody would run it."""
 
-    @kernel
+    @building_block
     def twice(x):
         return 2.0 * x
 

@@ -72,9 +72,9 @@ def test_plastic_work_is_that_of_the_outcome(name):
     """The outcome has it from the ends of each loading in closed form, the ledger from the power of the forces."""
     from rockbatch.simulation import run_fixed
 
-    outcome = run_fixed(PIER, BASES[name], SMOOTH, 96)
+    outcome = run_fixed(PIER, BASES[name], SMOOTH, 64)
     closed_form = outcome.dissipated_left + outcome.dissipated_right
-    assert ledger(BASES[name], 96)["plastic"].iloc[-1] == pytest.approx(closed_form, rel=1e-8)
+    assert ledger(BASES[name], 64)["plastic"].iloc[-1] == pytest.approx(closed_form, rel=1e-8)
 
 
 def test_stored_energy_is_that_of_the_history():
