@@ -1,13 +1,12 @@
 """What holds for all tests."""
 
-import gc
 import sys
 
 import pytest
 
-# Compiled kernels leave hundreds of megabytes of objects that live on: with Python's own thresholds a tenth of the time of
-# tests, and more of a compilation's, goes into looking through them.
-gc.set_threshold(50_000, 20, 100)
+from rockbatch.common.garbage import collect_rarely
+
+collect_rarely()
 
 KNOWN = set()
 """Kernels that this process has looked at."""

@@ -15,6 +15,7 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
+from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions import Motion
 from rockbatch.simulation.compilation import kernel_of, load_numba, on_compilation
 from rockbatch.study import Numerics, Output, Study
@@ -80,4 +81,5 @@ def _compile_elsewhere(waiting: "deque[Task]") -> None:
 
 
 if __name__ == "__main__":
+    collect_rarely()
     _compile(pickle.loads(sys.stdin.buffer.read()))

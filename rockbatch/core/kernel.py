@@ -86,6 +86,13 @@ class _OnlyPartLibrary(_PartLibrary):
         pass
 
 
+_UNUSED = {
+    "WithLifting", "InlineClosureLikes", "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables",
+    "FindLiterallyCalls", "LiteralUnroll", "InlineOverloads", "NopythonRewrites", "DumpParforDiagnostics",
+}  # fmt: skip
+"""Numba's passes over what no building block has: closures, blocks of ``with``, array expressions, loops over literals."""
+
+
 class _PartCompiler(Compiler):
     """Compiler of a building block, whose machine code nobody calls: making it took a quarter of all compilation."""
 
@@ -94,6 +101,9 @@ class _PartCompiler(Compiler):
     def define_pipelines(self) -> list[Any]:
         self.state.library = self.library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
         pipelines: list[Any] = super().define_pipelines()
+        for pipeline in pipelines:
+            pipeline.passes[:] = [step for step in pipeline.passes if step[0].__name__ not in _UNUSED]
+            pipeline.finalize()
         return pipelines
 
 
