@@ -69,13 +69,27 @@ def _try(m, devices, marks, start, k, rest, ground, x, h):
 
 
 @kernel
+def _first_below(values):
+    """Return the number of the first event function that is not above zero, NO_EVENT for none."""
+    for i in range(len(values)):
+        if values[i] <= 0.0:
+            return i
+    return NO_EVENT
+
+
+@kernel
 def _narrow(marks, a, t, b):
-    """Narrow the interval [a, b] of the first event by a trial at ``t``: a, b, which function falls first, and when after a."""
+    """Narrow the interval [a, b] of the first event by a trial at ``t``: a, b, which function falls first, and when after a.
+
+    There is none if no function falls on the way to a trial at ``b``.
+    """
     which, at = _earliest(marks.early, marks.early_slopes, marks.now, marks.now_slopes, t - a)
     if which != NO_EVENT:
         _copy(marks.now, marks.late)
         _copy(marks.now_slopes, marks.late_slopes)
         return a, t, which, at
+    if t == b:
+        return t, b, which, at
     _copy(marks.now, marks.early)
     _copy(marks.now_slopes, marks.early_slopes)
     which, at = _earliest(marks.early, marks.early_slopes, marks.late, marks.late_slopes, b - t)
@@ -101,27 +115,17 @@ def first_event(m, devices, marks, start, k, rest, ground, h, locate):
     The time that it took [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
     _evaluate(m, devices, start, k, rest, ground, h, START, marks.early, marks.early_slopes)
-    end, k_end = _try(m, devices, marks, start, k, rest, ground, h, h)
-    if not locate:
-        for i in range(len(marks.now)):
-            if marks.now[i] <= 0.0:
-                return h, i, end, k_end
-        return h, NO_EVENT, end, k_end
-    which, at = _earliest(marks.early, marks.early_slopes, marks.now, marks.now_slopes, h)
-    if which == NO_EVENT:
-        return h, which, end, k_end
-    _copy(marks.now, marks.late)
-    _copy(marks.now_slopes, marks.late_slopes)
-    a, b, t, last = 0.0, h, h, False
+    a, b, t, which, last = 0.0, h, h, NO_EVENT, False
     for trial in range(TRIALS + 1):
-        if which == NO_EVENT and t == b:
+        end, k_end = _try(m, devices, marks, start, k, rest, ground, t, h)
+        if not locate:
+            return h, _first_below(marks.now), end, k_end
+        if last:
             return t, which, end, k_end
-        if last or (which != NO_EVENT and abs(a + at - t) <= CLOSE * h):
+        a, b, which, at = _narrow(marks, a, t, b)
+        if (t == b) if which == NO_EVENT else (abs(a + at - t) <= CLOSE * h):
             return t, which, end, k_end
         halve = trial > BISECT_AFTER and trial % 2 == 0
         last = which == NO_EVENT or abs(a + at - t) <= NEAR * h or at <= CLOSE * h or trial == TRIALS - 1
         t = b if which == NO_EVENT else (0.5 * (a + b) if halve and not last else a + at)
-        end, k_end = _try(m, devices, marks, start, k, rest, ground, t, h)
-        if not last:
-            a, b, which, at = _narrow(marks, a, t, b)
     return t, which, end, k_end
