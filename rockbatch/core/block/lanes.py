@@ -66,8 +66,10 @@ def model(traits, lanes, i):
 @system.moment.of(BlockTraits)
 def moment(traits, lanes, i):
     """Return state and stance of lane ``i``; the ground needs no support."""
-    contact = get(lanes.contact, i, Stance)
-    return constrained(system.model(traits, lanes, i), get(lanes.now, i, Rocking), contact), contact, None
+    contact, y = get(lanes.contact, i, Stance), get(lanes.now, i, Rocking)
+    if traits.pull is None:  # the pass goes on with θ alone
+        y = constrained(system.model(traits, lanes, i), y, contact)
+    return y, contact, None
 
 
 @system.put_moment.of(BlockTraits)

@@ -71,7 +71,7 @@ class Devices(NamedTuple):
     stage: np.ndarray  # of a Runge–Kutta step
     end: np.ndarray
     rates: np.ndarray  # shape (6, len(x)): of the four stages, at the end, and of a state looked at beside them
-    gaps: np.recarray  # of Gap, shape (6, devices), likewise
+    gaps: np.recarray  # of Gap, shape (6, devices), likewise but for stages inside a step
     use: np.recarray  # of Use
 
 
@@ -141,12 +141,12 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
 
 
 @kernel
-def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
+def _with_friction(m, devices, at, y, contact, horizontal, vertical):
     """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
     first, elements = sticking(devices, NO_EVENT), devices.elements
     second = sticking(devices, first)
     other = second if second != NO_EVENT else first
-    here, there = gaps[first], gaps[other]
+    here, there = gap_of(m, elements[first], at, y), gap_of(m, elements[other], at, y)
     strengths = elements[first].strength, elements[other].strength
     one, two = _held_by_friction(m, here, there, y, contact, horizontal, vertical, strengths)
     down = one * here.by_v + two * there.by_v
@@ -155,7 +155,7 @@ def _with_friction(m, devices, gaps, y, contact, horizontal, vertical):
 
 @kernel
 def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
-    """Write the rates of the devices' states ``x``, and their gaps, to their ``place``.
+    """Write the rates of the devices' states ``x`` to their ``place``, and the gaps there but for stages inside a step.
 
     Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
     """
@@ -164,7 +164,8 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     for j in range(n):
         of, goes = devices.elements[j], devices.goes[j]
         here = gap_of(m, of, at, y)
-        put_gap(devices.gaps[place, j], here)
+        if place == START or place >= END:
+            put_gap(devices.gaps[place, j], here)
         law = response(of, here.elongation, here.speed, x[j], devices.modes[j], goes)
         k[j], k[n + j] = law.state_rate, law.loss_rate
         total += law.force * here.by_v
@@ -172,7 +173,7 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
         holds = holds or (goes == STICKS and of.kind == FRICTION)
     under = pulled(m, total, moment)
     if holds:
-        under, one, two = _with_friction(under, devices, devices.gaps[place], y, contact, horizontal, vertical)
+        under, one, two = _with_friction(under, devices, at, y, contact, horizontal, vertical)
     k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two
