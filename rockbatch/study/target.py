@@ -222,7 +222,7 @@ def _spectrum(table: Table, code: str, read: dict[str, Any]) -> Spectrum | None:
         if any(isinstance(entry, str) for entry in entries):
             raise InputError("spectrum: expected one name, or pairs of a period [s] and a spectral acceleration [g]")
         periods, values = zip(*entries, strict=True)
-        return TableSpectrum(periods, values, damping, "spectrum", linear)
+        return TableSpectrum(periods, values, damping, "given by the study", linear)
     return None
 
 

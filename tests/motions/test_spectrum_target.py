@@ -210,7 +210,7 @@ def test_a_study_names_codes_tables_and_files(tmp_path):
     asce = {"spectrum": "asce7", "sds_g": 1.0, "sd1_g": 0.6, "tl_s": 8.0, "period_range_s": [1, 12]}
     assert study_with(tmp_path, asce).spectrum == AsceSpectrum(1.0, 0.6, 8.0)
     pairs = {"spectrum": [[0.1, 1.0], [4.0, 0.2]], "period_range_s": [0.2, 2.0], "damping": 0.02}
-    assert study_with(tmp_path, pairs).spectrum == TableSpectrum((0.1, 4.0), (1.0, 0.2), 0.02, "spectrum")
+    assert study_with(tmp_path, pairs).spectrum == TableSpectrum((0.1, 4.0), (1.0, 0.2), 0.02, "given by the study")
     (tmp_path / "site.csv").write_text("T [s], Sa [g]\n0.1, 1.0\n4.0, 0.2\n")
     of_file = study_with(tmp_path, {"spectrum": "site.csv", "period_range_s": [0.2, 2.0]})
     assert of_file.spectrum == TableSpectrum((0.1, 4.0), (1.0, 0.2), 0.05, "site.csv")
