@@ -77,8 +77,8 @@ WORDS: dict[str, tuple[str, ...]] = {
 class _Traits:
     """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
 
-    on_springs: ClassVar[bool] = False
-    """True if two springs carry the pier, and deflect."""
+    on_springs: ClassVar[bool]
+    """True if two springs carry the pier, and deflect; a literal of each class, by which type checkers know the class."""
 
     yields: ClassVar[bool] = False
     """True if these springs yield, so that the pier may settle."""
@@ -137,6 +137,7 @@ class RigidBase(_Traits):
     area_m2: float | None = field(default=None, kw_only=True)
 
     name = "rigid"
+    on_springs: ClassVar[Literal[False]] = False
     kinematics: ClassVar[Kinematics] = "finite"
     beta: ClassVar[float] = math.inf
     """β of ground that does not give: the limit of springs."""
@@ -193,7 +194,7 @@ class ElasticBase(_Traits):
     area_m2: float | None = field(default=None, kw_only=True)
 
     name = "elastic"
-    on_springs = True
+    on_springs: ClassVar[Literal[True]] = True
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""

@@ -55,7 +55,7 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     pier, base = run.pier, run.base
     most = math.inf if base.friction is None else float(base.friction)
     limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
-    body = Body(_outline(pier), _friction_hold(pier, base)) if isinstance(base, RigidBase) else float(pier.deck)
+    body = float(pier.deck) if base.on_springs else Body(_outline(pier), _friction_hold(pier, base))
     plain, pulls = apart(base, rows)
     recording = RecordedRun(plain, pulls, recorded(pier, base, rows) if base.restraints else None)
     ground, dt = ground_of(run.motion), float(run.motion.dt)
@@ -178,7 +178,7 @@ def _per_bounce(run: Run, events: np.recarray, after: np.ndarray) -> Samples | f
     Coming to rest sums up ever lower bounces, each of which leaves the share e of the velocity: J_h is (1 − e) and J_v (1 + e) of
     what a stop at once would take (THEORY.md, Forces).
     """
-    if not isinstance(run.base, RigidBase):
+    if run.base.on_springs:
         return 1.0
     e = block(run.pier, run.base).restitution
     return np.where(events.kind[after] == types.REST, (1.0 - e) / (1.0 + e), 1.0)

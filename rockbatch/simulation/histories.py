@@ -70,10 +70,10 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     terms = np.zeros((len(rows), len(TERMS)))
     balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     plain, pulls = restraints.apart(base, rows)
-    if isinstance(base, RigidBase):
-        ledger_on_rigid_base(block(pier, base), plain, pulls, ground, dt, balance)
-    else:
+    if base.on_springs:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
+    else:
+        ledger_on_rigid_base(block(pier, base), plain, pulls, ground, dt, balance)
     return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
 
 
@@ -169,7 +169,7 @@ def histories(
         moments = at_rows(run, rows)
         demands, impacts = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     devices = restraints.loops(pier, base, rows) if base.restraints else None
-    state = _rigid_state(pier, base, rows) if isinstance(base, RigidBase) else _springs_state(pier, base, rows)
+    state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)

@@ -140,7 +140,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
 
 def model(pier: Pier, base: Base) -> Block | Springs:
     """Return the core's numbers for ``pier`` on ``base``."""
-    return block(pier, base) if isinstance(base, RigidBase) else springs(pier, base)
+    return springs(pier, base) if base.on_springs else block(pier, base)
 
 
 def kind_of(m: Block | Springs) -> Kind:
@@ -232,7 +232,7 @@ def _linear_part(pier: Pier, base: Base, element: Element, coefficient: float, e
 
 def _fastest(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a pier without devices; on rigid ground that at which a steep damper may slow it."""
-    return fastest(pier, base) if isinstance(base, ElasticBase) else STEEP * pier.p
+    return fastest(pier, base) if base.on_springs else STEEP * pier.p
 
 
 def _lever(pier: Pier, base: Base, element: Element) -> float:

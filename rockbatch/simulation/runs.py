@@ -229,7 +229,7 @@ def _held_at_rest(run: Run, result: Result, devices: Devices, outcome: Outcome) 
         return outcome
     n, sticks = len(devices.elements), devices.goes == STICKS
     states = devices.x[:n]
-    if isinstance(base, ElasticBase):
+    if base.on_springs:
         rotation = rests_at(pier, base, result, float(devices.level[0]), states, sticks)
         remark = f"dampers and tendons hold the pier at {rotation:.3g} rad, its supports would at {outcome.theta_res or 0.0:.3g}"
     else:
@@ -301,7 +301,7 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     status, reason = _STATUS[result.status]
     more: dict[str, Any] = {}
     omega_v, zeta = None, 0.0
-    if isinstance(base, ElasticBase):
+    if base.on_springs:
         more = _of_springs(pier, base, result, survived=status == "ok")
         omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
     if result.status == types.FLIGHT:

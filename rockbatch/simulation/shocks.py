@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.pier import ElasticBase
 from rockbatch.simulation.histories import written
 from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
 from rockbatch.simulation.outcome import Outcome, ShockOutcome
@@ -89,7 +88,7 @@ def _base(run: Run, rows: np.recarray) -> tuple[Samples | None, Samples | None]:
     """Return the rotation at which the pier would rest [rad], and the mean settlement of its supports [m], at every row; ``None``
     where dampers or tendons have a say in it, or on a rigid base."""
     pier, base = run.pier, run.base
-    if not isinstance(base, ElasticBase):
+    if not base.on_springs:
         return None, None
     if not base.yields:
         return np.zeros(len(rows)) if not base.has_residual else None, np.zeros(len(rows))

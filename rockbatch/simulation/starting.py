@@ -33,7 +33,7 @@ def start_of(pier: Pier, base: Base) -> Start:
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING
-    if isinstance(base, ElasticBase):
+    if base.on_springs:
         return _on_springs(pier, base)
     states = []
     for law in elements(pier, base):  # about a corner: the chord of the device's way
