@@ -143,7 +143,7 @@ def _falls(f0, d0, f1, d1, h):
 def largest_within(f0, d0, f1, d1, h, best):
     """Return the greatest |f| so far, and the time in this step at which it is attained; −1 if ``best`` stands."""
     x_best = -1.0
-    if max(abs(f0), abs(f1)) + excess(d0, d1, h) <= best:  # by far the most
+    if max(abs(f0), abs(f1)) + excess(d0, d1, h) <= best:  # no point of the cubic lies beyond this bound
         return x_best, best
     if d0 * d1 < 0.0 or (d0 == 0.0 and d1 != 0.0):
         x = turning_point(f0, d0, f1, d1, h)

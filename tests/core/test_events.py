@@ -315,6 +315,27 @@ def test_hermite_cubic_and_its_turning_point_reproduce_a_cubic():
     assert (where, value) == pytest.approx((1.0 / math.sqrt(3.0), 2.0 / (3.0 * math.sqrt(3.0))), abs=1e-15)
 
 
+def test_the_greatest_of_random_cubics_is_that_of_a_grid_whatever_was_greatest_before():
+    """NumPy's polynomials through both ends, at 4,001 points: the slope changes its sign once, or is 0 at the start."""
+    rng = np.random.default_rng(5)
+    x = np.linspace(0.0, 1.0, 4001)
+    basis = np.linalg.inv([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 1.0], [0.0, 1.0, 2.0, 3.0]])
+    for _ in range(300):
+        h = 10.0 ** rng.uniform(-3.0, 1.0)
+        f0, d0, f1, d1 = rng.normal(size=4) * (1.0, 20.0 ** rng.uniform(-1.0, 1.0), 1.0, 20.0 ** rng.uniform(-1.0, 1.0))
+        d0, d1 = d0 * (rng.random() > 0.1), -math.copysign(d1, d0)
+        values = abs(np.polynomial.polynomial.polyval(x, basis @ (f0, d0, f1, d1)))
+        for before in (0.5, 0.999, 1.001, 2.0):
+            best = max(before * values.max(), abs(f0))  # the start is the end of the step before
+            at, found = largest_within(f0, d0 / h, f1, d1 / h, h, best)
+            if values.max() > best:
+                assert found == pytest.approx(values.max(), rel=1e-5)
+                assert 0.0 < at <= h
+                assert abs(hermite(f0, d0 / h, f1, d1 / h, h, at)) == pytest.approx(found, rel=1e-12)
+            else:
+                assert (at, found) == (-1.0, best)
+
+
 def test_kinds_of_history_rows_are_the_ones_compared_here():
     """The numbers that this file compares rows with."""
     assert CONTACT_EVENTS == (SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT)
