@@ -13,11 +13,10 @@ from rockbatch.core.devices.laws import CONTACT, HYSTERETIC, SPRING, TENDON, for
 from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
-    DECIDED,
-    OPEN,
-    UNSTABLE,
     Drift,
-    overturning_bound,
+    further,
+    lean_on,
+    peak_is_final,
     rocking_period,
     unstable_equilibrium,
 )
@@ -59,6 +58,10 @@ class Waiting(NamedTuple):
     midway_tilt: float  # |tilt| of the base then [rad]
     load: float  # what the supports carry at rest, the weight and what tendons add to it [m/s²]
     stored: float  # energy that tendons may give back, beyond what they do at that load [J/kg]
+    period: float  # of rocking in full contact [s]
+    further_right: float  # what is foreseen of the base's tilt, a Drift
+    further_left: float
+    growth: float
 
 
 @system.expect.of(SpringTraits)
@@ -76,6 +79,8 @@ def expect(traits, lanes, i, run):
     waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
     waiting.midway[i] = waiting.midway_tilt[i] = math.inf
     waiting.load[i], waiting.stored[i] = run.gravity + run.prestress, 0.0
+    waiting.period[i] = rocking_period(model(traits, lanes, i))
+    waiting.further_right[i] = waiting.further_left[i] = waiting.growth[i] = 0.0
 
 
 @system.peak_stands.of(SpringTraits)
@@ -107,37 +112,41 @@ def _tilt(m, y, contact, supports):
 
 
 @kernel
-def _calm_from(lanes, i, m):
+def _calm_from(lanes, i):
     """Return the time [s] from which on no pivot has moved for a period of rocking, and the ground has been at rest."""
-    return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + rocking_period(m)
+    return max(lanes.tally.moved[i], lanes.clock.npts[i] * lanes.clock.dt[i]) + lanes.waiting.period[i]
 
 
 @kernel
-def _stands(lanes, i, m, contact):
+def _stands(lanes, i, contact):
     """Return whether the pier has stood on both pivots for a period of rocking while the ground was at rest."""
     both = contact.left != 0.0 and contact.right != 0.0
-    return both and lanes.clock.sample[i] * lanes.clock.dt[i] >= _calm_from(lanes, i, m)
+    return both and lanes.clock.sample[i] * lanes.clock.dt[i] >= _calm_from(lanes, i)
 
 
 @kernel
-def _overturning_bound(lanes, i, m, y, contact, supports, devices):
-    """Return OPEN, DECIDED or UNSTABLE (see ``free_vibration``); OPEN while the ground moves."""
-    if not ground_rests(lanes, i):
-        return OPEN
-    waiting, dt = lanes.waiting, lanes.clock.dt[i]
+def _legible(lanes, i, contact):
+    """Return whether residuals may be read: the pier stands, or has been waited for as long as it is."""
+    return lanes.clock.sample[i] >= lanes.waiting.read_by[i] or _stands(lanes, i, contact)
+
+
+@kernel
+def _base_and_yield_points(m, y, contact, supports):
+    """Return where both supports are unstressed [m], and their yield points."""
     left, right = base_of(m, y, contact, supports)
-    calm = devices is None and _stands(lanes, i, m, contact)
-    ahead = 0.5 * waiting.patience[i] * dt * (FORESEEN if ratchets(m.law) else 1.0)
-    last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
-    first_left, first_right = last_left, last_right
-    if not math.isnan(waiting.drift_left[i]):
-        first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
-    last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
-    to_right, to_left = max(0.0, first, last), max(0.0, -first, -last)
-    sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
-    base = Supports(left, right, supports.yield_left, supports.yield_right)
-    drift = Drift(to_right, to_left, sinking)
-    return overturning_bound(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
+    return Supports(left, right, supports.yield_left, supports.yield_right)
+
+
+@kernel
+def _peak_is_final(lanes, i, m, y, contact, supports, devices):
+    """Return whether nothing can exceed the peak any more; never while the ground moves."""
+    if not ground_rests(lanes, i):
+        return False
+    waiting = lanes.waiting
+    calm = devices is None and _stands(lanes, i, contact)
+    base = _base_and_yield_points(m, y, contact, supports)
+    drift = Drift(waiting.further_right[i], waiting.further_left[i], waiting.growth[i])
+    return peak_is_final(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
 
 
 @kernel
@@ -154,7 +163,21 @@ def _read_base(lanes, i, m, y, contact, supports):
         waiting.last_drift_left[i], waiting.last_drift_right[i] = drift_left, drift_right
         if waiting.last_read[i] == waiting.read[i]:
             waiting.drift_left[i], waiting.drift_right[i] = drift_left, drift_right
+        _foresee(lanes, i, m)
     waiting.last_read[i], waiting.last_left[i], waiting.last_right[i] = sample, left, right
+
+
+@kernel
+def _foresee(lanes, i, m):
+    """Foresee how far the base may still tilt, if its supports go on as between the first two readings, or the last two."""
+    waiting = lanes.waiting
+    ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if ratchets(m.law) else 1.0)
+    last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
+    first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
+    last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
+    sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
+    drift = further(m, max(0.0, first, last), max(0.0, -first, -last), sinking)
+    waiting.further_right[i], waiting.further_left[i], waiting.growth[i] = drift.right, drift.left, drift.growth
 
 
 @kernel
@@ -225,9 +248,8 @@ def over(traits, lanes, i, devices):
         return RUNNING if sample < samples else SURVIVED
     m = model(traits, lanes, i)
     y, contact, supports = moment(traits, lanes, i)
-    legible = sample >= waiting.read_by[i] or _stands(lanes, i, m, contact)
     if decided and waiting.read[i] < 0.0:
-        if not legible:
+        if not _legible(lanes, i, contact):
             return RUNNING
         _read_base(lanes, i, m, y, contact, supports)
     elif decided:
@@ -238,16 +260,16 @@ def over(traits, lanes, i, devices):
         if sample < max(samples, waiting.read[i] + wait):
             return RUNNING
     _in_devices(lanes, i, m, devices, y, contact, supports)
-    bound = _overturning_bound(lanes, i, m, y, contact, supports, devices)
-    if bound == DECIDED and not decided:
+    final = _peak_is_final(lanes, i, m, y, contact, supports, devices)
+    if final and not decided:
         waiting.decided_at[i] = sample
-        if legible:
+        if _legible(lanes, i, contact):
             _read_base(lanes, i, m, y, contact, supports)
-    if bound == DECIDED and waiting.read[i] >= 0.0 and sample >= max(samples, waiting.read[i] + wait):
+    if final and waiting.read[i] >= 0.0 and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
         waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, y, contact, supports)
-    return RUNNING if sample < longest else _given_up(lanes, i, m, bound, y, contact, supports)
+    return RUNNING if sample < longest else _given_up(lanes, i, m, y, contact, supports)
 
 
 @system.next_due.of(SpringTraits)
@@ -261,17 +283,20 @@ def next_due(traits, lanes, i):
     if waiting.read_wait[i] == 0.0:
         return max(lanes.clock.samples[i], sample + 1.0)
     if waiting.read[i] < 0.0:
-        stands = math.floor(_calm_from(lanes, i, model(traits, lanes, i)) / lanes.clock.dt[i])
+        stands = math.floor(_calm_from(lanes, i) / lanes.clock.dt[i])
         return max(min(waiting.read_by[i], stands), sample + 1.0)
-    return sample + 1.0
+    if sample < waiting.read[i] + waiting.read_wait[i]:
+        return sample + 1.0  # a mean is taken
+    return max(min(waiting.last_read[i] + waiting.read_wait[i], lanes.clock.samples[i]), sample + 1.0)
 
 
 @kernel
-def _given_up(lanes, i, m, bound, y, contact, supports):
+def _given_up(lanes, i, m, y, contact, supports):
     """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
-    if bound == UNSTABLE or abs(y.theta) >= unstable_equilibrium(m, lanes.waiting.load[i]):
+    lean = lean_on(m, _base_and_yield_points(m, y, contact, supports))
+    if max(abs(lean), abs(y.theta)) >= unstable_equilibrium(m, lanes.waiting.load[i]):
         return UNDECIDED
     least = GROWTH * lanes.clock.alpha[i]
     turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least

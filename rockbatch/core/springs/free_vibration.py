@@ -19,13 +19,6 @@ PARTS = 24
 SEEN = 1e-6
 """Relative error of an extreme that has been seen, by which it may lie below the amplitude of its vibration."""
 
-OPEN = 0
-"""By its energy, the pier may still turn further than it has, or overturn."""
-DECIDED = 1
-"""Nothing that comes later can exceed what has been."""
-UNSTABLE = 2
-"""The base leans so far that the pier cannot stand on it."""
-
 
 @kernel
 def _capacity(m, load):
@@ -116,33 +109,48 @@ def _returned(m, theta):
     return 2.0 * b * h * theta / (m.inertia + h * h + b * b)
 
 
+class Drift(NamedTuple):
+    """Greatest further tilt of the base that can be foreseen: yielding springs settle on with each cycle of vibration."""
+
+    right: float  # amplified to the rotation of a pier on it [rad]
+    left: float
+    growth: float  # share of its lean by which it leans further
+
+
 @kernel
-def _swept(m, lean, drift, sinking, amplification):
-    """Return by how much [rad] a base that leans by ``lean`` to one side tilts on, ``drift`` if it were to go on as it has.
+def further(m, right, left, sinking):
+    """Return the Drift of a base that tilts by ``right`` or ``left`` [rad] and sinks by ``sinking`` [m] if it goes on as it has.
 
     A Bouc–Wen support under a share 1 + h θ/b of its load sinks (1 + h θ/b)ⁿ times as fast: the lean grows by itself,
-    by the factor exp(n h amplification · sinking/b²) while both sink by ``sinking`` [m] on average.
+    by the factor exp(n h amplification · sinking/b²) while both sink by ``sinking`` on average.
     """
+    amplification = _amplification(m)
+    right, left = max(right * amplification, 0.0), max(left * amplification, 0.0)
     if not ratchets(m.law):
-        return max(drift, 0.0)
+        return Drift(right, left, 0.0)
     grows = number(m.exponent) * m.height * amplification * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
-        return max(drift, 0.0)
-    factor = math.expm1(min(grows, 50.0))
-    return max(drift, 0.0) * factor / grows + max(lean, 0.0) * factor
-
-
-class Drift(NamedTuple):
-    """Greatest further motion of the base that can be foreseen: yielding springs settle on with each cycle of vibration."""
-
-    right: float  # tilt to the right [rad]
-    left: float
-    sinking: float  # of both supports on average [m]
+        return Drift(right, left, 0.0)
+    growth = math.expm1(min(grows, 50.0))
+    return Drift(right * growth / grows, left * growth / grows, growth)
 
 
 @kernel
-def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
-    """Return OPEN, DECIDED or UNSTABLE for state ``y``.
+def _amplification(m):
+    """Return the rotation of a pier at rest over the tilt of its base."""
+    stiffness = rocking_stiffness(m)
+    return (stiffness + m.gravity * m.height) / stiffness
+
+
+@kernel
+def lean_on(m, base):
+    """Return the rotation [rad] at which a pier rests on its ``base``."""
+    return 0.5 * (base.left - base.right) / m.half_width * _amplification(m)
+
+
+@kernel
+def peak_is_final(m, y, contact, load, in_tendons, base, peak, calm, drift):
+    """Return whether nothing that comes after state ``y`` can exceed the peak, nor overturn the pier.
 
     Parameters
     ----------
@@ -157,37 +165,36 @@ def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
         apart from what vibrates vertically, but for the P–Δ moment of the latter.
     drift : Drift
     """
-    b, h, g = m.half_width, m.height, m.gravity
+    lean = lean_on(m, base)
+    drift_right = drift.right + max(lean, 0.0) * drift.growth
+    drift_left = drift.left + max(-lean, 0.0) * drift.growth
+    if max(lean + drift_right, drift_left - lean) > peak * (
+        1.0 + SEEN
+    ):  # first, for it is what most that go on wait for
+        return False
+    unstable = unstable_equilibrium(m, load)
+    if max(abs(lean), abs(y.theta)) >= unstable:
+        return False
+    b, h, g, limit = m.half_width, m.height, m.gravity, min(peak, unstable)
     stiffness = rocking_stiffness(m)
     softness = 0.5 * load / (m.yield_force * m.stiffness)  # static deflection
-    tilt = 0.5 * (base.left - base.right) / b
-    amplification = (stiffness + g * h) / stiffness
-    lean = tilt * amplification
-    drift_right = _swept(m, lean, drift.right * amplification, drift.sinking, amplification)
-    drift_left = _swept(m, -lean, drift.left * amplification, drift.sinking, amplification)
-    limit = min(peak, unstable_equilibrium(m, load))
-    if abs(lean) >= unstable_equilibrium(m, load):
-        return UNSTABLE
-    if abs(y.theta) >= unstable_equilibrium(m, load):
-        return OPEN
     middle = 0.5 * (base.left + base.right)
     if calm:
         mean = middle - softness  # of v
         if m.finite is not None:
             mean -= _drop(m, y.theta)
-        swing = (
-            math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / load) / softness
-        )  # vertical, of the load
+        swing = math.sqrt((y.v - mean) * (y.v - mean) + y.v_rate * y.v_rate * softness / load)  # vertical
+        swing /= softness  # of the load
         softened = stiffness - load * h * swing
         if softened <= 0.0:
-            return OPEN
+            return False
         rocking = (m.inertia + h * h) * y.omega * y.omega + stiffness * (y.theta - lean) * (y.theta - lean)
         reach = math.sqrt(rocking / softened)
         sway = lean * (stiffness / softened)  # the lean swells with the weight
         if m.finite is not None:  # to second order, sin² θ stores less than θ²
-            reach *= 1.0 + amplification * limit * limit / 6.0
+            reach *= 1.0 + _amplification(m) * limit * limit / 6.0
         furthest = max(max(sway, lean) + drift_right, max(-sway, -lean) + drift_left) + reach
-        return DECIDED if furthest <= limit * (1.0 + SEEN) else OPEN
+        return furthest <= limit * (1.0 + SEEN)
     at = geometry(m, y.theta)
     uneven = g / load * h * lean / b
     lever, gained, at_lean = h, -0.5 * g * h * y.theta * y.theta, -0.5 * g * h * lean * lean
@@ -201,7 +208,7 @@ def overturning_bound(m, y, contact, load, in_tendons, base, peak, calm, drift):
     energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
     to_right = _climb(m, lean, limit - drift_right, load, base.yield_right)
     least = min(to_right, _climb(m, -lean, limit - drift_left, load, base.yield_left))
-    return DECIDED if energy <= least + 1e-12 * load * softness else OPEN
+    return energy <= least + 1e-12 * load * softness
 
 
 @kernel
