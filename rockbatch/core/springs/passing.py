@@ -51,10 +51,10 @@ def _clear(m, on_spring, yields, support, point, start, end, z, z_end, h):
 
 
 @inlined
-def _new_low(on_spring, start, end, lowest, h):
-    """Return whether a pivot may have been lower on its spring inside the sub-step than ever before, and at its ends."""
+def _not_lower(on_spring, start, end, lowest, h):
+    """Return a number, negative if a pivot may have been lower on its spring inside the sub-step than ever before, and at its ends."""
     least = min(start.position, end.position) - excess(start.velocity, end.velocity, h)
-    return on_spring != 0.0 and start.velocity < 0.0 and end.velocity > 0.0 and least < lowest
+    return least - lowest if on_spring * min(-start.velocity, end.velocity) > 0.0 else 1.0
 
 
 @inlined
@@ -86,44 +86,33 @@ def _turned(traits, lanes, i, settings):
     acceleration_left, acceleration_right = pivot_accelerations(m, y, get(lanes.rates, i, State))
     turn_left = reversal(m, sign_left, rest, left, acceleration_left, left_end, end.z_left, h)
     turn_right = reversal(m, sign_right, rest, right, acceleration_right, right_end, end.z_right, h)
-    clear = min(
-        _clear(
-            m, contact.left, contact.left_yields, supports.left[i], supports.yield_left[i],
-            left, left_end, y.z_left, end.z_left + turn_left.added, h,
-        ),
-        _clear(
-            m, contact.right, contact.right_yields, supports.right[i], supports.yield_right[i],
-            right, right_end, y.z_right, end.z_right + turn_right.added, h,
-        ),
+    clear_left = _clear(
+        m, contact.left, contact.left_yields, supports.left[i], supports.yield_left[i],
+        left, left_end, y.z_left, end.z_left + turn_left.added, h,
     )  # fmt: skip
-    surely = clear > 0.0 and abs(end.theta) < ON_ITS_SIDE  # never of what is no number
-    nothing_else = surely and not step_status.watched[i] > 0.0
-    stands = nothing_else and not turn_left.doubts and not turn_right.doubts and settings.locate
-    turned_left, turned_right = stands and turn_left.happened, stands and turn_right.happened
-    turned = turned_left or turned_right
-    other = corrected(m, contact, end, turn_left, turn_right)
-    put(lanes.end, i, State(
-        other.v if turned else end.v,
-        other.theta if turned else end.theta,
-        other.v_rate if turned else end.v_rate,
-        other.omega if turned else end.omega,
-        other.z_left if turned else end.z_left,
-        other.z_right if turned else end.z_right,
-    ))  # fmt: skip
+    clear_right = _clear(
+        m, contact.right, contact.right_yields, supports.right[i], supports.yield_right[i],
+        right, right_end, y.z_right, end.z_right + turn_right.added, h,
+    )  # fmt: skip
+    clear = min(clear_left, clear_right, turn_left.surely, turn_right.surely, ON_ITS_SIDE - abs(end.theta))
+    stands = min(clear, (0.5 if settings.locate else -0.5) - step_status.watched[i]) > 0.0  # never of what is no number
+    after_left, after_right = turn_left.after if stands else 0.0, turn_right.after if stands else 0.0
+    turned_left, turned_right = after_left > 0.0, after_right > 0.0
+    put(lanes.end, i, corrected(m, contact, end, turn_left, turn_right))  # without a reversal, by nothing
     at, loading = lanes.contact, lanes.loading
-    at.left_yields[i] = 1.0 - contact.left_yields if turned_left else contact.left_yields
-    at.right_yields[i] = 1.0 - contact.right_yields if turned_right else contact.right_yields
-    step_status.left[i] = h - turn_left.after if turned_left else UNSET
-    step_status.right[i] = h - turn_right.after if turned_right else UNSET
+    at.left_yields[i] = abs((1.0 if turned_left else 0.0) - contact.left_yields)
+    at.right_yields[i] = abs((1.0 if turned_right else 0.0) - contact.right_yields)
+    step_status.left[i] = h - after_left if turned_left else UNSET
+    step_status.right[i] = h - after_right if turned_right else UNSET
     step_status.z_left[i] = turn_left.z
     step_status.z_right[i] = turn_right.z
-    loads_left, loads_right = turned_left and sign_left > 0.0, turned_right and sign_right > 0.0
+    begins_left, begins_right = sign_left * after_left, sign_right * after_right  # above 0 if an inelastic branch does
+    loads_left, loads_right = begins_left > 0.0, begins_right > 0.0
     loading.left[i] = left_end.position - m.yield_deflection * end.z_left if loads_left else loading.left[i]
     loading.right[i] = right_end.position - m.yield_deflection * end.z_right if loads_right else loading.right[i]
     loading.z_left[i] = turn_left.z if loads_left else loading.z_left[i]
     loading.z_right[i] = turn_right.z if loads_right else loading.z_right[i]
-    closes = (turned_left and sign_left < 0.0) or (turned_right and sign_right < 0.0)
-    step_status.closes[i] = 1.0 if closes else 0.0
+    step_status.closes[i] = 1.0 if min(begins_left, begins_right) < 0.0 else 0.0
     step_status.kind[i] = CALM if stands else EVENTFUL
 
 
@@ -137,25 +126,22 @@ def _closed(traits, lanes, i, substep, settings):
     clock, peak, lowest = lanes.clock, lanes.peak, lanes.lowest
     y, end, h = get(lanes.now, i, State), get(lanes.end, i, State), clock.step[i]
     (left, right), (left_end, right_end) = pivots(m, y), pivots(m, end)
-    on_left, on_right, low_left, low_right = (
-        lanes.contact.left[i],
-        lanes.contact.right[i],
-        lowest.left[i],
-        lowest.right[i],
-    )
+    on_left, on_right = lanes.contact.left[i], lanes.contact.right[i]
+    low_left, low_right = lowest.left[i], lowest.right[i]
     tilt_end = abs(end.theta)
-    new = (
-        (y.omega * end.omega < 0.0 and max(abs(y.theta), tilt_end) + excess(y.omega, end.omega, h) > peak.theta[i])
-        or _new_low(on_left, left, left_end, low_left, h)
-        or _new_low(on_right, right, right_end, low_right, h)
+    beyond = max(abs(y.theta), tilt_end) + excess(y.omega, end.omega, h)
+    nothing_new = min(
+        peak.theta[i] - beyond if y.omega * end.omega < 0.0 else 1.0,
+        _not_lower(on_left, left, left_end, low_left, h),
+        _not_lower(on_right, right, right_end, low_right, h),
     )
-    flies = on_left + on_right == 0.0
-    stands = step_status.kind[i] == CALM
-    shown = settings.recording and max(step_status.left[i], step_status.right[i]) >= 0.0
-    calm = stands and not (new or flies or shown or step_status.closes[i] > 0.0)
-    higher = calm and tilt_end > peak.theta[i]
-    peak.theta[i] = tilt_end if higher else peak.theta[i]
-    peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if higher else peak.time[i]
+    written = max(step_status.left[i], step_status.right[i]) if settings.recording else UNSET
+    shown = 1.0 if written >= 0.0 else 0.0
+    to_attend = max(-nothing_new, step_status.closes[i], shown, 0.5 - on_left - on_right)
+    calm = max(to_attend, step_status.kind[i]) <= 0.0
+    reached = tilt_end if calm else 0.0
+    peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if reached > peak.theta[i] else peak.time[i]
+    peak.theta[i] = max(peak.theta[i], reached)
     lowest.left[i] = min(low_left, left_end.position) if calm and on_left != 0.0 else low_left
     lowest.right[i] = min(low_right, right_end.position) if calm and on_right != 0.0 else low_right
     put(lanes.now, i, State(
@@ -166,7 +152,7 @@ def _closed(traits, lanes, i, substep, settings):
         end.z_left if calm else y.z_left,
         end.z_right if calm else y.z_right,
     ))  # fmt: skip
-    step_status.kind[i] = ATTEND if stands and not calm else step_status.kind[i]
+    step_status.kind[i] = max(step_status.kind[i], CALM if calm else ATTEND)
 
 
 @system.one_pass.of(SpringTraits)

@@ -21,14 +21,13 @@ class Pivot(NamedTuple):
 class Reversal(NamedTuple):
     """Reversal of one spring in a step; without one its times and additions are 0."""
 
-    happened: bool
-    after: float  # time from the reversal to the end of the step [s]
+    after: float  # time from the reversal to the end of the step [s], above 0 if it happened
     z: float  # at the reversal
     added: float  # z at the end of the step, that the other branch has added
     softness: (
         float  # δ_y dz per change of the pivot's position at the end of the step: 1 − |z|ⁿ on the inelastic branch
     )
-    doubts: bool  # two reversals, or one that is too sharp for a correction
+    surely: float  # above 0 unless there may be two reversals, or one that is too sharp for a correction
 
 
 @inlined
@@ -82,13 +81,13 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     part = stiffness_loss(m, _size(z_end))
     middle = z_end - 0.5 * unit * (1.0 + sign * part)
     added = stiffness_loss(m, _size(middle)) * abs(unit)
-    unloads = (sign < 0.0) == happened
+    unloads = (sign if happened else -0.5 - sign) < 0.0
     z = z_end - unit + (added if unloads else 0.0)
     # Two reversals: the parabola through both velocities and the way between them may dip below zero
     speed0, speed1 = h * w0, h * w1
     sag = 1.5 * (speed0 + speed1) - 3.0 * sign * way
-    twice = not happened and min(speed0, speed1) + h * rest < 0.5 * sag
-    return Reversal(happened, share * h, z, added, 1.0 if unloads else 1.0 - part, twice or added > SHARP)
+    once = 1.0 if happened else min(speed0, speed1) + h * rest - 0.5 * sag
+    return Reversal(share * h, z, added, 1.0 if unloads else 1.0 - part, min(once, SHARP - added))
 
 
 @inlined
