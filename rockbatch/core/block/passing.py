@@ -46,27 +46,29 @@ def _pass_over(lanes, i, substep, settings):
     strongest = max(abs(ground.horizontal), abs(horizontal_end))
     early, late = _inner_points(side, y, end, h)
     tilt_end = side * end.theta
-    stays = side * y.theta >= 0.0 and min(min(early, late), tilt_end) > 0.0 and max(side * y.theta, tilt_end) < FLAT
+    tilt, lowest, highest = side * y.theta, min(early, late), max(early, late)
+    stays = min(tilt_end, lowest, FLAT - max(tilt, tilt_end), 1.0 if tilt >= 0.0 else -1.0)
     # (F1) of the normal force, with φ² for sin²φ beyond 2α, ½ or |φ| for sin φ cos φ, and 1 for cos φ
-    bounds, beyond = lanes.bounds, max(max(early, late), max(side * y.theta, tilt_end)) - model.alpha[i]
+    bounds, beyond = lanes.bounds, max(highest, max(tilt, tilt_end)) - model.alpha[i]
     steep, fastest = max(model.alpha[i], beyond), abs(y.omega) + abs(end.omega)
     bears = 1.0 - bounds.share[i] * max(bounds.sine_squared[i], max(beyond, 0.0) * max(beyond, 0.0))
     throws = bounds.share[i] * min(0.5, steep) * strongest + bounds.radius[i] * fastest * fastest
-    pressed = down * bears > throws
-    peak = lanes.peak.theta[i]
-    new = y.omega * end.omega < 0.0 and max(early, late) > peak
-    rests = bounds.tangent[i] * (m.gravity + ground.vertical) > abs(ground.horizontal)
-    rests_at_end = bounds.tangent[i] * (m.gravity + vertical_end) > abs(horizontal_end)
-    moving = stays and pressed and settings.locate
-    resting = rests and rests_at_end and stance.left != 0.0 and settings.locate
-    stands = moving if side != 0.0 else resting
-    calm = stands and not new
-    higher = calm and tilt_end > peak
-    lanes.peak.theta[i] = tilt_end if higher else peak
-    lanes.peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if higher else lanes.peak.time[i]
+    # Numbers above 0 for what holds, of which the least decides: truth values would need masks of another width
+    moves = min(stays, down * bears - throws)
+    rests = min(
+        bounds.tangent[i] * (m.gravity + ground.vertical) - abs(ground.horizontal),
+        bounds.tangent[i] * (m.gravity + vertical_end) - abs(horizontal_end),
+        stance.left - 0.5,
+    )
+    stands = min(moves if side != 0.0 else rests, 0.5 if settings.locate else -0.5)
+    peak, time = lanes.peak.theta[i], lanes.peak.time[i]
+    calm = min(stands, peak - highest if y.omega * end.omega < 0.0 else 1.0) > 0.0
+    reached = tilt_end if calm else 0.0
+    lanes.peak.theta[i] = max(peak, reached)
+    lanes.peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if reached > peak else time
     lanes.now.theta[i] = end.theta if calm else y.theta
     lanes.now.omega[i] = end.omega if calm else y.omega
-    lanes.step_status.kind[i] = CALM if calm else (ATTEND if stands else EVENTFUL)
+    lanes.step_status.kind[i] = CALM if calm else (ATTEND if stands > 0.0 else EVENTFUL)
 
 
 @system.one_pass.of(BlockTraits)

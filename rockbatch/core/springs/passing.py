@@ -52,7 +52,7 @@ def _clear(m, on_spring, yields, support, point, start, end, z, z_end, h):
 
 @inlined
 def _not_lower(on_spring, start, end, lowest, h):
-    """Return a number, negative if a pivot may have been lower on its spring inside the sub-step than ever before, and at its ends."""
+    """Return a number, negative if a pivot may have been lower on its spring inside the sub-step than before, and at its ends."""
     least = min(start.position, end.position) - excess(start.velocity, end.velocity, h)
     return least - lowest if on_spring * min(-start.velocity, end.velocity) > 0.0 else 1.0
 
