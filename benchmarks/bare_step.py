@@ -126,7 +126,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     steps = int(np.rint(ends.t_end / dt * substeps).sum())
 
     # An event is two rows of a history, a sample one
-    history = np.zeros((1, len(MOMENT) + len(kind.columns)))
+    history = np.zeros((1, 1, len(MOMENT) + len(kind.columns)))
     counted = march(kind, [lines[runs // 2]], ground, stop, substeps, history=history)[0]
     samples = round(counted.t_end / dt) + 1
     events = (counted.rows - samples) // 2

@@ -54,10 +54,17 @@ def outcomes_of(
     outcomes = _run_all(simulated, numerics, stop)
     if output.both_laws:
         outcomes = _with_other_law(simulated, outcomes, numerics, stop)
-    return [
-        outcome and _observed(run, outcome, numerics, output, stop)
-        for run, outcome in zip(simulated, outcomes, strict=True)
-    ]
+    done = [i for i, outcome in enumerate(outcomes) if outcome is not None]
+    observed = rocking_from_lean(
+        [simulated[i] for i in done],
+        [o for o in outcomes if o is not None],
+        numerics.quiet_s,
+        output.rocking,
+        stop=stop,
+    )
+    for i, outcome in zip(done, observed, strict=True):
+        outcomes[i] = _observed(simulated[i], outcome, numerics, output, stop)
+    return outcomes
 
 
 def _run_all(runs: list[Run], numerics: Numerics, stop: Stop) -> list[Outcome | None]:
@@ -87,16 +94,15 @@ def _with_other_law(
 
 
 def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:
-    """Return ``outcome`` with what observers make of the recorded run: lean, energy balance, forces; unless it is very long."""
+    """Return ``outcome`` with what observers make of the recorded run: energy balance, forces; unless it is very long."""
     if stop:
         return None
+    if not outcome.was_run:
+        return outcome
     steps = steps_of(run.motion, outcome.substeps, numerics.quiet_s)
     ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER
     sized = output.forces and steps <= MOST_STEPS_OF_FORCES
     try:
-        outcome = rocking_from_lean(run, outcome, numerics.quiet_s, output.rocking)
-        if not outcome.was_run:
-            return outcome
         least = output.least_normal_share if sized else None
         fixed = numerics.substeps is not None
         return with_observed(run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least, error=not fixed)

@@ -118,7 +118,7 @@ def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
         outcome = run_fixed(*settings, numerics.substeps, quiet_s, wait=wait)
     if not outcome.was_run:
         raise InputError(f"{run.motion.name}: {outcome.reason}")
-    return rocking_from_lean(run, outcome, quiet_s, wait=wait)
+    return rocking_from_lean([run], [outcome], quiet_s, wait=wait)[0]
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:

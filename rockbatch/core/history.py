@@ -12,16 +12,16 @@ MOMENT = ("t", "kind")
 
 
 class History(NamedTuple):
-    """Rows that a single run writes."""
+    """Rows that each run writes."""
 
-    rows: np.ndarray  # shape (rows, columns); without any nothing is written, nor counted
-    written: np.ndarray  # shape (1,): how many, also of those that found no room
+    rows: np.ndarray  # shape (runs, rows, columns); of no runs nothing is written, nor counted
+    written: np.ndarray  # shape (runs,): how many, also of those that found no room
     every_step: bool  # steps between samples, too, and both sides of all events of devices
 
 
-def history_of(rows, every_step=False):
-    """Return the History that writes into ``rows``."""
-    return History(rows, np.zeros(1, np.int64), bool(every_step))
+def history_of(rows, runs, every_step=False):
+    """Return the History of so many ``runs`` that is written into ``rows``."""
+    return History(rows, np.zeros(runs, np.int64), bool(every_step))
 
 
 @inlined
@@ -35,12 +35,12 @@ def _write_devices(line, at, m, devices, y, contact, ground):
 
 
 @kernel
-def write(history, t, kind, m, devices, y, contact, ground):
-    """Write a row at time ``t`` [s], if there is room for it."""
-    rows, row = history.rows, history.written[0]
-    if rows.shape[0] == 0:
+def write(history, number, t, kind, m, devices, y, contact, ground):
+    """Write a row of run ``number`` at time ``t`` [s], if there is room for it."""
+    if history.rows.shape[0] == 0:
         return
-    history.written[0] = row + 1
+    rows, row = history.rows[number], history.written[number]
+    history.written[number] = row + 1
     if row >= rows.shape[0]:
         return
     line, at = rows[row], len(MOMENT)
@@ -55,6 +55,6 @@ def write(history, t, kind, m, devices, y, contact, ground):
 
 
 @inlined
-def take_back(history):
-    """Take the last row back."""
-    history.written[0] = max(history.written[0] - 1, 0)
+def take_back(history, number):
+    """Take the last row of run ``number`` back."""
+    history.written[number] = max(history.written[number] - 1, 0)

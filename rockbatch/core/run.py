@@ -7,6 +7,7 @@ something may happen takes that sub-step once more, event by event, in scalar co
 import math
 from typing import NamedTuple
 
+import numba
 import numpy as np
 
 from rockbatch.core.clock import (
@@ -79,8 +80,14 @@ from rockbatch.core.types import (
 EVENTS_IN_A_SAMPLE = 20_000
 """More than any decaying sequence of impacts needs."""
 
+VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
+"""Lanes that vector instructions take at a time; the compiler takes those left over one by one."""
+
+FEW = 2
+"""Lanes left over that are sooner taken one by one than with others that are empty."""
+
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
-NO_ROWS = np.zeros((0, 1))
+NO_ROWS = np.zeros((0, 0, 1))
 
 RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
 """As Result has it, and the greatest |θ| [rad] at a sample in each window of the run, NaN where it has none."""
@@ -91,7 +98,7 @@ class Settings(NamedTuple):
 
     substeps: int  # steps to a sampling interval
     locate: bool  # events inside the step; without, they take place at its end: first order, for comparison only
-    recording: bool  # a history is written
+    recording: bool  # histories are written
 
 
 @inlined
@@ -170,21 +177,21 @@ def _device_event(m, devices, y, contact, ground, h, rest, which):
 def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
     """Let event ``which`` happen ``x`` [s] after the sample: status, and the Moment after it."""
     here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
-    t, y, contact = lanes.clock.sample[i] * dt + x, now.y, now.contact
+    t, y, contact, number = lanes.clock.sample[i] * dt + x, now.y, now.contact, int(lanes.clock.number[i])
     if which >= OF_PIER:
         if history.every_step:
-            write(history, t, STEP, m, devices, y, contact, here)
+            write(history, number, t, STEP, m, devices, y, contact, here)
         _device_event(m, devices, y, contact, here, lanes.clock.step[i], rest, which)
         if history.every_step:
-            write(history, t, STEP, m, devices, y, contact, here)
+            write(history, number, t, STEP, m, devices, y, contact, here)
         return SURVIVED, now
-    write(history, t, BEFORE_EVENT, m, devices, y, contact, here)
+    write(history, number, t, BEFORE_EVENT, m, devices, y, contact, here)
     under = loaded(devices, m, y, contact, here)
     y, after, supports, kind, remaining = transition(under, devices, y, contact, now.supports, which, rest, here, dt)
     _after_contact(m, devices, y, after, kind, rest, here)
     if kind == LIFT_OFF:  # nothing jumps
-        take_back(history)
-    write(history, t, kind, m, devices, y, after, here)
+        take_back(history, number)
+    write(history, number, t, kind, m, devices, y, after, here)
     landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT, REST) else 0)
     _count(lanes, i, kind, landed, uplifts(m, contact, after, landed), t, remaining)
     after_event(traits, lanes, i, m, contact, after, y)
@@ -197,7 +204,7 @@ def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
 def _through(traits, lanes, i, devices, marks, substep, settings, ground, history):
     """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
     h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
-    t_sample = lanes.clock.sample[i] * dt
+    t_sample, number = lanes.clock.sample[i] * dt, int(lanes.clock.number[i])
     m = model(traits, lanes, i)
     y, contact, supports = moment(traits, lanes, i)
     now = Moment(y, contact, supports)
@@ -221,14 +228,14 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
                 status = CHATTER
         elif history.every_step and done < h:
             here = ground_at(lanes, i, start + done)
-            write(history, t_sample + (start + done), STEP, m, devices, now.y, now.contact, here)
+            write(history, number, t_sample + (start + done), STEP, m, devices, now.y, now.contact, here)
     put_moment(traits, lanes, i, now.y, now.contact, now.supports)
     after_step(traits, lanes, i, marks, now.contact, which == NO_EVENT)
     t, here = t_sample + (start + done), ground_at(lanes, i, start + done)
     if status == SURVIVED:
         status = fallen(now.y.theta)
     if status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
-        write(history, t, STEP, m, devices, now.y, now.contact, here)
+        write(history, number, t, STEP, m, devices, now.y, now.contact, here)
     return status, t
 
 
@@ -244,7 +251,7 @@ def _begin(traits, lanes, i, number, runs, devices, ground, history):
     expect(traits, lanes, i, run)
     here = ground_at(lanes, i, 0.0)
     start_devices(m, devices, y, contact, lanes.clock.rest[i], here)
-    write(history, 0.0, SAMPLE, m, devices, y, contact, here)
+    write(history, number, 0.0, SAMPLE, m, devices, y, contact, here)
     return over(traits, lanes, i, devices)
 
 
@@ -254,8 +261,9 @@ def _finish(traits, lanes, i, status, t, history, results):
     close_window(lanes, i, results)
     peak, tally = lanes.peak, lanes.tally
     note_flight(lanes, i, False, t)
-    result = results[int(lanes.clock.number[i])]
-    result.status, result.t_end, result.rows = status, t, history.written[0]
+    number = int(lanes.clock.number[i])
+    result = results[number]
+    result.status, result.t_end, result.rows = status, t, history.written[number]
     result.theta_max, result.t_max = peak.theta[i], peak.time[i]
     result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
     result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
@@ -338,7 +346,9 @@ def _pass_with_devices(devices, traits, lanes, count, substep, settings):
 
 @_pass.of(type(None))
 def _pass_alone(devices, traits, lanes, count, substep, settings):
-    one_pass(traits, lanes, count, substep, settings)
+    over = count % VECTOR
+    lanes_taken = count if over <= FEW else count - over + VECTOR  # those beyond ``count`` hold what nobody reads
+    one_pass(traits, lanes, lanes_taken, substep, settings)
     busy = 0
     for i in range(count):
         busy += 1 if lanes.step_status.kind[i] != CALM else 0
@@ -346,11 +356,14 @@ def _pass_alone(devices, traits, lanes, count, substep, settings):
 
 
 @kernel
-def _write_now(traits, lanes, devices, kind, x, history):
-    """Write a row of the only lane as it is now, ``x`` [s] after its sample."""
-    y, contact, _ = moment(traits, lanes, 0)
-    t, m = lanes.clock.sample[0] * lanes.clock.dt[0] + x, model(traits, lanes, 0)
-    write(history, t, kind, m, devices, y, contact, ground_at(lanes, 0, x))
+def _write_now(traits, lanes, count, devices, kind, steps, history):
+    """Write a row of each lane as it is now, so many ``steps`` after its sample."""
+    clock = lanes.clock
+    for i in range(count):
+        y, contact, _ = moment(traits, lanes, i)
+        x, m = steps * clock.step[i], model(traits, lanes, i)
+        t, here = clock.sample[i] * clock.dt[i] + x, ground_at(lanes, i, x)
+        write(history, int(clock.number[i]), t, kind, m, devices, y, contact, here)
 
 
 @entry
@@ -381,11 +394,11 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
                     _finish(traits, lanes, i, status, t, history, results)
                     count -= 1
                     move(cells, count, i)
-            if history.every_step and count > 0 and substep < settings.substeps - 1:
-                _write_now(traits, lanes, devices, STEP, (substep + 1.0) * lanes.clock.step[0], history)
+            if history.every_step and substep < settings.substeps - 1:
+                _write_now(traits, lanes, count, devices, STEP, substep + 1.0, history)
         due = _to_samples(lanes, count, ground)
-        if settings.recording and count > 0:
-            _write_now(traits, lanes, devices, SAMPLE, 0.0, history)
+        if settings.recording:
+            _write_now(traits, lanes, count, devices, SAMPLE, 0.0, history)
         i = NONE if due > 0 else count
         while i < count:
             status = _at_sample(traits, lanes, i, devices, results)
@@ -415,8 +428,8 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
         Locate events inside the step. Without, they take place at its end (first order; for comparison only).
     every_step : bool
         Also write the steps between samples, and both sides of all events of devices.
-    history : ndarray, shape (rows, columns)
-        For a single run: filled with samples and both sides of events, as far as it goes (``history``).
+    history : ndarray, shape (runs, rows, columns)
+        Filled with each run's samples and both sides of its events, as far as it goes (``history``).
     devices : Devices or None
         Of a single run.
 
@@ -440,7 +453,7 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
         settings,
         devices,
         marks,
-        history_of(history, every_step),
+        history_of(history, len(runs), every_step),
         stop,
         table(kind.lane),
         results,

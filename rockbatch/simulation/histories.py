@@ -1,5 +1,8 @@
 """Histories of one run: the rows that the core wrote, with names, units and derived quantities."""
 
+import contextlib
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from rockbatch.common.lazy import pd
@@ -9,13 +12,14 @@ from rockbatch.errors import InputError
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
+from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
-from rockbatch.simulation.leaning import apart, may_lean, with_error_of_rocking, with_rocking
+from rockbatch.simulation.leaning import Apart, apart, may_lean, with_error_of_rocking, with_rocking
 from rockbatch.simulation.models import acceleration_at, block, ground_of, springs
 from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.simulation.response import EVENT_TYPES, Response
-from rockbatch.simulation.runs import Run, written_run
+from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -36,6 +40,9 @@ _EVENTS = {
 MOST_ROWS = 10_000_000
 """Greatest number of rows of a history held in memory, about a gigabyte."""
 
+ROWS_TOGETHER = 150_000
+"""Greatest number of rows of histories that are written side by side, some 20 megabytes."""
+
 SPARE = 1.1
 """Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
 
@@ -45,9 +52,7 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
 
     Raises ``InputError`` for more than :data:`MOST_ROWS`.
     """
-    steps = outcome.t_end / run.motion.dt * (outcome.substeps if every_step else 1)
-    capacity = int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
-    capacity = min(capacity, MOST_ROWS)
+    capacity = min(_room(run, outcome, every_step), MOST_ROWS)
     result, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
     if result.rows > MOST_ROWS:
         instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
@@ -55,6 +60,47 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
     if result.rows > capacity:
         result, rows = written_run(run, outcome.substeps, quiet_s, result.rows, every_step=every_step, wait=wait)
     return rows[: result.rows].view(np.recarray)
+
+
+def _room(run: Run, outcome: Outcome, every_step: bool) -> int:
+    """Return for how many rows there should be room."""
+    steps = outcome.t_end / run.motion.dt * (outcome.substeps if every_step else 1)
+    return int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
+
+
+def written_side_by_side(
+    runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
+) -> Iterator[tuple[int, np.recarray]]:
+    """Yield the number and the history, at samples and events, of each run that is not too long to be held in memory."""
+    room = [_room(run, outcome, every_step=False) for run, outcome in zip(runs, outcomes, strict=True)]
+    alike: dict[object, list[int]] = {}
+    for i in sorted(range(len(runs)), key=room.__getitem__):
+        steps = outcomes[i].substeps
+        alike.setdefault(i if runs[i].base.restraints else (kernel_of(runs[i].pier, runs[i].base), steps), []).append(i)
+    for members in alike.values():
+        first = 0
+        for n, i in enumerate(members, 1):
+            if n == len(members) or (n + 1 - first) * room[members[n]] > ROWS_TOGETHER:
+                if stop:
+                    return
+                yield from _written_together(runs, outcomes, members[first:n], quiet_s, room[i], wait)
+                first = n
+
+
+def _written_together(
+    runs: Sequence[Run], outcomes: Sequence[Outcome], numbers: Sequence[int], quiet_s: float, room: int, wait: bool
+) -> Iterator[tuple[int, np.recarray]]:
+    """Yield the histories of the runs with these ``numbers``, of one kind and step, for which there should be ``room``."""
+    if len(numbers) == 1:
+        with contextlib.suppress(InputError):
+            yield numbers[0], written(runs[numbers[0]], outcomes[numbers[0]], quiet_s, False, wait)
+        return
+    found = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
+    for i, (result, rows) in zip(numbers, found, strict=True):
+        if result.rows > room:
+            yield i, written(runs[i], outcomes[i], quiet_s, False, wait)
+        else:
+            yield i, rows[: result.rows].view(np.recarray)
 
 
 def cycles_of(base: Base, rows: np.recarray) -> HalfCycles:
@@ -78,29 +124,58 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 
 def rocking_from_lean(
-    run: Run, outcome: Outcome, quiet_s: float, requested: bool = False, wait: bool = True
-) -> Outcome:
-    """Return ``outcome`` with rocking and lean apart, if ``requested`` or the peak may be lean; on yielding springs by one more
-    run, and if ``requested`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
+    runs: Sequence[Run],
+    outcomes: Sequence[Outcome],
+    quiet_s: float,
+    requested: bool = False,
+    wait: bool = True,
+    stop: Stop | None = None,
+) -> list[Outcome]:
+    """Return ``outcomes`` with rocking and lean apart, if ``requested`` or where the peak may be lean; on yielding springs by one
+    more run, and if ``requested`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
 
     After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
-    quarter of the whole, tells most peaks from lean.
+    quarter of the whole, tells most peaks from lean. Runs that are too long to be written down stay as they are, and all that
+    come after ``stop``.
     """
-    if not outcome.was_run or not (requested or may_lean(outcome)):
-        return outcome
-    if not isinstance(run.base, YieldingBase) or outcome.status == "overturned":
-        rocking = {"theta_rocking": outcome.theta_max, "theta_rocking_error": outcome.theta_max_error}
-        return outcome.changed(**rocking) if requested else outcome
-    if not requested and outcome.t_max <= run.motion.duration + quiet_s:
-        rows = written(run, outcome, quiet_s, every_step=False, wait=False)
-        if not apart(run.pier, run.base, rows).leans:
-            return outcome
-    parts = apart(run.pier, run.base, written(run, outcome, quiet_s, every_step=False, wait=wait))
-    outcome = with_rocking(outcome, parts, run.pier.alpha)
-    if not requested or outcome.theta_max_error is None or outcome.substeps % 2:
-        return outcome
-    rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=False, wait=wait)
-    return with_error_of_rocking(outcome, parts, apart(run.pier, run.base, rows))
+    found, mixed = list(outcomes), list[int]()
+    for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
+        if not outcome.was_run or not (requested or may_lean(outcome)):
+            continue
+        if isinstance(run.base, YieldingBase) and outcome.status != "overturned":
+            mixed.append(i)
+        elif requested:
+            found[i] = outcome.changed(theta_rocking=outcome.theta_max, theta_rocking_error=outcome.theta_max_error)
+    if not requested:
+        early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
+        of_record = _apart(runs, found, early, quiet_s, False, stop)
+        mixed = [i for i in mixed if i not in of_record or of_record[i].leans]
+    for i, parts in (fine := _apart(runs, found, mixed, quiet_s, wait, stop)).items():
+        found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
+    if requested:
+        estimated = [i for i in fine if found[i].theta_max_error is not None and found[i].substeps % 2 == 0]
+        halved = [outcome.changed(substeps=outcome.substeps // 2) for outcome in found]
+        for i, parts in _apart(runs, halved, estimated, quiet_s, wait, stop).items():
+            found[i] = with_error_of_rocking(found[i], fine[i], parts)
+    return found
+
+
+def _apart(
+    runs: Sequence[Run],
+    outcomes: Sequence[Outcome],
+    numbers: Sequence[int],
+    quiet_s: float,
+    wait: bool,
+    stop: Stop | None,
+) -> dict[int, Apart]:
+    """Return rocking and lean of the runs with these ``numbers``, which are on springs."""
+    chosen, their = [runs[i] for i in numbers], [outcomes[i] for i in numbers]
+    parts = {}
+    for j, rows in written_side_by_side(chosen, their, quiet_s, wait, stop):
+        base = chosen[j].base
+        assert base.on_springs
+        parts[numbers[j]] = apart(chosen[j].pier, base, rows)
+    return parts
 
 
 def with_observed(

@@ -144,12 +144,39 @@ def written_run(
     wait: bool = True,
 ) -> tuple[Result, np.recarray]:
     """Return one run, and its history of at most ``rows`` rows; with ``every_step`` also between samples."""
-    kind, devices = kernel_of(run.pier, run.base)[0], _devices(run.pier, run.base)
+    return written_runs([run], substeps, quiet_s, rows, locate, every_step, wait)[0]
+
+
+def written_runs(
+    runs: Sequence[Run],
+    substeps: int,
+    quiet_s: float,
+    rows: int,
+    locate: bool = True,
+    every_step: bool = False,
+    wait: bool = True,
+) -> list[tuple[Result, np.recarray]]:
+    """Return runs of one kind, more than one only without devices, and their histories of at most ``rows`` rows each."""
+    kind, devices = kernel_of(runs[0].pier, runs[0].base)[0], _devices(runs[0].pier, runs[0].base)
     columns = _row_type(kind, 0 if devices is None else len(devices.elements))
-    written = np.zeros((rows, columns.itemsize // 8))
-    lines, ground = [_line(run, substeps, quiet_s, 0, wait)], ground_of(run.motion)
-    result = march(kind, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)[0]
-    return _result(result), written.view(columns)[:, 0].view(np.recarray)
+    written = np.zeros((len(runs), rows, columns.itemsize // 8))
+    lines, ground = _lines(runs, substeps, quiet_s, wait)
+    records = march(kind, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)
+    histories = written.view(columns)[:, :, 0]
+    return [(_result(record), rows.view(np.recarray)) for record, rows in zip(records, histories, strict=True)]
+
+
+def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tuple[list[tuple[float, ...]], Samples]:
+    """Return runs as the core takes them, and the ground of all their motions."""
+    first_rows: dict[int, int] = {}
+    grounds: list[Samples] = []
+    lines = []
+    for run in runs:
+        if id(run.motion) not in first_rows:
+            first_rows[id(run.motion)] = sum(map(len, grounds))
+            grounds.append(ground_of(run.motion))
+        lines.append(_line(run, substeps, quiet_s, first_rows[id(run.motion)], wait))
+    return lines, grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
 
 
 def _row_type(kind: Kind, devices: int) -> np.dtype:
@@ -200,16 +227,7 @@ def try_all(
     for (kind, steps, alone), members in alike.items():
         if stop:
             break
-        first_rows: dict[int, int] = {}
-        grounds: list[Samples] = []
-        lines = []
-        for i in members:
-            motion = runs[i].motion
-            if id(motion) not in first_rows:
-                first_rows[id(motion)] = sum(map(len, grounds))
-                grounds.append(ground_of(motion))
-            lines.append(_line(runs[i], steps, quiet_s, first_rows[id(motion)], wait))
-        ground = grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
+        lines, ground = _lines([runs[i] for i in members], steps, quiet_s, wait)
         devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)
         records = march(kind, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
         for i, record in zip(members, records, strict=True):

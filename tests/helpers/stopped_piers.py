@@ -59,6 +59,6 @@ def thrown(pier, base, omega, dt=2e-3, samples=700, substeps=8):
     devices = devices_of(elements(pier, base))
     history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
     flag = np.zeros(1, np.uint8)
-    result = march(kind, [line], ground, flag, substeps, every_step=True, history=history, devices=devices)[0]
+    result = march(kind, [line], ground, flag, substeps, every_step=True, history=history[None], devices=devices)[0]
     names = [*MOMENT, *kind.columns]
     return np.rec.fromarrays(history[: result.rows, : len(names)].T, names=names), devices.use

@@ -99,7 +99,7 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
     motion = pulse_and_vibration(0.5)
     outcome = outcome_of(PADS, motion, rocking=True)
     fine = run_fixed(PIER, PADS, motion, 4 * outcome.substeps)
-    fine = rocking_from_lean(Run(PIER, PADS, motion), fine, 2.0, requested=True)
+    fine = rocking_from_lean([Run(PIER, PADS, motion)], [fine], 2.0, requested=True)[0]
     assert 0.0 < outcome.theta_rocking_error < 1e-3 * outcome.theta_rocking
     assert abs(outcome.theta_rocking - fine.theta_rocking) <= outcome.theta_rocking_error
     assert abs(outcome.theta_lean - fine.theta_lean) <= outcome.theta_lean_error

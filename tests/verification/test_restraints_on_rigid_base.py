@@ -47,7 +47,7 @@ def free(pier, foundation, theta, dt=1e-3, samples=STILL, substeps=4):
     kind, line = lanes.kind_of(m), lanes.line_of(m, theta, 0.0, dt, substeps, 0, 0, len(samples), 0)
     devices = devices_of(elements(pier, foundation))
     history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
-    found = march(kind, [line], ground, GOES_ON, substeps, every_step=True, history=history, devices=devices)[0]
+    found = march(kind, [line], ground, GOES_ON, substeps, every_step=True, history=history[None], devices=devices)[0]
     names = [*MOMENT, *kind.columns]
     return np.rec.fromarrays(history[: found.rows, : len(names)].T, names=names)
 

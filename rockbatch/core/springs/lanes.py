@@ -222,6 +222,7 @@ def _write_reversals(traits, lanes, i, substep, history):
     start = substep * h
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
     y, left, right = get(lanes.now, i, State), lanes.step_status.left[i], lanes.step_status.right[i]
+    number = int(lanes.clock.number[i])
     was_left = after.left_yields if left < 0.0 else 1.0 - after.left_yields
     was_right = after.right_yields if right < 0.0 else 1.0 - after.right_yields
     contact, at = Contact(after.left, after.right, was_left, was_right, 0.0), 0.0
@@ -232,14 +233,14 @@ def _write_reversals(traits, lanes, i, substep, history):
             return
         k = rates(m, y, contact, ground.horizontal, ground.vertical)
         y = rk4(m, None, y, k, contact, ground, when - at)
-        write(history, t + when, BEFORE_EVENT, m, None, y, contact, ground)
+        write(history, number, t + when, BEFORE_EVENT, m, None, y, contact, ground)
         if of_left:
             contact = Contact(contact.left, contact.right, after.left_yields, contact.right_yields, 0.0)
             left = -1.0
         else:
             contact = Contact(contact.left, contact.right, contact.left_yields, after.right_yields, 0.0)
             right = -1.0
-        write(history, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
+        write(history, number, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
         ground, at = later(ground, when - at), when
 
 

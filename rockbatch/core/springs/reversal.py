@@ -81,7 +81,7 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     part = stiffness_loss(m, _size(z_end))
     middle = z_end - 0.5 * unit * (1.0 + sign * part)
     added = stiffness_loss(m, _size(middle)) * abs(unit)
-    unloads = (sign if happened else -0.5 - sign) < 0.0
+    unloads = (sign if happened else -0.5 - sign) < 0.0  # the branch at the end is elastic; sign is −1 on the other one
     z = z_end - unit + (added if unloads else 0.0)
     # Two reversals: the parabola through both velocities and the way between them may dip below zero
     speed0, speed1 = h * w0, h * w1

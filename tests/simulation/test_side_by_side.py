@@ -1,0 +1,66 @@
+"""Histories that are written side by side are those of runs that are written down one by one."""
+
+import numpy as np
+import pytest
+
+from rockbatch.motions import Motion
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation import Run, Stop, histories, run_all_fixed
+from rockbatch.simulation.histories import written, written_side_by_side
+
+PIER = Pier(0.2, 1.0)
+BASES = (
+    YieldingBase(50.0, 0.1, eta=2.0, flight="guided"),
+    ElasticBase(60.0, 0.2, flight="guided"),
+    RigidBase(),
+    RigidBase(restraints=(Damper("friction", f=0.1),)),
+)
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """Runs of all kinds in turn, at two steps, and their outcomes."""
+    found = []
+    for i in range(32):
+        noise = np.random.default_rng(i).normal(size=(2, 120 + 20 * (i % 7)))
+        found.append(Run(PIER, BASES[i % 4], Motion(f"noise {i}", 0.01, 5.0 * noise[0], 3.0 * noise[1])))
+    outcomes = run_all_fixed(found, [4 + 4 * (i // 4 % 2) for i in range(32)], 1.0, Stop())
+    assert sum(outcome.impacts for outcome in outcomes) > 300
+    return found, outcomes
+
+
+def same(runs, outcomes, together):
+    """Return whether histories written ``together`` are, to the bit, those of runs by themselves."""
+    alone = {
+        i: written(run, outcome, 1.0, every_step=False)
+        for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
+    }
+    return sorted(together) == sorted(alone) and all(
+        rows.dtype == alone[i].dtype and rows.tobytes() == alone[i].tobytes() for i, rows in together.items()
+    )
+
+
+@pytest.mark.parametrize("room", [histories.ROWS_TOGETHER, 2000, 1], ids=["all", "a few", "one"])
+def test_histories_written_side_by_side_are_those_written_alone(runs, room, monkeypatch):
+    """Whatever finds room together; pivots land and lift off in all of them, and the springs' velocities turn."""
+    monkeypatch.setattr(histories, "ROWS_TOGETHER", room)
+    assert same(*runs, dict(written_side_by_side(*runs, 1.0)))
+
+
+def test_a_history_that_finds_no_room_beside_others_is_written_alone(runs, monkeypatch):
+    expected = dict(written_side_by_side(*runs, 1.0))
+    monkeypatch.setattr(histories, "_room", lambda *_, **__: 50)
+    found = dict(written_side_by_side(*runs, 1.0))
+    assert min(map(len, found.values())) > 50
+    assert {i: rows.tobytes() for i, rows in found.items()} == {i: rows.tobytes() for i, rows in expected.items()}
+
+
+def test_histories_that_are_too_long_are_left_out_and_a_stop_leaves_out_the_rest(runs, monkeypatch):
+    lengths = {i: len(rows) for i, rows in written_side_by_side(*runs, 1.0)}
+    most = int(np.median(list(lengths.values())))
+    monkeypatch.setattr(histories, "MOST_ROWS", most)
+    monkeypatch.setattr(histories, "ROWS_TOGETHER", 1)
+    assert {i for i, _ in written_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
+    stop = Stop()
+    stop.set()
+    assert list(written_side_by_side(*runs, 1.0, stop=stop)) == []
