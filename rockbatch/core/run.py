@@ -178,20 +178,21 @@ def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
     """Let event ``which`` happen ``x`` [s] after the sample: status, and the Moment after it."""
     here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
     t, y, contact, number = lanes.clock.sample[i] * dt + x, now.y, now.contact, int(lanes.clock.number[i])
-    if which >= OF_PIER:
-        if history.every_step:
-            write(history, number, t, STEP, m, devices, y, contact, here)
+    of_pier, after, supports, kind, remaining = which < OF_PIER, contact, now.supports, STEP, 0.0
+    if of_pier or history.every_step:
+        write(history, number, t, BEFORE_EVENT if of_pier else STEP, m, devices, y, contact, here)
+    if of_pier:
+        under = loaded(devices, m, y, contact, here)
+        y, after, supports, kind, remaining = transition(under, devices, y, contact, supports, which, rest, here, dt)
+        _after_contact(m, devices, y, after, kind, rest, here)
+        if kind == LIFT_OFF:  # nothing jumps
+            take_back(history, number)
+    else:
         _device_event(m, devices, y, contact, here, lanes.clock.step[i], rest, which)
-        if history.every_step:
-            write(history, number, t, STEP, m, devices, y, contact, here)
+    if of_pier or history.every_step:
+        write(history, number, t, kind, m, devices, y, after, here)
+    if not of_pier:
         return SURVIVED, now
-    write(history, number, t, BEFORE_EVENT, m, devices, y, contact, here)
-    under = loaded(devices, m, y, contact, here)
-    y, after, supports, kind, remaining = transition(under, devices, y, contact, now.supports, which, rest, here, dt)
-    _after_contact(m, devices, y, after, kind, rest, here)
-    if kind == LIFT_OFF:  # nothing jumps
-        take_back(history, number)
-    write(history, number, t, kind, m, devices, y, after, here)
     landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT, REST) else 0)
     _count(lanes, i, kind, landed, uplifts(m, contact, after, landed), t, remaining)
     after_event(traits, lanes, i, m, contact, after, y)
@@ -226,17 +227,15 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
             status, now = _happen(traits, lanes, i, m, devices, now, which, start + done, ground, history)
             if status == SURVIVED and _many(lanes, i):
                 status = CHATTER
-        elif history.every_step and done < h:
+        if status == SURVIVED and done >= h:
+            status = fallen(now.y.theta)
+        between = history.every_step and which == NO_EVENT and done < h
+        if between or status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
             here = ground_at(lanes, i, start + done)
             write(history, number, t_sample + (start + done), STEP, m, devices, now.y, now.contact, here)
     put_moment(traits, lanes, i, now.y, now.contact, now.supports)
     after_step(traits, lanes, i, marks, now.contact, which == NO_EVENT)
-    t, here = t_sample + (start + done), ground_at(lanes, i, start + done)
-    if status == SURVIVED:
-        status = fallen(now.y.theta)
-    if status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
-        write(history, number, t, STEP, m, devices, now.y, now.contact, here)
-    return status, t
+    return status, t_sample + (start + done)
 
 
 @kernel

@@ -120,11 +120,12 @@ def _of_device(devices, j, at, state, acceleration, rest, rounding, values, slop
 def _of_friction(m, devices, now, x, k, kx, ground, h, values, slopes):
     """Write what friction dampers that do not move could hold more; its rate from a moment later."""
     near = NEARBY * h
-    _, one, two = under_devices(m, devices, now.y, x, now.contact, ground)
-    for i in range(len(x)):
-        devices.stage[i] = x[i] + near * kx[i]
-    soon = along(now.y, k, near)
-    _, one_later, two_later = under_devices(m, devices, soon, devices.stage, now.contact, later(ground, near))
+    one = two = one_later = two_later = 0.0
+    for ahead in (0.0, near):  # in one place, for it is much machine code
+        for i in range(len(x)):
+            devices.stage[i] = x[i] + ahead * kx[i]
+        one, two, there = one_later, two_later, later(ground, ahead)
+        _, one_later, two_later = under_devices(m, devices, along(now.y, k, ahead), devices.stage, now.contact, there)
     j, forces, forces_later = NO_EVENT, (one, two), (one_later, two_later)
     for number in range(2):
         j = sticking(devices, j)
@@ -236,16 +237,17 @@ def _let_go(m, devices, y, contact, ground, h, j):
 
     Now each of them still holds to rounding, and where two reach their force at one time neither can go alone.
     """
-    near = SOON * h
     under, one, two = device_rates(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical, START)
     holds = one if sticking(devices, NO_EVENT) == j else two
     k = rates(under, y, contact, ground.horizontal, ground.vertical)
-    for i in range(len(devices.x)):
-        devices.stage[i] = devices.x[i] + near * devices.rates[START, i]
-    settle_friction(m, devices, along(y, k, near), devices.stage, contact, later(ground, near))
-    if devices.goes[j] == STICKS:
-        devices.goes[j] = OPENS if holds > 0.0 else CLOSES
-        settle_friction(m, devices, y, devices.x, contact, ground)
+    for ahead in (SOON * h, 0.0):
+        if ahead == 0.0:
+            devices.goes[j] = OPENS if holds > 0.0 else CLOSES
+        for i in range(len(devices.x)):
+            devices.stage[i] = devices.x[i] + ahead * devices.rates[START, i]
+        settle_friction(m, devices, along(y, k, ahead), devices.stage, contact, later(ground, ahead))
+        if devices.goes[j] != STICKS:
+            return
 
 
 @kernel

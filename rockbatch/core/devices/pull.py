@@ -56,7 +56,7 @@ NEAREST = 1e-3
 """Of a step: the shortest that this asks for, from a velocity reversal or to it."""
 
 
-START, END, BESIDE = 0, 4, 5
+START, SECOND, THIRD, FOURTH, END, BESIDE = map(np.int64, range(6))  # literals: what takes them is compiled for each
 """Places of rates and gaps at both ends of a step, between them those of its stages, and of a state beside it."""
 
 
