@@ -27,6 +27,6 @@ def run_block(
 ) -> tuple[np.record, np.recarray]:
     """Return the result of one run, and its history of at most ``rows`` rows."""
     row = np.dtype([(name, "f8") for name in (*MOMENT, *KIND.columns)])
-    history = np.zeros((rows, len(row)))
+    history = np.zeros((min(rows, 1), rows, len(row)))
     result = run_blocks([block_line(m, theta, omega, dt, substeps, len(ground))], ground, substeps, history)[0]
-    return result, history.view(row)[: result.rows, 0].view(np.recarray)
+    return result, history.view(row).ravel()[: result.rows].view(np.recarray)
