@@ -1,4 +1,4 @@
-"""Histories of one run: the rows that the core wrote, with names, units and derived quantities."""
+"""Histories of runs: the rows that the core wrote, with names, units and derived quantities."""
 
 import contextlib
 from collections.abc import Iterator, Sequence
@@ -41,7 +41,7 @@ MOST_ROWS = 10_000_000
 """Greatest number of rows of a history held in memory, about a gigabyte."""
 
 ROWS_TOGETHER = 150_000
-"""Greatest number of rows of histories that are written side by side, some 20 megabytes."""
+"""Greatest number of rows of histories that are written side by side, some 16 megabytes."""
 
 SPARE = 1.1
 """Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
@@ -98,7 +98,8 @@ def _written_together(
     found = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
     for i, (result, rows) in zip(numbers, found, strict=True):
         if result.rows > room:
-            yield i, written(runs[i], outcomes[i], quiet_s, False, wait)
+            with contextlib.suppress(InputError):
+                yield i, written(runs[i], outcomes[i], quiet_s, False, wait)
         else:
             yield i, rows[: result.rows].view(np.recarray)
 
