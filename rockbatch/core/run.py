@@ -81,10 +81,12 @@ EVENTS_IN_A_SAMPLE = 20_000
 """More than any decaying sequence of impacts needs."""
 
 VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
-"""Lanes that vector instructions take at a time; the compiler takes those left over one by one."""
+"""Lanes that the widest vector instructions take at a time; uncompiled there are none, and an empty lane would divide by zero."""
 
 FEW = 2
 """Lanes left over that are sooner taken one by one than with others that are empty."""
+
+assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
 NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 NO_ROWS = np.zeros((0, 0, 1))
@@ -345,8 +347,9 @@ def _pass_with_devices(devices, traits, lanes, count, substep, settings):
 
 @_pass.of(type(None))
 def _pass_alone(devices, traits, lanes, count, substep, settings):
-    over = count % VECTOR
-    lanes_taken = count if over <= FEW else count - over + VECTOR  # those beyond ``count`` hold what nobody reads
+    left_over = count % VECTOR
+    # Lanes beyond ``count`` hold what nobody reads
+    lanes_taken = count if left_over <= FEW else count - left_over + VECTOR
     one_pass(traits, lanes, lanes_taken, substep, settings)
     busy = 0
     for i in range(count):

@@ -1,6 +1,7 @@
 """Histories of runs: the rows that the core wrote, with names, units and derived quantities."""
 
 import contextlib
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -62,9 +63,9 @@ def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: 
     return rows[: result.rows].view(np.recarray)
 
 
-def _room(run: Run, outcome: Outcome, every_step: bool) -> int:
-    """Return for how many rows there should be room."""
-    steps = outcome.t_end / run.motion.dt * (outcome.substeps if every_step else 1)
+def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:
+    """Return for how many rows there should be room in a run that ends by ``until`` [s]."""
+    steps = min(outcome.t_end, until) / run.motion.dt * (outcome.substeps if every_step else 1)
     return int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
 
 
@@ -72,7 +73,8 @@ def written_side_by_side(
     runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
 ) -> Iterator[tuple[int, np.recarray]]:
     """Yield the number and the history, at samples and events, of each run that is not too long to be held in memory."""
-    room = [_room(run, outcome, every_step=False) for run, outcome in zip(runs, outcomes, strict=True)]
+    ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
+    room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]
     alike: dict[object, list[int]] = {}
     for i in sorted(range(len(runs)), key=room.__getitem__):
         steps = outcomes[i].substeps
@@ -150,7 +152,7 @@ def rocking_from_lean(
     if not requested:
         early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
         of_record = _apart(runs, found, early, quiet_s, False, stop)
-        mixed = [i for i in mixed if i not in of_record or of_record[i].leans]
+        mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
     for i, parts in (fine := _apart(runs, found, mixed, quiet_s, wait, stop)).items():
         found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
     if requested:

@@ -54,7 +54,8 @@ def _pass_over(lanes, i, substep, settings):
     bears = 1.0 - bounds.share[i] * max(bounds.sine_squared[i], max(beyond, 0.0) * max(beyond, 0.0))
     throws = bounds.share[i] * min(0.5, steep) * strongest + bounds.radius[i] * fastest * fastest
     # Numbers above 0 for what holds, of which the least decides: truth values would need masks of another width
-    moves = min(stays, down * bears - throws)
+    # What may be no number comes first: then the least is none either, and does not stand
+    moves = min(down * bears - throws, stays)
     rests = min(
         bounds.tangent[i] * (m.gravity + ground.vertical) - abs(ground.horizontal),
         bounds.tangent[i] * (m.gravity + vertical_end) - abs(horizontal_end),
