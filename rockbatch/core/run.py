@@ -53,7 +53,7 @@ from rockbatch.core.system import (
     uplifts,
     write_reversals,
 )
-from rockbatch.core.table import LANES, move, record, table
+from rockbatch.core.table import LANES, get, move, put, record, table
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -104,10 +104,13 @@ class Settings(NamedTuple):
 
 
 @inlined
-def _commit(devices):
-    """Let the devices' states go on from the end of a step."""
+def _commit(devices, lanes, i, k_end, which):
+    """Let the devices' states go on from the end of a step, and the next step from its rates unless they change with an event."""
     if devices is None:
         return
+    put(lanes.rates, i, k_end)
+    if which != NO_EVENT:
+        devices.ended[0] = 0.0
     for i in range(len(devices.x)):
         devices.x[i] = devices.end[i]
 
@@ -214,15 +217,15 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
     done, which, status = 0.0, NO_EVENT, SURVIVED
     while done < h and status == SURVIVED:
         here, left = ground_at(lanes, i, start + done), h - done
-        k, under = start_rates(m, devices, now.y, now.contact, here)
-        most = longest(under, now.y, k, now.contact, min(left, resolved(m, devices, now.y, now.contact, here, h, dt)))
+        k, under = start_rates(m, devices, now.y, now.contact, here, get(lanes.rates, i, now.y))
+        most = longest(under, now.y, k, now.contact, min(left, resolved(under, devices, now.y, now.contact, here, h, dt)))
         used, which, end, k_end = first_event(under, devices, marks, now, k, rest, here, most, settings.locate)
         include_peak(lanes, i, now.y, end, start, done, used)
         include(traits, lanes, i, m, now.y, k, end, k_end, now.contact, used)
         if airborne(m, now.contact):
             include_height(lanes, i, m, now.supports, now.y, end, used)
         take_in(devices, k, k_end, used)
-        _commit(devices)
+        _commit(devices, lanes, i, k_end, which)
         now = Moment(end, now.contact, now.supports)
         done = done + used if used < left else h
         if which != NO_EVENT:

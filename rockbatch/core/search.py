@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.core.devices.events import PER_DEVICE, device_functions
-from rockbatch.core.devices.pull import END, START, stage_states
+from rockbatch.core.devices.pull import END, START, goes_on, pulled_at_end, stage_states
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inlined_once, kernel
 from rockbatch.core.rk4 import rates_with, rk4
@@ -97,8 +97,12 @@ def _narrow(marks, a, t, b):
 
 
 @inlined
-def start_rates(m, devices, y, contact, ground):
-    """Return the rates at the start of a sub-step, and the pier under its devices, whose states' rates are written."""
+def start_rates(m, devices, y, contact, ground, at_end):
+    """Return the rates at the start of a sub-step, ``at_end`` of the last one if it goes on from there, and the pier under its
+    devices, whose states' rates are written.
+    """
+    if devices is not None and goes_on(devices):
+        return at_end, pulled_at_end(m, devices)
     stage_states(devices, START, 0.0)
     return rates_with(devices, m, y, contact, ground.horizontal, ground.vertical, START)
 
@@ -114,7 +118,11 @@ def first_event(m, devices, marks, start, k, rest, ground, h, locate):
     -------
     The time that it took [s]; the number of the event function that fell, NO_EVENT for none; the state then, and its rates.
     """
-    _evaluate(m, devices, start, k, rest, ground, h, START, marks.early, marks.early_slopes)
+    if devices is not None and goes_on(devices):
+        _copy(marks.now, marks.early)
+        _copy(marks.now_slopes, marks.early_slopes)
+    else:
+        _evaluate(m, devices, start, k, rest, ground, h, START, marks.early, marks.early_slopes)
     a, b, t, which, last = 0.0, h, h, NO_EVENT, False
     for trial in range(TRIALS + 1):
         end, k_end = _try(m, devices, marks, start, k, rest, ground, t, h)

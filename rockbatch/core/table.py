@@ -46,6 +46,7 @@ def move(cells, i, j):
 
 
 def _interpreted_get(part, i, kind):
+    kind = kind if isinstance(kind, type) else type(kind)
     return kind(*(float(part[name][i]) for name in kind._fields))
 
 
@@ -75,7 +76,7 @@ def _addresses(builder, part, pointer, lane, names):
 
 @intrinsic
 def _get(typing_context, part, i, kind):
-    """Return the named tuple ``kind`` in lane ``i`` of a part of the table."""
+    """Return the named tuple ``kind``, or one like it, in lane ``i`` of a part of the table."""
     fields = kind.instance_class._fields
     result = types.NamedUniTuple(types.float64, len(fields), kind.instance_class)
 

@@ -37,8 +37,8 @@ class Bounds(NamedTuple):
 
 
 LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": Rocking, "end": Tilt, "contact": Stance, "step_status": StepStatus, "ending": Ending,
-    "bounds": Bounds,
+    "model": Numbers, "now": Rocking, "end": Tilt, "rates": Rocking, "contact": Stance, "step_status": StepStatus,
+    "ending": Ending, "bounds": Bounds,
 })  # fmt: skip
 
 

@@ -73,6 +73,15 @@ class Devices(NamedTuple):
     rates: np.ndarray  # shape (6, len(x)): of the four stages, at the end, and of a state looked at beside them
     gaps: np.recarray  # of Gap, shape (6, devices), likewise but for stages inside a step
     use: np.recarray  # of Use
+    bound_steps: bool  # some may ask for a shorter step
+    ended: (
+        np.ndarray
+    )  # shape (3,): 1 if the next step starts where the last one ended; force [m/s²], moment [m²/s²] there
+
+
+def _bounds_steps(of):
+    """Return whether :func:`resolved` may ask for shorter steps because of an element."""
+    return of.kind in (HYSTERETIC, CONTACT) or (of.kind in (VISCOUS, MAXWELL) and of.exponent < 1.0)
 
 
 def devices_of(elements, states=(), level=math.nan):
@@ -90,8 +99,9 @@ def devices_of(elements, states=(), level=math.nan):
     use = np.zeros(n, USE).view(np.recarray)
     gaps = np.zeros((6, n), GAP).view(np.recarray)
     return Devices(
-        rows, np.full(1, float(level)), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use
-    )
+        rows, np.full(1, float(level)), np.zeros(n), np.zeros(n), x, stage, end, np.zeros((6, size)), gaps, use,
+        any(_bounds_steps(element) for element in elements), np.zeros(3),
+    )  # fmt: skip
 
 
 @kernel
@@ -174,9 +184,27 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
     under = pulled(m, total, moment)
     if holds:
         under, one, two = _with_friction(under, devices, at, y, contact, horizontal, vertical)
+    if place == END:
+        devices.ended[0], devices.ended[1], devices.ended[2] = 0.0 if holds else 1.0, total, moment
     k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two
+
+
+@inlined
+def goes_on(devices):
+    """Return whether the next step starts where the last one ended, so that the rates there are its own."""
+    return devices is not None and devices.ended[0] != 0.0
+
+
+@kernel
+def pulled_at_end(m, devices):
+    """Return the pier under its devices at the end of the last step, and make rates and gaps there those of a start."""
+    for i in range(len(devices.x)):
+        devices.rates[START, i] = devices.rates[END, i]
+    for j in range(len(devices.elements)):
+        devices.gaps[START, j] = devices.gaps[END, j]
+    return pulled(m, devices.ended[1], devices.ended[2])
 
 
 @kernel
@@ -259,14 +287,14 @@ def advance_states(devices, h):
 
 
 @kernel
-def resolved(m, devices, y, contact, ground, h, dt):
+def resolved(under, devices, y, contact, ground, h, dt):
     """Return the longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all
     along it, of a viscous one with an exponent below 1 near a velocity reversal or behind a brace, and of a stop that is met.
 
     It is shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
     changes goes on telling the error.
     """
-    if devices is None:
+    if devices is None or not devices.bound_steps:
         return h
     share, asked = 1.0, False
     for j in range(len(devices.elements)):
@@ -277,12 +305,11 @@ def resolved(m, devices, y, contact, ground, h, dt):
             share = min(share, FINE / (of.quickest * dt))
     if not asked:
         return share * h
-    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
     end = later(ground, h)  # where a pier lifts off it has no acceleration yet
     v_now, theta_now = accelerations(under, y, contact, ground.horizontal, ground.vertical)
     v_end, theta_end = accelerations(under, y, contact, end.horizontal, end.vertical)
     for j in range(len(devices.elements)):
-        of, here = devices.elements[j], devices.gaps[BESIDE, j]
+        of, here = devices.elements[j], devices.gaps[START, j]
         if of.kind == MAXWELL and of.exponent < 1.0:
             slips = max(abs(slip_rate(of, devices.x[j])), abs(here.speed))
             share = min(share, FINE / (of.quickest * slips ** (1.0 - of.exponent) * dt)) if slips > 0.0 else share

@@ -24,9 +24,10 @@ def at_rest(m):
 
 
 @inlined
-def _gap(gap, velocity, acceleration, rest, rounding):
-    """Return a gap; one that is nothing but rounding, of a pivot that has no velocity either, opens if it is being lifted."""
-    if abs(velocity) <= rest and acceleration > 0.0 and abs(gap) <= rounding:
+def _gap(m, gap, velocity, acceleration, rest):
+    """Return a gap; one that is nothing but rounding, of a pivot that has no velocity either, opens unless it is pressed down."""
+    rounding = NO_GAP * m.yield_deflection
+    if abs(velocity) <= rest and acceleration > -NO_ACCELERATION * m.gravity and abs(gap) <= rounding:
         return rounding
     return gap
 
@@ -48,7 +49,7 @@ def _above(m, position, velocity, acceleration, support, z, rest):
     """Return the gap [m] of a free pivot over its support, and the velocity [m/s] with which it opens."""
     velocity -= velocity_of_top(m, z)
     acceleration -= acceleration_of_top(m, z)
-    gap = _gap(position - top(m, support, z), velocity, acceleration, rest, NO_GAP * m.yield_deflection)
+    gap = _gap(m, position - top(m, support, z), velocity, acceleration, rest)
     return gap, surely(velocity, acceleration, rest)
 
 
