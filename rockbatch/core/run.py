@@ -218,7 +218,8 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
     while done < h and status == SURVIVED:
         here, left = ground_at(lanes, i, start + done), h - done
         k, under = start_rates(m, devices, now.y, now.contact, here, get(lanes.rates, i, now.y))
-        most = longest(under, now.y, k, now.contact, min(left, resolved(under, devices, now.y, now.contact, here, h, dt)))
+        most = min(left, resolved(under, devices, now.y, now.contact, here, h, dt))
+        most = longest(under, now.y, k, now.contact, most)
         used, which, end, k_end = first_event(under, devices, marks, now, k, rest, here, most, settings.locate)
         include_peak(lanes, i, now.y, end, start, done, used)
         include(traits, lanes, i, m, now.y, k, end, k_end, now.contact, used)

@@ -232,27 +232,12 @@ def _stop_event(devices, j, depth, what):
 
 
 @kernel
-def _let_go(m, devices, y, contact, ground, h, j):
-    """Let friction damper ``j`` go, and perhaps others with it: what they do a moment later decides.
-
-    Now each of them still holds to rounding, and where two reach their force at one time neither can go alone.
-    """
-    under, one, two = device_rates(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical, START)
-    holds = one if sticking(devices, NO_EVENT) == j else two
-    k = rates(under, y, contact, ground.horizontal, ground.vertical)
-    for ahead in (SOON * h, 0.0):
-        if ahead == 0.0:
-            devices.goes[j] = OPENS if holds > 0.0 else CLOSES
-        for i in range(len(devices.x)):
-            devices.stage[i] = devices.x[i] + ahead * devices.rates[START, i]
-        settle_friction(m, devices, along(y, k, ahead), devices.stage, contact, later(ground, ahead))
-        if devices.goes[j] != STICKS:
-            return
-
-
-@kernel
 def device_event(m, devices, y, contact, ground, h, rest, which):
-    """Let the event ``which`` of a device happen in state ``y``: its mode or direction changes."""
+    """Let the event ``which`` of a device happen in state ``y``: its mode or direction changes.
+
+    Of friction that lets go, and perhaps others with it, what they do a moment later decides: now each of them still holds
+    to rounding, and where two reach their force at one time neither can go alone.
+    """
     j, what = (which - OF_PIER) // PER_DEVICE, (which - OF_PIER) % PER_DEVICE
     of = devices.elements[j]
     if of.kind == CONTACT:
@@ -264,21 +249,29 @@ def device_event(m, devices, y, contact, ground, h, rest, which):
         if devices.modes[j] == SLACK and (of.prestress > 0.0 or devices.x[j] > 0.0):
             devices.use[j].times += 1.0
         return
-    if of.kind == FRICTION and what == GIVES:
-        _let_go(m, devices, y, contact, ground, h, j)
-        return
-    if of.kind != FRICTION or of.strength == 0.0:
+    lets_go = of.kind == FRICTION and what == GIVES
+    if not lets_go and (of.kind != FRICTION or of.strength == 0.0):
         devices.goes[j] = -devices.goes[j]
         if of.kind == MAXWELL:
             return
-    under, _, _ = under_devices(m, devices, y, devices.x, contact, ground)
-    v_acceleration, theta_acceleration = accelerations(under, y, contact, ground.horizontal, ground.vertical)
+    under, one, two = device_rates(m, devices, y, devices.x, contact, ground.horizontal, ground.vertical, START)
+    holds = one if sticking(devices, NO_EVENT) == j else two
+    k = rates(under, y, contact, ground.horizontal, ground.vertical)
     for i in range(len(devices.elements)):  # friction that comes to rest at the same time may hold, too
-        other, here = devices.elements[i], devices.gaps[BESIDE, i]
-        stops = abs(here.speed) <= rest and devices.goes[i] * lifted(here, v_acceleration, theta_acceleration) < 0.0
-        if other.kind == FRICTION and other.strength > 0.0 and (i == j or stops):
+        other, here = devices.elements[i], devices.gaps[START, i]
+        stops = i == j or (abs(here.speed) <= rest and devices.goes[i] * lifted(here, k.v_rate, k.omega) < 0.0)
+        if stops and not lets_go and other.kind == FRICTION and other.strength > 0.0:
             devices.goes[i] = STICKS
-    settle_friction(m, devices, y, devices.x, contact, ground)
+    for ahead in (SOON * h, 0.0):
+        if ahead > 0.0 and not lets_go:
+            continue
+        if lets_go and ahead == 0.0:
+            devices.goes[j] = OPENS if holds > 0.0 else CLOSES
+        for i in range(len(devices.x)):
+            devices.stage[i] = devices.x[i] + ahead * devices.rates[START, i]
+        settle_friction(m, devices, along(y, k, ahead), devices.stage, contact, later(ground, ahead))
+        if devices.goes[j] != STICKS:
+            return
 
 
 @kernel
