@@ -105,7 +105,7 @@ class Settings(NamedTuple):
 
 @inlined
 def _commit(devices, lanes, i, k_end, which):
-    """Let the devices' states go on from the end of a step, and the next step from its rates unless they change with an event."""
+    """Let the devices' states go on from the end of a step, and the next step from its rates but for an event."""
     if devices is None:
         return
     put(lanes.rates, i, k_end)
@@ -218,8 +218,8 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
     while done < h and status == SURVIVED:
         here, left = ground_at(lanes, i, start + done), h - done
         k, under = start_rates(m, devices, now.y, now.contact, here, get(lanes.rates, i, now.y))
-        most = min(left, resolved(under, devices, now.y, now.contact, here, h, dt))
-        most = longest(under, now.y, k, now.contact, most)
+        asked = min(left, resolved(under, devices, now.y, now.contact, here, h, dt))
+        most = longest(under, now.y, k, now.contact, asked)
         used, which, end, k_end = first_event(under, devices, marks, now, k, rest, here, most, settings.locate)
         include_peak(lanes, i, now.y, end, start, done, used)
         include(traits, lanes, i, m, now.y, k, end, k_end, now.contact, used)

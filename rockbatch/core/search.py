@@ -98,8 +98,9 @@ def _narrow(marks, a, t, b):
 
 @inlined
 def start_rates(m, devices, y, contact, ground, at_end):
-    """Return the rates at the start of a sub-step, ``at_end`` of the last one if it goes on from there, and the pier under its
-    devices, whose states' rates are written.
+    """Return the rates at the start of a sub-step, and the pier under its devices, whose states' rates are written.
+
+    A sub-step that goes on from the end of the last one begins with the rates ``at_end``.
     """
     if devices is not None and goes_on(devices):
         return at_end, pulled_at_end(m, devices)

@@ -74,9 +74,7 @@ class Devices(NamedTuple):
     gaps: np.recarray  # of Gap, shape (6, devices), likewise but for stages inside a step
     use: np.recarray  # of Use
     bound_steps: bool  # some may ask for a shorter step
-    ended: (
-        np.ndarray
-    )  # shape (3,): 1 if the next step starts where the last one ended; force [m/s²], moment [m²/s²] there
+    ended: np.ndarray  # 1 if the next step goes on from the end of the last one; force [m/s²] and moment [m²/s²] there
 
 
 def _bounds_steps(of):
@@ -193,13 +191,13 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
 
 @inlined
 def goes_on(devices):
-    """Return whether the next step starts where the last one ended, so that the rates there are its own."""
-    return devices is not None and devices.ended[0] != 0.0
+    """Return whether a step goes on from the end of the last one: an event changes rates, and friction that holds is not kept."""
+    return devices.ended[0] != 0.0
 
 
 @kernel
 def pulled_at_end(m, devices):
-    """Return the pier under its devices at the end of the last step, and make rates and gaps there those of a start."""
+    """Return the pier under its devices at the end of the last step, whose rates and gaps become those of a start."""
     for i in range(len(devices.x)):
         devices.rates[START, i] = devices.rates[END, i]
     for j in range(len(devices.elements)):
