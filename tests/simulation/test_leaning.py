@@ -18,7 +18,7 @@ from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.report.sections.peaks import outcome
 from rockbatch.results.columns import Ran, as_table, row
 from rockbatch.results.run_json import describe_case
-from rockbatch.simulation import Run, run_fixed, run_to_tolerance
+from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, written
 from rockbatch.simulation.leaning import lean_of
 from rockbatch.simulation.models import readings
@@ -107,6 +107,21 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
     rigid = outcome_of(rb.RigidBase(), motion, rocking=True)
     assert (rigid.theta_rocking_error, rigid.theta_lean_error) == (rigid.theta_max_error, None)
     assert outcome_of(PADS, motion).theta_rocking_error is None
+
+
+@pytest.mark.parametrize("requested", [False, True])
+def test_many_runs_are_told_apart_as_one_is(requested):
+    """Piers that lean, swing, stand on strong pads or overturn, at two sampling intervals, side by side and each alone."""
+    runs = [
+        Run(PIER, replace(PADS, eta=eta), replace(pulse_and_vibration(vertical), dt=dt))
+        for eta in (1.5, 2.0, 50.0)
+        for vertical in (0.0, 0.3, 0.5)
+        for dt in (0.01, 0.008)
+    ]
+    outcomes = run_all_to_tolerance(runs, 1e-4, 2.0, Stop())
+    found = rocking_from_lean(runs, outcomes, 2.0, requested)
+    assert found == [rocking_from_lean([run], [o], 2.0, requested)[0] for run, o in zip(runs, outcomes, strict=True)]
+    assert 0 < sum(each.theta_rocking is not None for each in found) < len(runs) + requested
 
 
 def test_a_check_of_rocking_is_not_decided_within_its_error(tmp_path):

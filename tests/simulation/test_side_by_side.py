@@ -23,16 +23,17 @@ def runs():
     found = []
     for i in range(32):
         noise = np.random.default_rng(i).normal(size=(2, 120 + 20 * (i % 7)))
-        found.append(Run(PIER, BASES[i % 4], Motion(f"noise {i}", 0.01, 5.0 * noise[0], 3.0 * noise[1])))
+        dt = (0.01, 0.008, 0.005)[i % 3]
+        found.append(Run(PIER, BASES[i % 4], Motion(f"noise {i}", dt, 5.0 * noise[0], 3.0 * noise[1])))
     outcomes = run_all_fixed(found, [4 + 4 * (i // 4 % 2) for i in range(32)], 1.0, Stop())
     assert sum(outcome.impacts for outcome in outcomes) > 300
     return found, outcomes
 
 
-def same(runs, outcomes, together):
+def same(runs, outcomes, together, wait=True):
     """Return whether histories written ``together`` are, to the bit, those of runs by themselves."""
     alone = {
-        i: written(run, outcome, 1.0, every_step=False)
+        i: written(run, outcome, 1.0, every_step=False, wait=wait)
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
     }
     return sorted(together) == sorted(alone) and all(
@@ -45,6 +46,10 @@ def test_histories_written_side_by_side_are_those_written_alone(runs, room, monk
     """Whatever finds room together; pivots land and lift off in all of them, and the springs' velocities turn."""
     monkeypatch.setattr(histories, "ROWS_TOGETHER", room)
     assert same(*runs, dict(written_side_by_side(*runs, 1.0)))
+
+
+def test_those_that_end_with_their_quiet_time_are_those_written_alone(runs):
+    assert same(*runs, dict(written_side_by_side(*runs, 1.0, wait=False)), wait=False)
 
 
 def test_a_history_that_finds_no_room_beside_others_is_written_alone(runs, monkeypatch):
