@@ -67,9 +67,8 @@ def test_histories_that_are_too_long_are_left_out_and_a_stop_leaves_out_the_rest
     monkeypatch.setattr(histories, "ROWS_TOGETHER", 1)
     assert {i for i, _ in written_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
     monkeypatch.setattr(histories, "ROWS_TOGETHER", 150_000)
-    monkeypatch.setattr(
-        histories, "_room", lambda *_, **__: 50
-    )  # that it is too long shows only once it is written beside others
+    # That one is too long shows only once it is written beside others
+    monkeypatch.setattr(histories, "_room", lambda *_, **__: 50)
     assert {i for i, _ in written_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
     stop = Stop()
     stop.set()
