@@ -5,11 +5,11 @@ import signal
 import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from importlib.util import find_spec
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
@@ -62,6 +62,7 @@ class Dask:
         self.address = address
         self.workers = workers or cores()
         self._client: Client | None = None
+        self._threads = 0
         self._records: Records | None = None
         self._opened = ExitStack()
 
@@ -113,7 +114,8 @@ class Dask:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._client is not None:
-            self._client.close(timeout=GONE_S)
+            with suppress(TimeoutError):
+                self._client.close(timeout=GONE_S)
             self._client = None
         self._opened.close()
 
@@ -123,9 +125,11 @@ class Dask:
 
     @property
     def jobs(self) -> int:
-        """Return the number of threads of all workers at present."""
-        connected = self._client is not None and self._client.status == "running"
-        return sum(self._client.nthreads().values()) if self._client and connected else 0
+        """Return the number of threads of all workers, as the scheduler last said."""
+        if self._client is not None:
+            with suppress(OSError):
+                self._threads = sum(worker["nthreads"] for worker in _workers(self._client).values())
+        return self._threads
 
     def outcomes(
         self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
@@ -151,7 +155,7 @@ class Dask:
                 for future in self._finished_of(self._client, pending):
                     group = pending[future]
                     with starting_threads():  # of a worker that lacks them; its error comes as it was there
-                        outcomes = future.result()
+                        outcomes = future.result(timeout=PATIENCE_S)
                     del pending[future]
                     yield finished(group, outcomes)
                     hand_out()
@@ -180,31 +184,38 @@ class Dask:
         from distributed import wait
 
         began = last_seen = time.monotonic()
-        alive, deaths = set(self._workers(client)), 0
+        alive, deaths = _able(_workers(client)), 0
         while True:
             try:
                 return list(wait(list(pending), timeout=GLANCE_S, return_when="FIRST_COMPLETED").done)
             except NotYetError:
                 patience, awaited = (PATIENCE_S, "worker") if client.status == "running" else (GONE_S, "scheduler")
                 now = time.monotonic()
-                if workers := self._workers(client):
+                listed = _workers(client)
+                if able := _able(listed):
                     last_seen = now
-                deaths += bool(alive - workers)
-                alive = workers
+                deaths += bool(alive - able)
+                alive = able
                 if now - last_seen > patience:
-                    raise OSError(
-                        f"no {awaited} for {patience:g} s{_PAUSED * bool(awaited == 'worker' and self.jobs)}"
-                    ) from None
+                    raise OSError(f"no {awaited} for {patience:g} s{_PAUSED * bool(listed)}") from None
                 if deaths >= MOST_DEATHS and now - began > PATIENCE_S:
                     raise OSError(
                         f"workers died {deaths} times in {now - began:.0f} s and nothing was finished; look at their logs, and "
                         "give each more memory"
                     ) from None
 
-    def _workers(self, client: "Client") -> set[str]:
-        """Return the addresses of the workers at present, without those that have paused."""
-        listed = client.scheduler_info()["workers"] if client.status == "running" else {}
-        return {address for address, worker in listed.items() if worker.get("status") != "paused"}
+
+def _workers(client: "Client") -> dict[str, dict[str, Any]]:
+    """Return the workers by their addresses, none while there is no connection; ``OSError`` if the scheduler does not answer."""
+    if client.status != "running":
+        return {}
+    listed: dict[str, dict[str, Any]] = client.sync(client.scheduler.identity, callback_timeout=GONE_S)["workers"]
+    return listed
+
+
+def _able(workers: dict[str, dict[str, Any]]) -> set[str]:
+    """Return the addresses of the workers that have not paused."""
+    return {address for address, worker in workers.items() if worker.get("status") != "paused"}
 
 
 def _finished_groups(pending: "dict[Future, range]") -> Iterator[Outcomes]:

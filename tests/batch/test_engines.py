@@ -191,7 +191,8 @@ def address_of(file):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_goes_is_told_in_a_sentence(file, tmp_path):
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_scheduler_that_goes_or_falls_silent_is_told_in_a_sentence(file, tmp_path, how):
     """And soon; in a process of its own, because distributed logs to the real stderr."""
     pytest.importorskip("distributed")
     file.write_text(file.read_text().replace("[0.5, 0.75, 1.0]", str([0.5 + 0.001 * i for i in range(60)])))
@@ -214,7 +215,7 @@ def test_a_scheduler_that_goes_is_told_in_a_sentence(file, tmp_path):
         while not (part.exists() and part.read_bytes().count(b"\n") > 1):
             assert time.monotonic() < until
             time.sleep(0.1)
-        scheduler.kill()
+        scheduler.send_signal(how)
         started = time.monotonic()
         _, told = run.communicate(timeout=60)
         assert run.returncode == 2
@@ -269,15 +270,16 @@ class FullWorkers:
     status = "running"
 
     def __init__(self, pause: bool) -> None:
+        self.scheduler = self
         self.pause, self.looks = pause, 0
 
-    def nthreads(self) -> dict[str, int]:
-        return dict.fromkeys(self.scheduler_info()["workers"], 1)
+    def sync(self, asked, callback_timeout):
+        return asked()
 
-    def scheduler_info(self) -> dict[str, dict[str, dict[str, str]]]:
+    def identity(self):
         self.looks += 1
-        worker = {"status": "paused"} if self.pause else {"status": "running"}
-        return {"workers": {"tcp://a" if self.pause else f"tcp://{self.looks}": worker}}
+        address, status = ("tcp://a", "paused") if self.pause else (f"tcp://{self.looks}", "running")
+        return {"workers": {address: {"status": status, "nthreads": 1}}}
 
 
 @pytest.mark.parametrize(
