@@ -112,19 +112,12 @@ def read_ground(lanes, i, ground):
     """Read the ground at the last sample; zero after the record."""
     at, sample = lanes.ground, lanes.clock.sample[i]
     moves = sample < lanes.clock.npts[i]
-    row = np.uintp(
-        lanes.clock.first_row[i] + (sample if moves else 0.0)
-    )  # unsigned: no index from the end is looked for
-    horizontal, horizontal_slope, vertical, vertical_slope = (
-        ground[row, 0],
-        ground[row, 1],
-        ground[row, 2],
-        ground[row, 3],
-    )
-    at.horizontal[i] = horizontal if moves else 0.0
-    at.horizontal_slope[i] = horizontal_slope if moves else 0.0
-    at.vertical[i] = vertical if moves else 0.0
-    at.vertical_slope[i] = vertical_slope if moves else 0.0
+    # By way of a signed integer, for which processors have an instruction; unsigned: no index from the end is looked for
+    row = np.uintp(np.intp(lanes.clock.first_row[i] + (sample if moves else 0.0)))
+    horizontal, horizontal_slope = ground[row, 0], ground[row, 1]
+    vertical, vertical_slope = ground[row, 2], ground[row, 3]
+    at.horizontal[i], at.horizontal_slope[i] = horizontal if moves else 0.0, horizontal_slope if moves else 0.0
+    at.vertical[i], at.vertical_slope[i] = vertical if moves else 0.0, vertical_slope if moves else 0.0
 
 
 @inlined
@@ -179,6 +172,16 @@ def include_peak(lanes, i, y, end, start, done, h):
     if at >= 0.0:
         lanes.peak.theta[i] = peak
         lanes.peak.time[i] = lanes.clock.sample[i] * lanes.clock.dt[i] + (start + (done + at))
+
+
+@inlined
+def peak_at_end(lanes, i, tilt, substep):
+    """Bring the peak of lane ``i`` up to the ``tilt`` = |θ| at the end of its sub-step."""
+    clock, peak = lanes.clock, lanes.peak
+    # None is negative: a choice between a new number and the very one that is there would be a store under a mask, a slow one
+    theta, time = abs(peak.theta[i]), abs(peak.time[i])
+    peak.theta[i] = max(theta, tilt)
+    peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * clock.step[i] if tilt > theta else time
 
 
 @kernel

@@ -110,7 +110,8 @@ def falls(f0, d0, f1, d1, h):
     One that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
     not show that it has, half of the time is the guess. One that falls and rises again within the step has fallen.
     """
-    if f0 > 0.0 and excess(d0, d1, h) < min(f0, f1):
+    third = h * (1.0 / 3.0)
+    if f0 >= 0.0 and min(f0 + third * d0, f1 - third * d1, f1) > 0.0:  # the Bézier points, between which the cubic runs
         return -1.0
     return _falls(f0, d0, f1, d1, h)
 

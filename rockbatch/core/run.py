@@ -51,9 +51,8 @@ from rockbatch.core.system import (
     put_moment,
     transition,
     uplifts,
-    write_reversals,
 )
-from rockbatch.core.table import LANES, get, move, put, record, table
+from rockbatch.core.table import LANES, NONE, get, move, put, record, table
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -88,7 +87,6 @@ FEW = 2
 
 assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
-NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 NO_ROWS = np.zeros((0, 0, 1))
 
 RESULT = np.dtype([*record(Result).descr, ("extremes", "f8", WINDOWS)])
@@ -290,9 +288,8 @@ def _stands_with_devices(devices, traits, lanes, i, substep, history):
 def _stands_alone(devices, traits, lanes, i, substep, history):
     if lanes.step_status.kind[i] >= EVENTFUL:
         return False
-    write_reversals(traits, lanes, i, substep, history)
     _include_peak_of_lane(lanes, i, substep)
-    attend(traits, lanes, i)
+    attend(traits, lanes, i, substep, history)
     return True
 
 

@@ -124,13 +124,8 @@ def one_pass(traits, lanes, count, substep, settings):
 
 
 @question
-def attend(traits, lanes, i):
+def attend(traits, lanes, i, substep, history):
     """Take in what the pass could not, of a sub-step of lane ``i`` that stands, and let the lane go on from its end."""
-
-
-@question
-def write_reversals(traits, lanes, i, substep, history):
-    """Write both sides of what the pass has corrected in a sub-step of lane ``i`` that stands."""
 
 
 @question

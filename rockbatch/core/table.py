@@ -18,6 +18,8 @@ from rockbatch.core.kernel import kernel
 LANES = 16
 """Runs that a table holds side by side."""
 
+NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
+
 _CODES = {float: "f8", int: "i8"}
 _DOUBLE = ir.DoubleType()
 

@@ -97,7 +97,7 @@ def begin(traits, lanes, i, run):
 
 
 @system.attend.of(BlockTraits)
-def attend(traits, lanes, i):
+def attend(traits, lanes, i, substep, history):
     """Let the lane go on from the end of its sub-step; a new peak is the driver's."""
     lanes.now.theta[i], lanes.now.omega[i] = lanes.end.theta[i], lanes.end.omega[i]
 
@@ -123,11 +123,6 @@ def after_step(traits, lanes, i, marks, contact, whole):
 def finish(traits, lanes, i, t, result):
     """Write where the block is at the end."""
     result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]
-
-
-@system.write_reversals.of(BlockTraits)
-def write_reversals(traits, lanes, i, substep, history):
-    """Write nothing: the ground has no branches."""
 
 
 def kind_of(m):

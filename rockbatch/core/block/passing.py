@@ -7,7 +7,7 @@ each other. A lane's arithmetic does not see its neighbours, so a run comes to t
 from rockbatch.core import system
 from rockbatch.core.block.equations import side_of
 from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
-from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ground_at
+from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ground_at, peak_at_end
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.system import rates
@@ -29,7 +29,7 @@ def _pass_over(lanes, i, substep, settings):
     It is calm if the block surely stays on its pivot, by the Bézier points and a bound on the normal force; does not lean
     far; and has no new peak but at the end. One at rest is calm if the ground, linear in time, does not lift it at either end.
     """
-    model, clock, h = lanes.model, lanes.clock, lanes.clock.step[i]
+    model, h = lanes.model, lanes.clock.step[i]
     m = Rocker(model.half_width[i], model.height[i], model.gravity[i], model.quickness[i])
     stance = get(lanes.contact, i, Stance)
     side = side_of(stance)
@@ -61,15 +61,12 @@ def _pass_over(lanes, i, substep, settings):
         bounds.tangent[i] * (m.gravity + vertical_end) - abs(horizontal_end),
         stance.left - 0.5,
     )
-    stands = min(moves if side != 0.0 else rests, 0.5 if settings.locate else -0.5)
-    peak, time = lanes.peak.theta[i], lanes.peak.time[i]
-    calm = min(stands, peak - highest if y.omega * end.omega < 0.0 else 1.0) > 0.0
-    reached = tilt_end if calm else 0.0
-    lanes.peak.theta[i] = max(peak, reached)
-    lanes.peak.time[i] = clock.sample[i] * clock.dt[i] + (substep + 1.0) * h if reached > peak else time
+    eventful = CALM if min(moves if side != 0.0 else rests, 0.5 if settings.locate else -0.5) > 0.0 else EVENTFUL
+    calm = max(highest - lanes.peak.theta[i] if y.omega * end.omega < 0.0 else -1.0, eventful) <= 0.0
+    peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
     lanes.now.theta[i] = end.theta if calm else y.theta
     lanes.now.omega[i] = end.omega if calm else y.omega
-    lanes.step_status.kind[i] = CALM if calm else (ATTEND if stands > 0.0 else EVENTFUL)
+    lanes.step_status.kind[i] = max(eventful, CALM if calm else ATTEND)
 
 
 @system.one_pass.of(BlockTraits)

@@ -9,13 +9,14 @@ from rockbatch.core.history import write
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
-from rockbatch.core.springs import events, transitions  # noqa: F401  answers of the springs
+from rockbatch.core.springs import events  # noqa: F401  answers of the springs
 from rockbatch.core.springs.ending import Waiting, base_of
 from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
-from rockbatch.core.springs.loading import Loading, branches, close_left, close_right
+from rockbatch.core.springs.loading import Loading, Turning, branches, turning
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import StepStatus
 from rockbatch.core.springs.reversal import pivots
+from rockbatch.core.springs.transitions import with_yield_points
 from rockbatch.core.system import Kind, model, moment, rates
 from rockbatch.core.table import get, lanes_of, put, taken
 from rockbatch.core.types import BEFORE_EVENT, SPRING_LEFT, SPRING_RIGHT
@@ -152,7 +153,7 @@ def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
 @system.after_event.of(SpringTraits)
 def after_event(traits, lanes, i, m, before, after, y):
     """Keep where the branches of the springs began, and the plastic work of those that have ended."""
-    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, y))
+    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, turning(m, y)))
 
 
 @system.after_step.of(SpringTraits)
@@ -165,25 +166,32 @@ def after_step(traits, lanes, i, marks, contact, whole):
 
 
 @system.attend.of(SpringTraits)
-def attend(traits, lanes, i):
-    """Take in extremes, plastic work and yield points of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
-    m, step_status, h = model(traits, lanes, i), lanes.step_status, lanes.clock.step[i]
+def attend(traits, lanes, i, substep, history):
+    """Take in extremes and reversals of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
+    m, h = model(traits, lanes, i), lanes.clock.step[i]
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), get(lanes.contact, i, Contact)
     if system.airborne(m, contact):
         include_height(lanes, i, m, get(lanes.supports, i, Supports), y, end, h)
     include(traits, lanes, i, m, y, y, end, end, contact, h)
+    if lanes.step_status.turns[i] < 0.0:
+        _change_branches(traits, lanes, i, m, substep, history)
     put(lanes.now, i, end)
-    if step_status.closes[i] == 0.0:
-        return
-    left, right = pivots(m, end)
-    loading = get(lanes.loading, i, Loading)
-    if step_status.left[i] >= 0.0 and contact.left_yields == 0.0:
-        loading = close_left(m, loading, left.position - m.yield_deflection * end.z_left, step_status.z_left[i])
-        lanes.supports.yield_left[i] = yield_point(m.law, lanes.supports.yield_left[i], step_status.z_left[i])
-    if step_status.right[i] >= 0.0 and contact.right_yields == 0.0:
-        loading = close_right(m, loading, right.position - m.yield_deflection * end.z_right, step_status.z_right[i])
-        lanes.supports.yield_right[i] = yield_point(m.law, lanes.supports.yield_right[i], step_status.z_right[i])
-    put(lanes.loading, i, loading)
+
+
+@kernel
+def _change_branches(traits, lanes, i, m, substep, history):
+    """Let the springs of lane ``i`` change their branches where their velocities reversed in its sub-step."""
+    before, at, step_status = get(lanes.contact, i, Contact), get(lanes.step_status, i, Turning), lanes.step_status
+    left, right = before.left_yields, before.right_yields
+    after = Contact(
+        before.left, before.right,
+        1.0 - left if step_status.left[i] >= 0.0 else left, 1.0 - right if step_status.right[i] >= 0.0 else right, 0.0,
+    )  # fmt: skip
+    put(lanes.contact, i, after)
+    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, at))
+    put(lanes.supports, i, with_yield_points(m, at, before, after, get(lanes.supports, i, Supports)))
+    if history.rows.shape[0] > 0:
+        _write_reversals(traits, lanes, i, m, substep, before, after, history)
 
 
 @system.finish.of(SpringTraits)
@@ -196,7 +204,7 @@ def finish(traits, lanes, i, t, result):
     if waiting.read[i] < 0.0:
         t_read = t
         base_left, base_right = base_of(m, y, contact, supports)
-    loading = branches(m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), y)
+    loading = branches(m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), turning(m, y))
     result.base_left = base_left - lowest.plastic[i]
     result.base_right = base_right - lowest.plastic[i]
     result.deepest_left = lowest.left[i]
@@ -209,23 +217,12 @@ def finish(traits, lanes, i, t, result):
     result.v_end, result.theta_end = y.v, y.theta
 
 
-@system.write_reversals.of(SpringTraits)
-def write_reversals(traits, lanes, i, substep, history):
-    """Write both sides of the reversals that the pass has corrected in a sub-step that stands."""
-    if history.rows.shape[0] > 0:
-        _write_reversals(traits, lanes, i, substep, history)
-
-
 @kernel
-def _write_reversals(traits, lanes, i, substep, history):
-    m, after, h = model(traits, lanes, i), get(lanes.contact, i, Contact), lanes.clock.step[i]
-    start = substep * h
+def _write_reversals(traits, lanes, i, m, substep, contact, after, history):
+    """Write both sides of the reversals that change the ``contact`` of lane ``i`` to that ``after`` its sub-step."""
+    start, number = substep * lanes.clock.step[i], int(lanes.clock.number[i])
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
-    y, left, right = get(lanes.now, i, State), lanes.step_status.left[i], lanes.step_status.right[i]
-    number = int(lanes.clock.number[i])
-    was_left = after.left_yields if left < 0.0 else 1.0 - after.left_yields
-    was_right = after.right_yields if right < 0.0 else 1.0 - after.right_yields
-    contact, at = Contact(after.left, after.right, was_left, was_right, 0.0), 0.0
+    y, left, right, at = get(lanes.now, i, State), lanes.step_status.left[i], lanes.step_status.right[i], 0.0
     for _ in range(2):
         of_left = left >= 0.0 and (right < 0.0 or left <= right)
         when = left if of_left else right

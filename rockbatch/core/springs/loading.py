@@ -18,46 +18,45 @@ class Loading(NamedTuple):
     work_right: float
 
 
+class Turning(NamedTuple):
+    """Unstressed positions [m] and z of both springs where they change their branches."""
+
+    unstressed_left: float
+    unstressed_right: float
+    z_left: float
+    z_right: float
+
+
 @kernel
-def _branch(m, was, now, begun, z_begun, place, z, work):
-    """Start of a spring's branch and its plastic work, brought up to an event at position ``place`` and ``z``."""
+def _branch(m, was, now, begun, z_begun, unstressed, z, work):
+    """Return the start of a spring's branch and its plastic work, brought up to an event at ``z``, ``unstressed`` there then."""
     if was == now:
         return begun, z_begun, work
-    unstressed = place - m.yield_deflection * z
-    return _closed(m, begun, z_begun, work, unstressed, z) if was != 0.0 else (unstressed, z, work)
-
-
-@kernel
-def _closed(m, begun, z_begun, work, unstressed, z):
-    """Return the same, at the end of an inelastic branch, in a spring that is unstressed at ``unstressed`` from then on."""
-    work += plastic_work(m, z_begun, z, begun - unstressed)
+    if was != 0.0:
+        work += plastic_work(m, z_begun, z, begun - unstressed)
     return unstressed, z, work
 
 
 @kernel
-def branches(m, loading, before, after, y):
-    """Return the Loading of both springs, brought up to an event that changed the contacts from ``before`` to ``after``."""
-    at = geometry(m, y.theta)
+def branches(m, loading, before, after, at):
+    """Return the Loading of both springs, brought up to a change of the contacts from ``before`` to ``after``.
+
+    ``at`` has unstressed positions [m] and z of both springs at the change of each (Turning).
+    """
     left, z_left, work_left = _branch(
         m, before.left_yields, after.left_yields,
-        loading.left, loading.z_left, y.v + at.lift_left, y.z_left, loading.work_left,
+        loading.left, loading.z_left, at.unstressed_left, at.z_left, loading.work_left,
     )  # fmt: skip
     right, z_right, work_right = _branch(
         m, before.right_yields, after.right_yields,
-        loading.right, loading.z_right, y.v + at.lift_right, y.z_right, loading.work_right,
+        loading.right, loading.z_right, at.unstressed_right, at.z_right, loading.work_right,
     )  # fmt: skip
     return Loading(left, z_left, work_left, right, z_right, work_right)
 
 
 @kernel
-def close_left(m, loading, unstressed, z):
-    """Return the Loading once the left spring has left its inelastic branch at ``z``, then unstressed at ``unstressed``."""
-    left, z_left, work_left = _closed(m, loading.left, loading.z_left, loading.work_left, unstressed, z)
-    return Loading(left, z_left, work_left, loading.right, loading.z_right, loading.work_right)
-
-
-@kernel
-def close_right(m, loading, unstressed, z):
-    """Do the same for the right spring."""
-    right, z_right, work_right = _closed(m, loading.right, loading.z_right, loading.work_right, unstressed, z)
-    return Loading(loading.left, loading.z_left, loading.work_left, right, z_right, work_right)
+def turning(m, y):
+    """Return the Turning of springs that change their branches in state ``y``."""
+    at, soft = geometry(m, y.theta), m.yield_deflection
+    left, right = y.v + at.lift_left - soft * y.z_left, y.v + at.lift_right - soft * y.z_right
+    return Turning(left, right, y.z_left, y.z_right)

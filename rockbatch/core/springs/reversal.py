@@ -23,6 +23,7 @@ class Reversal(NamedTuple):
 
     after: float  # time from the reversal to the end of the step [s], above 0 if it happened
     z: float  # at the reversal
+    unstressed: float  # position then [m]
     added: float  # z at the end of the step, that the other branch has added
     softness: (
         float  # δ_y dz per change of the pivot's position at the end of the step: 1 − |z|ⁿ on the inelastic branch
@@ -83,11 +84,20 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     added = stiffness_loss(m, _size(middle)) * abs(unit)
     unloads = (sign if happened else -0.5 - sign) < 0.0  # the branch at the end is elastic; sign is −1 on the other one
     z = z_end - unit + (added if unloads else 0.0)
-    # Two reversals: the parabola through both velocities and the way between them may dip below zero
-    speed0, speed1 = h * w0, h * w1
-    sag = 1.5 * (speed0 + speed1) - 3.0 * sign * way
-    once = 1.0 if happened else min(speed0, speed1) + h * rest - 0.5 * sag
-    return Reversal(share * h, z, added, 1.0 if unloads else 1.0 - part, min(once, SHARP - added))
+    surely = 1.0 if happened else once(sign, start, end, h) + h * rest
+    unstressed = end.position - m.yield_deflection * (z + unit)
+    return Reversal(share * h, z, unstressed, added, 1.0 if unloads else 1.0 - part, min(surely, SHARP - added))
+
+
+@inlined
+def once(sign, start, end, h):
+    """Return a number [m], negative by more than rounding if a velocity that has ``sign`` at both ends may reverse twice between.
+
+    The parabola through both velocities and the way between them may dip below zero.
+    """
+    speed, speed_end = h * (sign * start.velocity), h * (sign * end.velocity)
+    sag = 1.5 * (speed + speed_end) - 3.0 * sign * (end.position - start.position)
+    return min(speed, speed_end) - 0.5 * sag
 
 
 @inlined
