@@ -15,6 +15,7 @@ from typing import Any
 import numba
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+from numba.core.registry import CPUDispatcher
 from numba.extending import overload, register_jitable
 
 _CORE = Path(__file__).parent
@@ -116,26 +117,31 @@ class _OnlyPartCompiler(_PartCompiler):
 _PART: dict[str, Any] = {"no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
 
 
-def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block; it is linked into the entries that use it."""
-    return _guarded(numba.njit(**_OPTIONS | _PART)(function))
+class _Guarded(CPUDispatcher):
+    """Dispatcher of a building block that Python calls through a kernel made for it: as it is, a call would end the process."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return _through(self)(*arguments)
+
+
+@functools.cache
+def _through(block: Any) -> Any:
+    @numba.njit(**_OPTIONS)
+    def through(*arguments):
+        return block(*arguments)
+
+    return through
 
 
 def _guarded(dispatcher: Any) -> Any:
-    """Let Python call a building block without a wrapper through a kernel made for it; as it is, a call would end the process."""
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
-        return dispatcher
-
-    class Guarded(type(dispatcher)):  # type: ignore[misc]
-        def __call__(self, *arguments: Any) -> Any:
-            return through(*arguments)
-
-    @numba.njit(**_OPTIONS)
-    def through(*arguments):
-        return dispatcher(*arguments)
-
-    dispatcher.__class__ = Guarded
+    if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        dispatcher.__class__ = _Guarded
     return dispatcher
+
+
+def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a building block; it is linked into the entries that use it."""
+    return _guarded(numba.njit(**_OPTIONS | _PART)(function))
 
 
 def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
