@@ -25,7 +25,9 @@ class StepStatus(NamedTuple):
     """Outcome of the pass, and, where ``turns`` is negative, the velocity reversals that it has corrected."""
 
     kind: float
-    turns: float  # least velocity of both springs at the end, with the signs of their branches [m/s]: < 0 after a reversal
+    turns: (
+        float  # least velocity of both springs at the end, with the signs of their branches [m/s]: < 0 after a reversal
+    )
     surely: float  # positive unless there may be two reversals of a spring, or one that is too sharp for a correction
     left: float  # when the left velocity reversed [s], UNSET without a reversal
     right: float
@@ -53,7 +55,7 @@ def _range(m, start, end, h):
     third_of_z = third * m.stiffness
     down, down_end = min(start.velocity, 0.0), max(end.velocity, 0.0)
     return Range(
-        min(start.position + third * down, end.position - third * down_end),
+        min(end.position - third * down_end, start.position + third * down),
         third_of_z * max(start.velocity, 0.0), third_of_z * max(-end.velocity, 0.0),
         third_of_z * down, third_of_z * down_end,
     )  # fmt: skip
@@ -61,12 +63,15 @@ def _range(m, start, end, h):
 
 @inlined
 def _clear(m, on_spring, yields, support, point, start, end, z, z_end, within, h):
-    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield ``point``."""
-    contact = -max(z + within.rise, z_end + within.rise_end)
+    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield ``point``.
+
+    What may be no number comes first in maxima and minima: then they are none either.
+    """
+    contact = -max(z_end + within.rise_end, z + within.rise)
     if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
-    until_yield = min(z + within.fall, z_end - within.fall_end) - point
+    until_yield = min(z_end - within.fall_end, z + within.fall) - point
     gap = within.lowest - top(m, support, z_end)  # a support creeps up
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
