@@ -74,7 +74,7 @@ def passes(traits, lanes_table, runs, ground, count):
         start_clock(lanes, i, i, runs[i], at_rest(m), math.atan2(m.half_width, m.height), 0.0)
         read_ground(lanes, i, ground)
         lanes.step_status.watched[i] = 0.0
-        to_right = 1.0 if ground[0, 0] + ground[0, 1] < 0.0 else 0.0  # where it turns: no velocity reverses
+        to_right = 1.0 if (ground[0, 0] if ground[0, 0] != 0.0 else ground[0, 1]) < 0.0 else 0.0  # no velocity reverses
         lanes.contact.left_yields[i], lanes.contact.right_yields[i] = 1.0 - to_right, to_right
     for k in range(count):
         one_pass(traits, lanes, len(runs), k, SETTINGS)

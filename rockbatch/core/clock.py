@@ -19,7 +19,7 @@ UNSET = -1.0
 """Of a time or a number of a sample that is not known yet."""
 
 CALM, ATTEND, EVENTFUL = 0.0, 1.0, 2.0
-"""Step status of a lane after a pass: calm; the sub-step stands, but an extreme or a branch that has ended is to be taken in;
+"""Step status of a lane after a pass: calm; the sub-step stands, but an extreme or a reversal is to be taken in;
 it may not stand, and has to be taken event by event."""
 
 

@@ -87,6 +87,13 @@ def excess(d0, d1, h):
     return 4.0 / 27.0 * h * (abs(d0) + abs(d1))
 
 
+@inlined
+def inner_points(f0, d0, f1, d1, h):
+    """Return the inner two of the four Bézier points of a Hermite cubic, which runs between the least and the greatest of all."""
+    third = h * (1.0 / 3.0)
+    return f0 + third * d0, f1 - third * d1
+
+
 @kernel
 def _extremes(f0, d0, f1, d1, h):
     """Return the times in (0, h) of the Hermite cubic's maximum and minimum; −1 for none."""
@@ -110,8 +117,8 @@ def falls(f0, d0, f1, d1, h):
     One that starts on its own surface, or a rounding below it, counts once it has left it. Where the cubic does
     not show that it has, half of the time is the guess. One that falls and rises again within the step has fallen.
     """
-    third = h * (1.0 / 3.0)
-    if f0 >= 0.0 and min(f0 + third * d0, f1 - third * d1, f1) > 0.0:  # the Bézier points, between which the cubic runs
+    early, late = inner_points(f0, d0, f1, d1, h)
+    if f0 >= 0.0 and min(early, late, f1) > 0.0:
         return -1.0
     return _falls(f0, d0, f1, d1, h)
 

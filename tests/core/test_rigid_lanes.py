@@ -1,29 +1,13 @@
 """The rigid base side by side: company changes nothing, and the pass steps over nothing that happens."""
 
-import math
-import platform
-import re
 from dataclasses import replace
 
-import numba
 import numpy as np
 import pytest
 from core_runs import block_line, run_blocks
 from core_samples import broadband, pulse
-from scipy.interpolate import CubicHermiteSpline
 
-from rockbatch.core.block.lanes import LANE
-from rockbatch.core.block.model import BlockTraits
-from rockbatch.core.clock import EVENTFUL
-from rockbatch.core.rk4 import rk4
-from rockbatch.core.run import Settings
-from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.laws import kept_sign
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, Contact, SpringTraits, State
-from rockbatch.core.springs.passing import correct_reversals
-from rockbatch.core.springs.reversal import pivots
-from rockbatch.core.system import at_rest, one_pass, rates
-from rockbatch.core.table import LANES, move, table
+from rockbatch.core.table import LANES
 from rockbatch.core.types import (
     BEFORE_EVENT,
     IMPACT_BOTH,
@@ -33,11 +17,10 @@ from rockbatch.core.types import (
     REST,
     RUNNING,
     SAMPLE,
-    Ground,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, Pier, RigidBase, YieldingBase
-from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, run_fixed, springs, written_run
+from rockbatch.pier import Damper, Pier, RigidBase
+from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, run_fixed, written_run
 from rockbatch.simulation.runs import try_all
 
 LANDINGS = (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH, REST)
@@ -156,127 +139,3 @@ def test_runs_that_were_stopped_say_that_they_are_not_over():
     results = run_blocks([line] * 40, ground_of(motion), 4, stop=1)
     assert (results.status == RUNNING).all()
     assert run_all_fixed([Run(Pier(0.2, 2.0), RigidBase(), motion)], [4], 1.0, stop) == [None]
-
-
-KINDS = {"block": (BlockTraits(), LANE), "springs": (SpringTraits(None, None, None), spring_lanes.LANE)}
-
-
-@pytest.mark.parametrize("lane", [lane for _, lane in KINDS.values()], ids=list(KINDS))
-def test_a_run_moves_to_another_lane_with_all_its_numbers(lane):
-    lanes, cells = table(lane)
-    cells[:] = np.arange(cells.size).reshape(cells.shape)
-    before = cells.copy()
-    move(cells, LANES - 1, 2)
-    numbers = [lanes[0][part][name] for part in lane.names for name in lane[part].names]
-    assert all(number[2] == number[LANES - 1] for number in numbers)
-    assert len(numbers) == len(cells)
-    assert (np.delete(cells, 2, axis=1) == np.delete(before, 2, axis=1)).all()
-
-
-SETTINGS = Settings(1, True, False)
-
-
-@numba.njit(error_model="numpy", _nrt=False)
-def passes(traits, lanes, count):
-    one_pass(traits, lanes, count, 0, SETTINGS)
-
-
-def lane_of(part, i, kind):
-    return kind(*(float(part[name][i]) for name in kind._fields))
-
-
-FIG5_ON_SPRINGS = springs(Pier(0.2, 1.0), YieldingBase(50.0, eta=2.2))
-
-
-def random_lanes(rng, law):
-    """Return a table of piers on springs of ``law`` that hardly touch their supports, or hang right above them, and shake."""
-    lanes, m = table(spring_lanes.LANE)[0], FIG5_ON_SPRINGS._replace(law=law)
-    lane, soft = lanes[0], m.yield_deflection
-    for name, _ in spring_lanes.NUMBERS:
-        lane.model[name][:] = 5.0 if name == "exponent" else getattr(m, name)
-    h = rng.uniform(0.1, 0.4, LANES) * math.sqrt(soft / m.yield_force)
-    lane.clock.step[:], lane.clock.rest[:] = h, at_rest(m)
-    lane.peak.theta[:], lane.lowest.left[:], lane.lowest.right[:] = 1.0, -1.0, -1.0  # no extremes
-    left_on, right_on = rng.integers(0, 2, LANES), rng.integers(0, 2, LANES)
-    lane.contact.left[:], lane.contact.right[:] = left_on, right_on
-    speeds = rng.normal(0.0, 0.05 * soft, (2, LANES)) / h
-    lane.now.v_rate[:], lane.now.omega[:] = speeds.mean(axis=0), (speeds[0] - speeds[1]) / (2.0 * m.half_width)
-    for side, on, speed in (("left", left_on, speeds[0]), ("right", right_on, speeds[1])):
-        lane.contact[f"{side}_yields"][:] = on * (speed < 0.0) * (law == BOUC_WEN)
-        lane.now[f"z_{side}"][:] = -on * rng.uniform(0.0, 0.02, LANES)
-        lane.supports[side][:] = -rng.uniform(0.0, 0.02 * soft, LANES)
-        lane.supports[f"yield_{side}"][:] = -1.0
-    lane.ground.horizontal[:], lane.ground.vertical[:] = rng.normal(0.0, 20.0, (2, LANES))
-    return lanes, m
-
-
-@pytest.mark.parametrize("law", [ELASTIC, BOUC_WEN], ids=["elastic", "bouc-wen"])
-def test_where_the_pass_on_springs_sees_nothing_no_pivot_separates_lands_or_turns_back(law):
-    """Of cubics through both ends of the sub-step at 200 places, and of velocities in 16 parts of it."""
-    rng, share, calm, humps = np.random.default_rng(5), np.linspace(0.0, 1.0, 201), 0, 0
-    for _ in range(100):
-        lanes, m = random_lanes(rng, law)
-        before = lanes.copy()[0]
-        passes(SpringTraits(None, None, None), lanes[0], LANES)
-        for i in np.flatnonzero((lanes[0].step_status.kind < EVENTFUL) & (lanes[0].step_status.turns >= 0.0)):
-            y, contact = lane_of(before.now, i, State), lane_of(before.contact, i, Contact)
-            a, c, h = before.ground.horizontal[i], before.ground.vertical[i], before.clock.step[i]
-            path = [y]
-            for _ in range(16):
-                path.append(
-                    rk4(m, None, path[-1], rates(m, path[-1], contact, a, c), contact, Ground(a, 0.0, c, 0.0), h / 16)
-                )
-            end = lane_of(lanes[0].end, i, State)
-            k, k_end = rates(m, y, contact, a, c), rates(m, end, contact, a, c)
-            signs = (
-                kept_sign(m.law, contact.left, contact.left_yields),
-                kept_sign(m.law, contact.right, contact.right_yields),
-            )
-            for j, (side, sign) in enumerate(zip(("left", "right"), signs, strict=True)):
-                start, stop = pivots(m, y)[j], pivots(m, end)[j]
-                if getattr(contact, side) != 0.0:
-                    ends = [-getattr(each, f"z_{side}") for each in (y, k, end, k_end)]
-                else:
-                    support = before.supports[side][i]
-                    ends = [start.position - support, start.velocity, stop.position - support, stop.velocity]
-                between = CubicHermiteSpline([0.0, h], ends[::2], ends[1::2])(share * h)
-                assert between.min() > 0.0
-                assert all(
-                    sign * pivots(m, each)[j].velocity > -1e-4 * abs(start.velocity) - at_rest(m) for each in path
-                )
-                calm, humps = calm + 1, humps + (between.min() < 0.999 * min(ends[0], ends[2]))
-    assert calm > 400
-    assert humps > 20
-
-
-@numba.njit(error_model="numpy", _nrt=False)
-def corrections(traits, lanes, i):
-    correct_reversals(traits, lanes, i)
-
-
-def machine_code(function, *arguments):
-    function(*arguments)
-    code = function.inspect_asm(tuple(map(numba.typeof, arguments)))
-    return code[: code.index("_ZN7cpython")]
-
-
-def single_products(code):
-    return len(re.findall(r"\bv?mulsd\b", code))
-
-
-@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="looks for the instructions of x86-64")
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_pass_is_vector_instructions(kind):
-    """As many products of several numbers at once as of one, which the lanes that are left over take; and no calls.
-
-    Springs that have reversed are corrected one by one. 0.95 of springs: in their loops a few products of one number are of
-    all lanes. No store is under a mask of a vector register, which takes some processors as long as ten others.
-    """
-    traits, lane = KINDS[kind]
-    lanes = table(lane)[0][0]
-    body = machine_code(passes, traits, lanes, LANES)
-    alone = single_products(machine_code(corrections, traits, lanes, 0)) if kind == "springs" else 0
-    packed, single = len(re.findall(r"\bv?mulpd\b", body)), single_products(body) - alone
-    assert packed >= {"block": 1.0, "springs": 0.95}[kind] * single > 60
-    assert not re.findall(r"\bcall\w*\b.*\b(sin|cos)\b", body)
-    assert not re.findall(r"\bvp?maskmov\w+\s+%\w+, %\w+, [^%]*\(", body)

@@ -10,16 +10,10 @@ from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
 from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ground_at, peak_at_end
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
+from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
 from rockbatch.core.table import get
 from rockbatch.core.trigonometry import FLAT
-
-
-@inlined
-def _inner_points(side, y, end, h):
-    """Return the tilt [rad] at the inner two of the four Bézier points of the cubic from ``y`` to ``end``, which bound it."""
-    third = h * (1.0 / 3.0)
-    return side * (y.theta + third * y.omega), side * (end.theta - third * end.omega)
 
 
 @inlined
@@ -44,9 +38,9 @@ def _pass_over(lanes, i, substep, settings):
     vertical_end = ground.vertical + h * ground.vertical_slope
     down = m.gravity + min(ground.vertical, vertical_end)
     strongest = max(abs(ground.horizontal), abs(horizontal_end))
-    early, late = _inner_points(side, y, end, h)
-    tilt_end = side * end.theta
-    tilt, lowest, highest = side * y.theta, min(early, late), max(early, late)
+    tilt, tilt_end = side * y.theta, side * end.theta
+    early, late = inner_points(tilt, side * y.omega, tilt_end, side * end.omega, h)
+    lowest, highest = min(early, late), max(early, late)
     stays = min(tilt_end, lowest, FLAT - max(tilt, tilt_end), 1.0 if tilt >= 0.0 else -1.0)
     # (F1) of the normal force, with φ² for sin²φ beyond 2α, ½ or |φ| for sin φ cos φ, and 1 for cos φ
     bounds, beyond = lanes.bounds, max(highest, max(tilt, tilt_end)) - model.alpha[i]

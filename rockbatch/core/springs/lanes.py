@@ -12,7 +12,7 @@ from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events  # noqa: F401  answers of the springs
 from rockbatch.core.springs.ending import Waiting, base_of
 from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
-from rockbatch.core.springs.loading import Loading, Turning, branches, turning
+from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import StepStatus
 from rockbatch.core.springs.reversal import pivots
@@ -153,7 +153,7 @@ def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
 @system.after_event.of(SpringTraits)
 def after_event(traits, lanes, i, m, before, after, y):
     """Keep where the branches of the springs began, and the plastic work of those that have ended."""
-    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, turning(m, y)))
+    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, branch_change(m, y)))
 
 
 @system.after_step.of(SpringTraits)
@@ -173,7 +173,7 @@ def attend(traits, lanes, i, substep, history):
     if system.airborne(m, contact):
         include_height(lanes, i, m, get(lanes.supports, i, Supports), y, end, h)
     include(traits, lanes, i, m, y, y, end, end, contact, h)
-    if lanes.step_status.turns[i] < 0.0:
+    if lanes.step_status.keeps[i] < 0.0:
         _change_branches(traits, lanes, i, m, substep, history)
     put(lanes.now, i, end)
 
@@ -181,7 +181,7 @@ def attend(traits, lanes, i, substep, history):
 @kernel
 def _change_branches(traits, lanes, i, m, substep, history):
     """Let the springs of lane ``i`` change their branches where their velocities reversed in its sub-step."""
-    before, at, step_status = get(lanes.contact, i, Contact), get(lanes.step_status, i, Turning), lanes.step_status
+    before, at, step_status = get(lanes.contact, i, Contact), get(lanes.step_status, i, BranchChange), lanes.step_status
     left, right = before.left_yields, before.right_yields
     after = Contact(
         before.left, before.right,
@@ -204,7 +204,9 @@ def finish(traits, lanes, i, t, result):
     if waiting.read[i] < 0.0:
         t_read = t
         base_left, base_right = base_of(m, y, contact, supports)
-    loading = branches(m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), turning(m, y))
+    loading = branches(
+        m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), branch_change(m, y)
+    )
     result.base_left = base_left - lowest.plastic[i]
     result.base_right = base_right - lowest.plastic[i]
     result.deepest_left = lowest.left[i]

@@ -18,7 +18,7 @@ class Loading(NamedTuple):
     work_right: float
 
 
-class Turning(NamedTuple):
+class BranchChange(NamedTuple):
     """Unstressed positions [m] and z of both springs where they change their branches."""
 
     unstressed_left: float
@@ -41,7 +41,7 @@ def _branch(m, was, now, begun, z_begun, unstressed, z, work):
 def branches(m, loading, before, after, at):
     """Return the Loading of both springs, brought up to a change of the contacts from ``before`` to ``after``.
 
-    ``at`` has unstressed positions [m] and z of both springs at the change of each (Turning).
+    ``at`` has unstressed positions [m] and z of both springs at the change of each (BranchChange).
     """
     left, z_left, work_left = _branch(
         m, before.left_yields, after.left_yields,
@@ -55,8 +55,8 @@ def branches(m, loading, before, after, at):
 
 
 @kernel
-def turning(m, y):
-    """Return the Turning of springs that change their branches in state ``y``."""
+def branch_change(m, y):
+    """Return the BranchChange of springs that change their branches in state ``y``."""
     at, soft = geometry(m, y.theta), m.yield_deflection
     left, right = y.v + at.lift_left - soft * y.z_left, y.v + at.lift_right - soft * y.z_right
-    return Turning(left, right, y.z_left, y.z_right)
+    return BranchChange(left, right, y.z_left, y.z_right)

@@ -1,8 +1,8 @@
 """One pass over all lanes of piers on springs: a sub-step each, and whether it stands.
 
-The compiler turns the loops into vector instructions, several lanes at once, because nothing in them branches and nothing
-sums over lanes. Each lane has its own pier, motion, step and time, and its arithmetic does not see its neighbours: a run
-comes to the same bits in any company.
+The compiler turns its first and last loop into vector instructions, several lanes at once, because nothing in them branches
+and nothing sums over lanes. Each lane has its own pier, motion, step and time, and its arithmetic does not see its
+neighbours: a run comes to the same bits in any company.
 """
 
 import math
@@ -22,12 +22,10 @@ from rockbatch.core.table import NONE, get, put
 
 
 class StepStatus(NamedTuple):
-    """Outcome of the pass, and, where ``turns`` is negative, the velocity reversals that it has corrected."""
+    """Outcome of the pass; the reversals that it has corrected are those of the sub-step only where ``keeps`` is negative."""
 
     kind: float
-    turns: (
-        float  # least velocity of both springs at the end, with the signs of their branches [m/s]: < 0 after a reversal
-    )
+    keeps: float  # negative if a spring's velocity has lost the sign that it keeps on its branch [m/s]
     surely: float  # positive unless there may be two reversals of a spring, or one that is too sharp for a correction
     left: float  # when the left velocity reversed [s], UNSET without a reversal
     right: float
@@ -42,9 +40,9 @@ class Range(NamedTuple):
     """Bounds on a pivot within a sub-step: Bézier points of the cubic through its ends, which runs between them."""
 
     lowest: float  # position [m]
-    rise: float  # by how much z may be above that at the start, and at the end
-    rise_end: float
-    fall: float  # and below it
+    rise: float  # by how much z may be above that at the start
+    rise_end: float  # and above that at the end
+    fall: float  # and by how much it may be below
     fall_end: float
 
 
@@ -53,9 +51,9 @@ def _range(m, start, end, h):
     """Return the Range of a pivot. z moves no faster than the pivot's velocity/δ_y, and in its direction."""
     third = h * (1.0 / 3.0)
     third_of_z = third * m.stiffness
-    down, down_end = min(start.velocity, 0.0), max(end.velocity, 0.0)
+    down, down_end = max(-start.velocity, 0.0), max(end.velocity, 0.0)
     return Range(
-        min(end.position - third * down_end, start.position + third * down),
+        min(end.position - third * down_end, start.position - third * down),
         third_of_z * max(start.velocity, 0.0), third_of_z * max(-end.velocity, 0.0),
         third_of_z * down, third_of_z * down_end,
     )  # fmt: skip
@@ -71,7 +69,7 @@ def _clear(m, on_spring, yields, support, point, start, end, z, z_end, within, h
     if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
-    until_yield = min(z_end - within.fall_end, z + within.fall) - point
+    until_yield = min(z_end - within.fall_end, z - within.fall) - point
     gap = within.lowest - top(m, support, z_end)  # a support creeps up
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
@@ -103,17 +101,17 @@ def _stepped(traits, lanes, i, substep):
     m, h = model(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = get(lanes.now, i, State), _free(lanes, i), ground_at(lanes, i, substep * h)
     k = rates(m, y, contact, ground.horizontal, ground.vertical)
-    lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega
+    lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # all that a correction takes
     end = rk4(m, None, y, k, contact, ground, h)
     put(lanes.end, i, end)
     (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
-    lanes.step_status.turns[i] = lanes.clock.rest[i] + min(sign_left * left.velocity, sign_right * right.velocity)
+    lanes.step_status.keeps[i] = lanes.clock.rest[i] + min(sign_left * left.velocity, sign_right * right.velocity)
 
 
 @inlined
 def _next_turned(lanes, i, count):
     """Return the first lane from ``i`` on in which a velocity has reversed; ``count`` if there is none."""
-    while i < count and lanes.step_status.turns[i] >= 0.0:
+    while i < count and not lanes.step_status.keeps[i] < 0.0:  # an empty lane has no number there
         i += 1
     return i
 
@@ -154,9 +152,9 @@ def _judged(traits, lanes, i, substep, settings):
         m, contact.right, contact.right_yields, supports.right[i], supports.yield_right[i],
         right, right_end, y.z_right, end.z_right, in_right, h,
     )  # fmt: skip
-    once_left, once_right = once(sign_left, left, left_end, h), once(sign_right, right, right_end, h)
-    turned = step_status.turns[i] < 0.0
-    surely = step_status.surely[i] if turned else min(once_left, once_right) + h * lanes.clock.rest[i]
+    rest, turned = lanes.clock.rest[i], step_status.keeps[i] < 0.0
+    once_left, once_right = once(sign_left, rest, left, left_end, h), once(sign_right, rest, right, right_end, h)
+    surely = step_status.surely[i] if turned else min(once_left, once_right)
     tilt_end = abs(end.theta)
     clear = min(clear_left, clear_right, surely, ON_ITS_SIDE - tilt_end)
     stands = min(clear, (0.5 if settings.locate else -0.5) - step_status.watched[i]) > 0.0  # never of what is no number

@@ -62,7 +62,7 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     Parameters
     ----------
     sign : float
-        Of :func:`rockbatch.core.laws.kept_sign`.
+        Of :func:`rockbatch.core.springs.laws.kept_sign`.
     rest : float
         Velocity that counts as none [m/s].
     acceleration : float
@@ -84,20 +84,20 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     added = stiffness_loss(m, _size(middle)) * abs(unit)
     unloads = (sign if happened else -0.5 - sign) < 0.0  # the branch at the end is elastic; sign is −1 on the other one
     z = z_end - unit + (added if unloads else 0.0)
-    surely = 1.0 if happened else once(sign, start, end, h) + h * rest
+    surely = 1.0 if happened else once(sign, rest, start, end, h)
     unstressed = end.position - m.yield_deflection * (z + unit)
     return Reversal(share * h, z, unstressed, added, 1.0 if unloads else 1.0 - part, min(surely, SHARP - added))
 
 
 @inlined
-def once(sign, start, end, h):
-    """Return a number [m], negative by more than rounding if a velocity that has ``sign`` at both ends may reverse twice between.
+def once(sign, rest, start, end, h):
+    """Return a number [m], negative if a velocity that has ``sign`` at both ends may reverse twice between.
 
     The parabola through both velocities and the way between them may dip below zero.
     """
     speed, speed_end = h * (sign * start.velocity), h * (sign * end.velocity)
     sag = 1.5 * (speed + speed_end) - 3.0 * sign * (end.position - start.position)
-    return min(speed, speed_end) - 0.5 * sag
+    return min(speed, speed_end) + h * rest - 0.5 * sag
 
 
 @inlined

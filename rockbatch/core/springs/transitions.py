@@ -116,13 +116,13 @@ def handle(m, y, contact, supports, which, rest, horizontal, vertical):
 
 
 @kernel
-def with_yield_points(m, y, before, after, supports):
-    """Return ``supports`` with the yield points of springs that have left their inelastic branch in state ``y``."""
+def with_yield_points(m, at, before, after, supports):
+    """Return ``supports`` with the yield points of springs that have left their inelastic branch, at the z that ``at`` has."""
     left, right = supports.yield_left, supports.yield_right
     if before.left_yields > after.left_yields:
-        left = yield_point(m.law, left, y.z_left)
+        left = yield_point(m.law, left, at.z_left)
     if before.right_yields > after.right_yields:
-        right = yield_point(m.law, right, y.z_right)
+        right = yield_point(m.law, right, at.z_right)
     return Supports(supports.left, supports.right, left, right)
 
 
