@@ -252,8 +252,15 @@ def _scatter(axes: Axes, runs: "pd.DataFrame", norm: LogNorm) -> None:
         along.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.8)))
 
 
+def _to_12_digits(value: float) -> float:
+    return float(f"{value:.12g}")
+
+
 def _with_groups(runs: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves."""
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
+
+    To 12 digits: an axis cannot be as narrow as rounding.
+    """
     varied = info["varied"]
     piers = {case_key(case["case"], case["columns"], varied): case["pier"] for case in info["cases"]}
     ground = {record["record"]: (record["pga_g"], record["pgv_m_s"]) for record in info["records"]}
@@ -264,5 +271,7 @@ def _with_groups(runs: "pd.DataFrame", info: Mapping[str, Any]) -> "pd.DataFrame
         pga, pgv = ground[row["record"]]
         frequency.append(pga * pier["gravity"] / (pgv * pier["p"]) if pgv else math.nan)
         intensity.append(row["scale"] * pga / math.tan(pier["alpha"]))
-    table = runs.assign(frequency=frequency, intensity=intensity)
+    table = runs.assign(
+        frequency=[_to_12_digits(x) for x in frequency], intensity=[_to_12_digits(x) for x in intensity]
+    )
     return table[table["frequency"] > 0]

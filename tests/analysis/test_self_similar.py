@@ -12,6 +12,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.errors import InputError
+from rockbatch.results.plots import plot_self_similar
 
 AXES = {"omega_g_over_p": [3.0, 6.0], "points": 4, "pga_over_g_tan_alpha": [1.5, 2.5]}
 E = 0.9
@@ -208,3 +209,8 @@ def test_peaks_are_drawn_where_their_intensity_and_frequency_are(tmp_path):
     np.testing.assert_allclose(np.sort(shown, axis=0), np.sort(expected, axis=0), rtol=1e-6)
     with pytest.raises(InputError, match='must be "records" or "self-similar"'):
         results.plot(axes="self similar")
+    records = [
+        record | {"pgv_m_s": record["pgv_m_s"] * (1.0 + i * 2.0**-52)}
+        for i, record in enumerate(results.info["records"])
+    ]
+    plot_self_similar(results.peaks, results.info | {"records": records}, 160.0)  # not narrower than rounding
