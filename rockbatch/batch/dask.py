@@ -155,7 +155,7 @@ class Dask:
                 for future in self._finished_of(self._client, pending):
                     group = pending[future]
                     with starting_threads():  # of a worker that lacks them; its error comes as it was there
-                        outcomes = future.result(timeout=PATIENCE_S)
+                        outcomes = _result_of(self._client, future)
                     del pending[future]
                     yield finished(group, outcomes)
                     hand_out()
@@ -211,6 +211,15 @@ def _workers(client: "Client") -> dict[str, dict[str, Any]]:
         return {}
     listed: dict[str, dict[str, Any]] = client.sync(client.scheduler.identity, callback_timeout=GONE_S)["workers"]
     return listed
+
+
+def _result_of(client: "Client", future: "Future") -> Any:
+    """Return what a finished group came to; ``OSError`` if it does not come, after GONE_S where the scheduler falls silent."""
+    for _ in range(PATIENCE_S // GONE_S):
+        with suppress(TimeoutError):
+            return future.result(timeout=GONE_S)
+        _workers(client)
+    raise OSError(f"no result for {PATIENCE_S} s")
 
 
 def _able(workers: dict[str, dict[str, Any]]) -> set[str]:

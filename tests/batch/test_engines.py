@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
@@ -16,7 +17,7 @@ import rockbatch.batch.dask
 import rockbatch.batch.groups
 import rockbatch.batch.threads
 from rockbatch.batch.carrying_out import carry_out
-from rockbatch.batch.dask import Dask, Records, simulate
+from rockbatch.batch.dask import Dask, Records, _result_of, simulate
 from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
 from rockbatch.batch.journal import Journal
@@ -228,6 +229,38 @@ def test_a_scheduler_that_goes_or_falls_silent_is_told_in_a_sentence(file, tmp_p
         for process in (worker, scheduler, run):
             process.kill()
             process.wait()
+
+
+class Late:
+    """A future whose result does not come the first ``times``, and a client whose scheduler ``answers`` or does not."""
+
+    status = "running"
+    scheduler = SimpleNamespace(identity=None)
+
+    def __init__(self, times, answers):
+        self.times, self.answers, self.asked = times, answers, 0
+
+    def result(self, timeout):
+        self.asked += 1
+        if self.asked <= self.times:
+            raise TimeoutError
+        return "outcomes"
+
+    def sync(self, ask, callback_timeout):
+        if not self.answers:
+            raise TimeoutError
+        return {"workers": {}}
+
+
+def test_a_result_that_does_not_come_is_waited_for_only_while_the_scheduler_answers():
+    late, silent, never = Late(2, answers=True), Late(2, answers=False), Late(99, answers=True)
+    assert _result_of(late, late) == "outcomes"
+    with pytest.raises(TimeoutError):
+        _result_of(silent, silent)
+    assert silent.asked == 1
+    with pytest.raises(OSError, match="no result for 60 s"):
+        _result_of(never, never)
+    assert never.asked == 6
 
 
 def test_an_empty_address_is_a_mistake_and_not_threads(file, tmp_path, capsys):
