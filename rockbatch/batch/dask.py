@@ -214,12 +214,11 @@ def _workers(client: "Client") -> dict[str, dict[str, Any]]:
 
 
 def _result_of(client: "Client", future: "Future") -> Any:
-    """Return what a finished group came to; ``OSError`` if it does not come, after GONE_S where the scheduler falls silent."""
-    for _ in range(PATIENCE_S // GONE_S):
-        with suppress(TimeoutError):
-            return future.result(timeout=GONE_S)
-        _workers(client)
-    raise OSError(f"no result for {PATIENCE_S} s")
+    """Return what a finished group came to; ``OSError`` if it does not come, soon where the scheduler is silent."""
+    with suppress(TimeoutError):
+        return future.result(timeout=GONE_S)
+    _workers(client)
+    return future.result(timeout=PATIENCE_S)
 
 
 def _able(workers: dict[str, dict[str, Any]]) -> set[str]:
