@@ -10,7 +10,8 @@ from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, inlined_once, kernel
 from rockbatch.core.rk4 import rates_with, rk4
 from rockbatch.core.roots import BISECT_AFTER, CLOSE, NEAR, TRIALS, falls
-from rockbatch.core.system import event_functions
+from rockbatch.core.system import ended, event_functions, rates, share
+from rockbatch.core.table import along
 from rockbatch.core.types import NO_EVENT, OF_PIER, Moment
 
 
@@ -58,14 +59,24 @@ def _evaluate(m, devices, now, k, rest, ground, h, place, values, slopes):
 
 
 @kernel
-def _try(m, devices, marks, start, k, rest, ground, x, h):
-    """Take a step over ``x`` [s] and evaluate the event functions at its end: the state there, and its rates."""
+def _try(m, devices, start, k, ground, x):
+    """Take a step over ``x`` [s]: the state at its end, its rates, and the pier under its devices there."""
     end = rk4(m, devices, start.y, k, start.contact, ground, x)
     there = later(ground, x)
     k_end, under = rates_with(devices, m, end, start.contact, there.horizontal, there.vertical, END)
-    now = Moment(end, start.contact, start.supports)
-    _evaluate(under, devices, now, k_end, rest, there, h, END, marks.now, marks.now_slopes)
-    return end, k_end
+    return end, k_end, under
+
+
+@inlined
+def nearby(m, start, k, end, k_end, ground, t, x):
+    """Return the state at ``x`` [s] and its rates, so near to ``end``, that of a step over ``t``, that a cubic is as good."""
+    away = (x - t) / t
+    back = along(end, start.y, -1.0)
+    bend, twist = along(along(k, k_end, 2.0), back, -3.0 / t), along(along(k, k_end, 1.0), back, -2.0 / t)
+    left = share(m, 0.5 * x)
+    y = along(end, along(k_end, along(bend, twist, away), away), x - t)
+    y, there = ended(m, y, start.y, start.contact, left * left), later(ground, x)
+    return y, rates(m, y, start.contact, there.horizontal, there.vertical)
 
 
 @kernel
@@ -126,7 +137,11 @@ def first_event(m, devices, marks, start, k, rest, ground, h, locate):
         _evaluate(m, devices, start, k, rest, ground, h, START, marks.early, marks.early_slopes)
     a, b, t, which, last = 0.0, h, h, NO_EVENT, False
     for trial in range(TRIALS + 1):
-        end, k_end = _try(m, devices, marks, start, k, rest, ground, t, h)
+        end, k_end, under = _try(m, devices, start, k, ground, t)
+        if last and which != NO_EVENT:
+            return t, which, end, k_end
+        now, there = Moment(end, start.contact, start.supports), later(ground, t)
+        _evaluate(under, devices, now, k_end, rest, there, h, END, marks.now, marks.now_slopes)
         if not locate:
             return h, _first_below(marks.now), end, k_end
         if last:
@@ -134,6 +149,9 @@ def first_event(m, devices, marks, start, k, rest, ground, h, locate):
         a, b, which, at = _narrow(marks, a, t, b)
         if (t == b) if which == NO_EVENT else (abs(a + at - t) <= CLOSE * h):
             return t, which, end, k_end
+        if devices is None and which != NO_EVENT and abs(a + at - t) <= NEAR * t:
+            y, k_there = nearby(m, start, k, end, k_end, ground, t, a + at)
+            return a + at, which, y, k_there
         halve = trial > BISECT_AFTER and trial % 2 == 0
         last = which == NO_EVENT or abs(a + at - t) <= NEAR * h or at <= CLOSE * h or trial == TRIALS - 1
         t = b if which == NO_EVENT else (0.5 * (a + b) if halve and not last else a + at)

@@ -3,18 +3,35 @@
 import functools
 import math
 
+import numba
 import numpy as np
 import pytest
 from core_samples import EVERY_KIND, FIG5, broadband, hard_case, hard_seeds, pulse, steady
 from reference_solver import reference
+from scipy.interpolate import CubicHermiteSpline
 
 import rockbatch as rb
 from rockbatch import simulate
-from rockbatch.core.roots import hermite, largest_within, turning_point
-from rockbatch.core.types import IMPACT_LEFT, IMPACT_RIGHT, SEPARATION_LEFT, SEPARATION_RIGHT, SURVIVED
+from rockbatch.core.block.equations import constrained, on_side
+from rockbatch.core.block.model import Rocking
+from rockbatch.core.ground import later
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.roots import NEAR, hermite, largest_within, turning_point
+from rockbatch.core.search import nearby
+from rockbatch.core.springs.model import Contact, State, Supports
+from rockbatch.core.system import rates
+from rockbatch.core.types import (
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    SEPARATION_LEFT,
+    SEPARATION_RIGHT,
+    SURVIVED,
+    Ground,
+    Moment,
+)
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.simulation import Run, least_substeps, run_fixed, written_run
+from rockbatch.simulation import Run, block, least_substeps, run_fixed, springs, written_run
 
 CONTACT_EVENTS = (1, 2, 3, 4)
 COARSE_SINE = pulse("sine", 0.5, dt=0.02, end=3.0)
@@ -90,6 +107,57 @@ def test_order_is_about_one_when_events_are_not_located(base, motion):
     coarse, fine = (errors(base, motion, substeps, False)[0] for substeps in (8, 128))
     assert math.log2(coarse / fine) / 4 == pytest.approx(1.0, abs=0.7)
     assert fine > 1e4 * errors(base, motion, 128, True)[0]
+
+
+@numba.njit(error_model="numpy", _nrt=False)
+def taken(m, now, ground, x):
+    """The state after a step over ``x``, and rates at its start and its end."""
+    k, there = rates(m, now.y, now.contact, ground.horizontal, ground.vertical), later(ground, x)
+    end = rk4(m, None, now.y, k, now.contact, ground, x)
+    return end, k, rates(m, end, now.contact, there.horizontal, there.vertical)
+
+
+@numba.njit(error_model="numpy", _nrt=False)
+def near_an_end(m, now, ground, t, x):
+    end, k, k_end = taken(m, now, ground, t)
+    return nearby(m, now, k, end, k_end, ground, t, x)
+
+
+def random_moment(rng, m):
+    theta, omega, v_rate = rng.normal(0.0, (0.1, 0.3, 0.3))
+    if not hasattr(m, "stiffness"):
+        contact = on_side(math.copysign(1.0, theta))
+        return Moment(constrained(m, Rocking(0.0, theta, 0.0, omega), contact), contact, None), 0.02 / m.p
+    left, right = rng.integers(0, 2, 2) * 1.0
+    y = State(0.0, theta, v_rate, omega, *-rng.uniform(0.1, 0.8, 2))
+    period = math.sqrt(m.yield_deflection / m.yield_force)
+    return Moment(y, Contact(left, right, left, right, 0.0), Supports(0.0, 0.0, -1.0, -1.0)), 0.2 * period
+
+
+@pytest.mark.parametrize(
+    "m",
+    [block(FIG5, RigidBase()), *(springs(FIG5, YieldingBase(50.0, eta=3.0, zeta=zeta)) for zeta in (None, 0.2))],
+    ids=["rigid", "bouc-wen", "damped"],
+)
+def test_a_state_near_the_end_of_a_step_is_that_of_a_step_to_there(m):
+    """To within a thousandth of that step's own error; farther away, what is not in closed form is on the cubic."""
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        now, h = random_moment(rng, m)
+        t, ground = h * rng.uniform(0.01, 1.0), Ground(*rng.normal(0.0, (5.0, 100.0, 5.0, 100.0)))
+        x, far = t * (1.0 + NEAR * rng.uniform(-1.0, 1.0)), t * rng.uniform(0.5, 1.5)
+        end, k, k_end = map(np.array, taken(m, now, ground, t))
+        middle, _, _ = taken(m, now, ground, 0.5 * t)
+        twice, _, _ = taken(m, Moment(middle, *now[1:]), later(ground, 0.5 * t), 0.5 * t)
+        error = 1e-3 * np.abs(end - twice).max() + 1e-9 * np.abs(t * k).max()
+        (near, k_near), (there, _, k_there) = near_an_end(m, now, ground, t, x), taken(m, now, ground, x)
+        assert np.abs(np.subtract(near, there)).max() <= error
+        assert t * np.abs(np.subtract(k_near, k_there)).max() <= error
+        cubic = CubicHermiteSpline([0.0, t], [now.y, end], [k, k_end])(far)
+        beyond, _ = near_an_end(m, now, ground, t, far)
+        for name in ("theta", "omega"):
+            expected = cubic[now.y._fields.index(name)]
+            assert getattr(beyond, name) == pytest.approx(expected, abs=1e-13)
 
 
 def test_several_events_in_one_step_are_taken_in_their_order():

@@ -266,7 +266,9 @@ def test_random_hard_cases_agree_with_the_reference(block):
         elsewhere += rests_elsewhere
         if left_alone:
             continue
-        if outcome.theta_max == settled.theta_max:
+        if settled.theta_max_error is None:
+            assert "chaotic" in settled.note or "lesser rotations" in settled.note, seed
+        elif outcome.theta_max == settled.theta_max:
             not_covered += error > settled.theta_max_error + 1e-9 * pier.alpha
         if "impacts" not in settled.note:
             assert abs(outcome.impacts - expected.impacts) <= 1, seed

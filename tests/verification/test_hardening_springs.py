@@ -81,7 +81,10 @@ def test_random_hard_cases_agree_with_the_reference(seeds):
 
 
 def test_yield_points_go_on_through_flights_and_landings():
-    """A vertical pulse that throws the pier up, and half of it again: on hardening springs it yields once."""
+    """A vertical pulse that throws the pier up, and half of it again: on hardening springs it yields once.
+
+    At one number of steps: which is enough is a matter of its rotation, here no more than rounding.
+    """
     t = np.arange(801) * 0.005
     kick = 14.0 * np.sin(2 * math.pi * t / 0.15) * (t < 0.15)
     found = {}
@@ -89,7 +92,7 @@ def test_yield_points_go_on_through_flights_and_landings():
         base = YieldingBase(50.0, eta=3.0, zeta=0.1, spring=spring)
         for name, vertical in (("once", kick), ("twice", np.concatenate([kick, 0.5 * kick]))):
             motion = Motion(name, 0.005, np.zeros(len(vertical)), vertical)
-            found[spring, name] = run_to_tolerance(FIG5, base, motion, 1e-6)
+            found[spring, name] = run_fixed(FIG5, base, motion, 16)
     once, twice = found["hardening", "once"], found["hardening", "twice"]
     assert twice.flights > once.flights > 0
     assert once.settlement > 0.0
