@@ -166,6 +166,6 @@ def largest_within(f0, d0, f1, d1, h, best):
 @kernel
 def lowest_within(f0, d0, f1, d1, h, best):
     """Return the least f so far, with the minimum inside this step if there is one."""
-    if d0 < 0.0 and d1 > 0.0:
+    if d0 < 0.0 and d1 > 0.0 and min(inner_points(f0, d0, f1, d1, h)) < best:
         best = min(best, hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)))
     return min(best, f1)

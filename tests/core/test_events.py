@@ -16,7 +16,7 @@ from rockbatch.core.block.equations import constrained, on_side
 from rockbatch.core.block.model import Rocking
 from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
-from rockbatch.core.roots import NEAR, hermite, largest_within, turning_point
+from rockbatch.core.roots import NEAR, hermite, largest_within, lowest_within, turning_point
 from rockbatch.core.search import nearby
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.system import rates
@@ -402,6 +402,20 @@ def test_the_greatest_of_random_cubics_is_that_of_a_grid_whatever_was_greatest_b
                 assert abs(hermite(f0, d0 / h, f1, d1 / h, h, at)) == pytest.approx(found, rel=1e-12)
             else:
                 assert (at, found) == (-1.0, best)
+
+
+def test_the_least_of_random_cubics_is_that_of_a_grid_whatever_was_least_before():
+    """Of those that fall at the start and rise at the end, and of monotonic ones."""
+    rng = np.random.default_rng(6)
+    x = np.linspace(0.0, 1.0, 2001)
+    for _ in range(300):
+        h = 10.0 ** rng.uniform(-3.0, 1.0)
+        f0, f1 = rng.normal(size=2)
+        d0, d1 = (f1 - f0, f1 - f0) if rng.random() < 0.2 else abs(rng.normal(size=2)) * (-5.0, 5.0)
+        least = CubicHermiteSpline([0.0, 1.0], [f0, f1], [d0, d1])(x).min()
+        for above in (-1.0, -1e-3, 1e-3, 1.0):
+            best = min(least + above, f0)  # the start is the end of the step before
+            assert lowest_within(f0, d0 / h, f1, d1 / h, h, best) == pytest.approx(min(best, least), abs=1e-5)
 
 
 def test_kinds_of_history_rows_are_the_ones_compared_here():
