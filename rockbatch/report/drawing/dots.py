@@ -5,6 +5,7 @@ Places along the axis are shares of the width, so that nothing but the axis stre
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from rockbatch.report.drawing.axes import Scale, written
 from rockbatch.report.drawing.svg import NO_PEAK, Entry, ends, key, marker, sign_of, style_of, text
 from rockbatch.report.finished import as_dicts
 from rockbatch.report.labels import Series
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, escape, join, number, tag
 from rockbatch.report.table import THETA, THETA_FORMAT
 
 FIRST, LAST = 1.5, 97.0
@@ -113,7 +114,7 @@ def _across(theta: float, top: float) -> float:
     return round(FIRST + (LAST - FIRST) * theta / top, 1)
 
 
-def _line(x: float, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
+def _line(x: float | str, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
     return tag("line", *content, x1=f"{x}%", x2=f"{x}%", y1=high, y2=low, class_=class_)
 
 
@@ -137,14 +138,19 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
 
 
 def _mark(run: Run, x: float, marks: Marks) -> Markup:
-    title = marks.describe(run)
-    if marks.series is None:
-        return tag("circle", tag("title", title), cx=f"{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
-    series = marks.series[run["series"]]
+    series = None if marks.series is None else marks.series[run["series"]]
+    return Markup(_template(series).format(x=x, said=escape(marks.describe(run))))
+
+
+@cache
+def _template(series: Series | None) -> Markup:
+    """Return a mark with {x} where its position [% of the width] stands, and {said} for its tooltip: thousands are alike."""
+    if series is None:
+        return tag("circle", tag("title", "{said}"), cx="{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
     if series.rigid:
-        return _line(x, f"rigid d{series.index % 4}", tag("title", title), low=MIDDLE + 7, high=MIDDLE - 7)
+        return _line("{x}", f"rigid d{series.index % 4}", tag("title", "{said}"), low=MIDDLE + 7, high=MIDDLE - 7)
     shape, colour = style_of(series.index)
-    return marker(shape, f"{x}%", MIDDLE, colour=f"s{colour}", title=title)
+    return marker(shape, "{x}%", MIDDLE, colour=f"s{colour}", title="{said}")
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
