@@ -109,12 +109,15 @@ def start_clock(lanes, i, number, run, rest, alpha, theta):
 
 @inlined
 def read_ground(lanes, i, ground):
-    """Read the ground at the last sample; after the record, the row behind those of its samples."""
-    clock, at = lanes.clock, lanes.ground
+    """Read the ground at the last sample; zero after the record."""
+    at, sample = lanes.ground, lanes.clock.sample[i]
+    moves = sample < lanes.clock.npts[i]
     # By way of a signed integer, for which processors have an instruction; unsigned: no index from the end is looked for
-    row = np.uintp(np.intp(clock.first_row[i] + min(clock.sample[i], clock.npts[i])))
-    at.horizontal[i], at.horizontal_slope[i] = ground[row, 0], ground[row, 1]
-    at.vertical[i], at.vertical_slope[i] = ground[row, 2], ground[row, 3]
+    row = np.uintp(np.intp(lanes.clock.first_row[i] + (sample if moves else 0.0)))
+    horizontal, horizontal_slope = ground[row, 0], ground[row, 1]
+    vertical, vertical_slope = ground[row, 2], ground[row, 3]
+    at.horizontal[i], at.horizontal_slope[i] = horizontal if moves else 0.0, horizontal_slope if moves else 0.0
+    at.vertical[i], at.vertical_slope[i] = vertical if moves else 0.0, vertical_slope if moves else 0.0
 
 
 @inlined

@@ -13,15 +13,14 @@ def ground_rows(horizontal, vertical, dt):
 
     Returns
     -------
-    ndarray, shape (npts + 1, 4)
-        The last row is that of all times after the record: zero.
+    ndarray, shape (npts, 4)
     """
-    rows = np.zeros((len(horizontal) + 1, 4))
+    rows = np.zeros((len(horizontal), 4))
     for column, samples in ((0, horizontal), (2, vertical)):
         if len(samples):
-            rows[:-1, column] = samples
+            rows[:, column] = samples
             with np.errstate(over="ignore"):  # a run through such a spike ends as not finite, and says so
-                rows[:-1, column + 1] = np.diff(samples, append=0.0) / dt
+                rows[:, column + 1] = np.diff(samples, append=0.0) / dt
     return rows
 
 

@@ -268,7 +268,7 @@ def fastest_rate(pier: Pier, base: Base) -> float:
 
 
 def ground_of(motion: Motion) -> Samples:
-    """Return a motion as the core takes it, shape (npts + 1, 4); see :func:`rockbatch.core.ground.ground_rows`."""
+    """Return a motion as the core takes it, shape (npts, 4); see :func:`rockbatch.core.ground.ground_rows`."""
     vertical = () if motion.vertical is None else motion.vertical
     return ground_rows(motion.horizontal, vertical, float(motion.dt))
 

@@ -210,7 +210,7 @@ sizes = {{"first": "{len(undisturbed) // 2}", "second": "{len(undisturbed) * 3 /
 for name, size in sizes.items():
     way = "remount" if name != "first" else "rw"
     if subprocess.run(["mount", "-t", "tmpfs", "-o", f"{{way}},size={{size}}", "none", "{disk}"]).returncode:
-        sys.exit(99)
+        sys.exit(99 if name == "first" else "the disk cannot be made larger")
     with open(f"{kept}/{{name}}", "w", encoding="utf-8") as said, contextlib.redirect_stderr(said):
         code = main(["run", "{study}", "--out", "{disk}/out", "--jobs", "2"])
     with open("{kept}/codes", "a") as codes:

@@ -244,7 +244,7 @@ def test_random_hard_cases_agree_with_the_reference(block):
     the errors of either (one of 64 in case 206; one of 30 in case 138, which the reference misses). Where a pier rests after
     450 impacts is not settled to 1e-6 α in case 138 (5.04e-4 to 5.16e-4 rad with 1280 to 5120 substeps); its peak is held too.
     """
-    compared, other_counts, not_covered, elsewhere = 0, 0, 0, 0
+    compared, other_counts, not_covered, unclaimed, elsewhere = 0, 0, 0, 0, 0
     for seed in range(20 * block, 20 * block + 20):
         pier, base, motion = hard_case(seed)
         settled = run_to_tolerance(pier, base, motion, tolerance=1e-6, quiet_s=1.0)
@@ -267,7 +267,8 @@ def test_random_hard_cases_agree_with_the_reference(block):
         if left_alone:
             continue
         if settled.theta_max_error is None:
-            assert "chaotic" in settled.note or "lesser rotations" in settled.note, seed
+            assert "no error of it is claimed" in settled.note, seed
+            unclaimed += 1
         elif outcome.theta_max == settled.theta_max:
             not_covered += error > settled.theta_max_error + 1e-9 * pier.alpha
         if "impacts" not in settled.note:
@@ -275,5 +276,6 @@ def test_random_hard_cases_agree_with_the_reference(block):
             other_counts += outcome.impacts != expected.impacts
     assert other_counts <= 1
     assert not_covered <= 1
+    assert unclaimed <= 1
     assert elsewhere <= 1
     assert compared >= 8

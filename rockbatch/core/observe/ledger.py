@@ -111,7 +111,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
         History as the run wrote it, every step.
     pulls : ndarray, shape (n, 2)
         Force [m/s²] and moment [m²/s²] of dampers and tendons at every row; what they take and store is not given here.
-    ground : ndarray, shape (npts + 1, 4)
+    ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
         Its sampling interval [s].

@@ -310,7 +310,7 @@ def forces_of_run(m, body, run, ground, dt, limits, out, greatest, noted):
         Of Springs the height of the deck above the pivots [m].
     run : RecordedRun
         With both sides of every event.
-    ground : ndarray, shape (npts + 1, 4)
+    ground : ndarray, shape (npts, 4)
         The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
     dt : float
         Its sampling interval [s].

@@ -41,7 +41,9 @@ def _contact_of_block(m, row):
 @kernel
 def ground_at(ground, dt, middle, t):
     """Return ground accelerations, horizontal and vertical, at ``t``, in the sampling interval in which ``middle`` lies."""
-    sample = min(int(middle / dt), len(ground) - 1)
+    sample = int(middle / dt)
+    if sample >= len(ground):
+        return 0.0, 0.0
     after = t - sample * dt
     return ground[sample, 0] + after * ground[sample, 1], ground[sample, 2] + after * ground[sample, 3]
 
