@@ -1,16 +1,17 @@
 """Step-halving error control: smaller steps until the results converge (THEORY.md, The error that a row reports)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from enum import IntEnum
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.core.clock import window_of
-from rockbatch.motions.motion import Motion
+from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, Damper, Pier
-from rockbatch.simulation.models import first_substeps, readings
+from rockbatch.simulation.models import fastest_rate, first_substeps, readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
@@ -30,13 +31,22 @@ SAME_TIME = 0.01
 SAME_FALL = 0.02
 """In units of α: tolerance on the rotations before a pier overturned."""
 
-CHANGE = 1e-8
-"""Relative change of a motion, less than a record resolves. If it changes the peak beyond the tolerance, no error is claimed."""
+CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
+"""Relative changes of a motion, less than a record resolves. A result that they change beyond the tolerance is chaotic."""
+
+MARGIN = 2.0
+"""Error that is claimed at least, over what one of :data:`CHANGES` moves: two of them do not show the greatest move."""
+
+SENSITIVE = 0.05
+"""Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
 
 COUNTS = ("impacts", "separations", "flights")
 
 FAR_BELOW = 3.0
 """An extreme that has not converged is harmless if it is below the peak by so many times its change."""
+
+SAME_COURSE = 1e-3
+"""In units of the peak: change of an extreme up to which two runs with different counts of events had the same course."""
 
 
 class Agreement(IntEnum):
@@ -45,7 +55,7 @@ class Agreement(IntEnum):
     NONE = 0
     RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not converged
     APART = 2  # likewise, and the extremes that have not converged are far below the peak
-    THROUGHOUT = 3  # in the extremes of all windows too
+    THROUGHOUT = 3  # in the extremes of all windows too, and in the counts of events unless their course is the same
 
 
 PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
@@ -77,15 +87,14 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
             outcomes[i] = _not_converged(runs[i].pier, levels.pop(i), tolerance, more)
-        unfinished, doubtful = list(levels), []
+        unfinished, doubtful = list(levels), dict[int, Trial]()
         substeps = [2 * levels[i][-1].outcome.substeps for i in unfinished]
         for i, fine in zip(unfinished, try_all([runs[i] for i in unfinished], substeps, quiet_s, stop), strict=True):
             if fine is None:
                 del levels[i]
                 continue
             pier, coarse = runs[i].pier, levels[i][-1]
-            least = _least_error(runs[i].base) * pier.alpha
-            fine = Trial(_with_errors(fine.outcome, coarse.outcome, least), fine.extremes)
+            fine = Trial(_with_errors(runs[i], fine.outcome, coarse.outcome), fine.extremes)
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
@@ -93,8 +102,8 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
                 outcomes[i] = _with_drift(runs[i], outcome)
-                if len(agreements[i]) > 1 or not _same_counts(fine.outcome, coarse.outcome):
-                    doubtful.append(i)
+                if _is_doubtful(runs[i], fine, coarse, len(agreements[i])):
+                    doubtful[i] = fine
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
@@ -107,33 +116,79 @@ def _same_counts(fine: Outcome, coarse: Outcome) -> bool:
     return all(getattr(fine, name) == getattr(coarse, name) for name in COUNTS)
 
 
+def _is_doubtful(run: Run, fine: Trial, coarse: Trial, halvings: int) -> bool:
+    """Return whether the results of a run that converged may be chaotic.
+
+    A chaotic peak magnifies the errors of steps as it does changes of the motion (THEORY.md, The error that a row reports). A
+    residual is a sum over the motion, so that its chaos is not seen in rotations.
+    """
+    outcome = fine.outcome
+    if outcome.theta_res_error is not None and (halvings > 1 or not _same_counts(outcome, coarse.outcome)):
+        return True
+    if outcome.theta_max_error is None or outcome.theta_max == 0.0:
+        return False
+    greatest, change = _windows(fine, coarse)
+    resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
+    return bool((change * greatest > SENSITIVE * run.pier.alpha * outcome.theta_max * resolved**2).any())
+
+
 def _look_for_chaos(
     runs: Sequence[Run],
     outcomes: list[Outcome | None],
-    doubtful: Sequence[int],
+    doubtful: Mapping[int, Trial],
     tolerance: float,
     quiet_s: float,
     stop: Stop,
 ) -> None:
-    """Drop the errors of ``doubtful`` runs whose θ_max depends on digits that no record has: their agreement is chance."""
-    checked = [
-        (i, result) for i in doubtful if (result := outcomes[i]) is not None and result.theta_max_error is not None
-    ]
-    if not checked:
-        return
-    changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + CHANGE)) for i, _ in checked]
-    perturbed = try_all(changed, [result.substeps for _, result in checked], quiet_s, stop)
-    for (i, result), trial in zip(checked, perturbed, strict=True):
-        if trial is None:
+    """Try ``doubtful`` runs under :data:`CHANGES`: their errors become no less than what these change, or are withdrawn."""
+    probes = [(i, words, change) for i in doubtful for words, change in CHANGES.items()]
+    changed = [replace(runs[i], motion=runs[i].motion.times(1.0 + change)) for i, _, change in probes]
+    trials = try_all(changed, [doubtful[i].outcome.substeps for i, _, _ in probes], quiet_s, stop)
+    for (i, words, change), probe in zip(probes, trials, strict=True):
+        outcome = outcomes[i]
+        if probe is None or outcome is None:
             outcomes[i] = None
-        elif not abs(trial.outcome.theta_max - result.theta_max) <= tolerance * runs[i].pier.alpha:
-            becomes = (
-                "overturns" if trial.outcome.status == "overturned" else f"comes to {trial.outcome.theta_max:.3g} rad"
-            )
-            chaos = (
-                f"the peak is chaotic, under a motion {CHANGE:g} stronger the pier {becomes}: no error of it is claimed"
-            )
-            outcomes[i] = result.noted(chaos, theta_max_error=None)
+            continue
+        outcome = _with_peak_of(probe, doubtful[i], outcome, tolerance * runs[i].pier.alpha, f"{abs(change):g} {words}")
+        outcomes[i] = _with_residuals_of(probe.outcome, outcome, tolerance, runs[i].pier)
+
+
+def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, changed: str) -> Outcome:
+    """Return ``outcome`` with the error of θ_max that ``probe``, under a ``changed`` motion, shows; none if it is chaotic."""
+    if outcome.theta_max_error is None:
+        return outcome
+    least = MARGIN * abs(probe.outcome.theta_max - outcome.theta_max)
+    if probe.outcome.status == outcome.status and least <= tolerance:
+        greatest, change = _windows(probe, fine)
+        if _far_below(greatest, change, change > tolerance, outcome.theta_max):
+            return outcome.changed(theta_max_error=max(outcome.theta_max_error, least))
+        becomes = "comes as near to it at another time"
+    elif probe.outcome.status == "overturned":
+        becomes = "overturns"
+    else:
+        becomes = f"comes to {probe.outcome.theta_max:.3g} rad"
+    chaos = f"the peak is chaotic, under a motion {changed} the pier {becomes}: no error of it is claimed"
+    return outcome.noted(chaos, theta_max_error=None)
+
+
+def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier: Pier) -> Outcome:
+    """Return ``outcome`` with errors of its residuals of at least what ``probe`` tells; none if they are chaotic."""
+    if outcome.theta_res_error is None:
+        return outcome
+    tilted = MARGIN * _apart(probe.theta_res, outcome.theta_res)
+    sunk = MARGIN * _apart(probe.settlement, outcome.settlement)
+    if max(tilted, sunk / pier.half_width) > tolerance * pier.alpha:
+        chaos = f"the residuals are chaotic, a motion {abs(CHANGES['weaker']):g} off moves them: no error of them is claimed"
+        return outcome.noted(chaos, theta_res_error=None, settlement_error=None)
+    settlement_error = None if outcome.settlement_error is None else max(outcome.settlement_error, sunk)
+    return outcome.changed(theta_res_error=max(outcome.theta_res_error, tilted), settlement_error=settlement_error)
+
+
+def _apart(probed: float | None, kept: float | None) -> float:
+    """Return how far two results lie apart: 0 where a run has none, infinite where the other alone has it."""
+    if kept is None:
+        return 0.0
+    return math.inf if probed is None else abs(probed - kept)
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
@@ -146,25 +201,31 @@ def _least_error(base: Base) -> float:
     return ROUGH if rough else ROUNDING
 
 
-def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
-    """Return ``fine`` with its differences from ``coarse`` as errors, ``least`` [rad] at least."""
+def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
+    """Return ``fine`` with its differences from ``coarse`` as errors."""
     if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
         return fine
-    residual = None
+    least = _least_error(run.base) * run.pier.alpha
+    errors = {"theta_max_error": max(abs(fine.theta_max - coarse.theta_max), least)}
     if fine.theta_res is not None and coarse.theta_res is not None:
-        residual = max(abs(fine.theta_res - coarse.theta_res), least)
-    return fine.changed(theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+        errors["theta_res_error"] = max(abs(fine.theta_res - coarse.theta_res), least)
+    if run.base.yields and fine.settlement is not None and coarse.settlement is not None:
+        errors["settlement_error"] = max(abs(fine.settlement - coarse.settlement), least * run.pier.half_width)
+    return fine.changed(**errors)
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the drift of the residual rotation between its readings as a part of its error.
+    """Return ``outcome`` with the drift of its residuals between their readings as a part of their errors.
 
-    The residual rotation depends by as much on when the record ends.
+    The residuals depend by as much on when the record ends.
     """
-    if outcome.theta_res_error is None or outcome.theta_res_drift is None:
+    if outcome.theta_res_error is None or outcome.settlement_error is None or outcome.theta_res_drift is None:
         return outcome
-    changed = abs(outcome.theta_res_drift) * readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
-    return outcome.changed(theta_res_error=outcome.theta_res_error + changed)
+    seconds = readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
+    return outcome.changed(
+        theta_res_error=outcome.theta_res_error + abs(outcome.theta_res_drift) * seconds,
+        settlement_error=outcome.settlement_error + abs(outcome.settlement_drift or 0.0) * seconds,
+    )
 
 
 def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
@@ -175,9 +236,7 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
     if finer.status == "failed":
         alike = finer.reason == coarser.reason and abs(finer.theta_max - coarser.theta_max) <= tolerance
         return Agreement.THROUGHOUT if alike and finer.reason in LEFT_ALONE else Agreement.NONE
-    greatest = np.fmax(fine.extremes, coarse.extremes)
-    change = np.abs(fine.extremes - coarse.extremes)
-    change[np.isnan(greatest)] = 0.0  # a window that neither has reached
+    greatest, change = _windows(fine, coarse)
     if finer.status == "overturned":
         standing = greatest < pier.alpha
         fell_together = abs(finer.t_end - coarser.t_end) <= SAME_TIME / pier.p
@@ -189,11 +248,24 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
         return Agreement.NONE
     if abs(finer.t_max - coarser.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
         return Agreement.RESULTS
-    differs = ~(change <= tolerance)
+    differs = change > tolerance
     if not differs.any():
-        return Agreement.THROUGHOUT
-    below = finer.theta_max - greatest[differs]
-    return Agreement.APART if (FAR_BELOW * change[differs] <= below).all() else Agreement.RESULTS
+        same = _same_counts(finer, coarser) or not (change > SAME_COURSE * finer.theta_max).any()
+        return Agreement.THROUGHOUT if same else Agreement.APART
+    return Agreement.APART if _far_below(greatest, change, differs, finer.theta_max) else Agreement.RESULTS
+
+
+def _windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
+    """Return the greater of two runs' extremes in each window, and how far they lie apart [rad]; 0 where neither has one."""
+    greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
+    change[np.isnan(change)] = math.inf  # a window that one of them has not reached
+    reached = ~np.isnan(greatest)
+    return np.where(reached, greatest, 0.0), np.where(reached, change, 0.0)
+
+
+def _far_below(greatest: Samples, change: Samples, differs: npt.NDArray[np.bool_], peak: float) -> bool:
+    """Return whether the extremes that differ are below the ``peak`` by several times their change."""
+    return bool((FAR_BELOW * change[differs] <= peak - greatest[differs]).all())
 
 
 def _flight(outcome: Outcome) -> float:
@@ -216,10 +288,10 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     runs that agree on it agree by chance.
     """
     finer, coarser, notes = fine.outcome, coarse.outcome, list[str]()
-    differs = np.abs(fine.extremes - coarse.extremes) > tolerance
+    greatest, change = _windows(fine, coarse)
+    differs = change > tolerance
     if extent < Agreement.THROUGHOUT and differs.any():
-        greatest = np.nanmax(np.fmax(fine.extremes, coarse.extremes)[differs])
-        notes.append(f"lesser rotations, up to {greatest:.2g} rad, have not settled")
+        notes.append(f"lesser rotations, up to {greatest[differs].max():.2g} rad, have not settled")
         if differs[: peak + 1].any() and finer.status == "ok":
             finer = finer.changed(theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")

@@ -124,9 +124,9 @@ class Outcome:
     theta_rocking, theta_lean : float or None
         Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
         the side of the peak]; if asked for.
-    theta_max_error, theta_res_error : float or None
-        Estimated errors of ``theta_max`` and ``theta_res`` [rad], the latter with what it went on changing by while it was
-        read; ``None`` with a fixed step.
+    theta_max_error, theta_res_error, settlement_error : float or None
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; those of
+        residuals with their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
     theta_res, base_tilt : float or None
         Residual rotation, static on the deformed base, and tilt of the base itself [rad].
     settlement : float or None
@@ -216,6 +216,7 @@ class Outcome:
     theta_lean: float | None = None
     theta_rocking_error: float | None = None
     theta_lean_error: float | None = None
+    settlement_error: float | None = None
 
     @property
     def was_run(self) -> bool:

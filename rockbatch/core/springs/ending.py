@@ -43,7 +43,7 @@ class Waiting(NamedTuple):
     longest: float  # sample at which waiting ends
     read_wait: float  # samples between two readings; 0 where there is nothing to read twice
     decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
-    read_by: float  # sample from which on residuals are read though the pier still steps
+    read_by: float  # sample from which on residuals are read though the pier still steps, or may turn further
     read: float  # sample of the first reading, UNSET before it
     read_left: float  # unstressed positions of both supports then [m], their difference a mean up to the second reading
     read_right: float
@@ -248,22 +248,20 @@ def over(traits, lanes, i, devices):
         return RUNNING if sample < samples else SURVIVED
     m = model(traits, lanes, i)
     y, contact, supports = moment(traits, lanes, i)
-    if decided and waiting.read[i] < 0.0:
-        if not _legible(lanes, i, contact):
-            return RUNNING
-        _read_base(lanes, i, m, y, contact, supports)
-    elif decided:
-        if sample == waiting.last_read[i] + wait:
+    if decided and waiting.read[i] < 0.0 and not _legible(lanes, i, contact):
+        return RUNNING
+    if wait > 0.0 and (decided or sample >= waiting.read_by[i]):
+        if waiting.read[i] < 0.0 or sample == waiting.last_read[i] + wait:
             _read_base(lanes, i, m, y, contact, supports)
         elif sample < waiting.read[i] + wait:
             _include_in_mean(lanes, i, m, y, contact, supports)
-        if sample < max(samples, waiting.read[i] + wait):
-            return RUNNING
+    if decided and sample < max(samples, waiting.read[i] + wait):
+        return RUNNING
     _in_devices(lanes, i, m, devices, y, contact, supports)
     final = _peak_is_final(lanes, i, m, y, contact, supports, devices)
     if final and not decided:
         waiting.decided_at[i] = sample
-        if _legible(lanes, i, contact):
+        if waiting.read[i] < 0.0 and _legible(lanes, i, contact):
             _read_base(lanes, i, m, y, contact, supports)
     if final and waiting.read[i] >= 0.0 and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
