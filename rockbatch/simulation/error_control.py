@@ -7,9 +7,10 @@ from enum import IntEnum
 
 import numpy as np
 
-from rockbatch.core.clock import window_of
+from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, Pier
+from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
@@ -33,7 +34,7 @@ SAME_FALL = 0.02
 CHANGE = 1e-8
 """Relative change of a motion, less than a record resolves. If it changes the peak beyond the tolerance, no error is claimed."""
 
-COUNTS = ("impacts", "separations", "flights")
+COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
 
 FAR_BELOW = 3.0
 """An extreme that has not converged is harmless if it is below the peak by so many times its change."""
@@ -76,7 +77,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
     while levels:
         for i in [i for i in levels if _steps_of_next(runs[i], levels[i], quiet_s) > MOST_STEPS]:
             more = f"; the next try would take {_steps_of_next(runs[i], levels[i], quiet_s):.0e} steps"
-            outcomes[i] = _not_converged(runs[i].pier, levels.pop(i), tolerance, more)
+            outcomes[i] = _not_converged(runs[i], levels.pop(i), tolerance, quiet_s, more)
         unfinished, doubtful = list(levels), []
         substeps = [2 * levels[i][-1].outcome.substeps for i in unfinished]
         for i, fine in zip(unfinished, try_all([runs[i] for i in unfinished], substeps, quiet_s, stop), strict=True):
@@ -85,19 +86,20 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 continue
             pier, coarse = runs[i].pier, levels[i][-1]
             least = _least_error(runs[i].base) * pier.alpha
-            fine = Trial(_with_errors(fine.outcome, coarse.outcome, least), fine.extremes)
+            fine = Trial(_with_errors(fine.outcome, coarse.outcome, least, pier), fine.extremes)
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
                 samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
                 peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
+                outcome = _with_peak_in_motion(outcome, fine, coarse, runs[i], tolerance, quiet_s)
                 outcomes[i] = _with_drift(runs[i], outcome)
                 if len(agreements[i]) > 1 or not _same_counts(fine.outcome, coarse.outcome):
                     doubtful.append(i)
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
-                outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
+                outcomes[i] = _not_converged(runs[i], levels.pop(i), tolerance, quiet_s, "")
         _look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
     return outcomes
 
@@ -146,14 +148,36 @@ def _least_error(base: Base) -> float:
     return ROUGH if rough else ROUNDING
 
 
-def _with_errors(fine: Outcome, coarse: Outcome, least: float) -> Outcome:
+def _with_errors(fine: Outcome, coarse: Outcome, least: float, pier: Pier) -> Outcome:
     """Return ``fine`` with its differences from ``coarse`` as errors, ``least`` [rad] at least."""
     if fine.status != coarse.status or fine.status in ("overturned", "failed"):  # θ_max is where the run ended
         return fine
     residual = None
     if fine.theta_res is not None and coarse.theta_res is not None:
         residual = max(abs(fine.theta_res - coarse.theta_res), least)
-    return fine.changed(theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least), theta_res_error=residual)
+    return fine.changed(
+        theta_max_error=max(abs(fine.theta_max - coarse.theta_max), least),
+        theta_res_error=residual,
+        devices_error=change_of_devices(fine, coarse, pier),
+    )
+
+
+def _with_peak_in_motion(
+    outcome: Outcome, fine: Trial, coarse: Trial, run: Run, tolerance: float, quiet_s: float
+) -> Outcome:
+    """Return ``outcome``, that of ``fine``, with the error of the peak within the motion.
+
+    It has none where the two trials, of which ``coarse`` has twice the step, do not agree to the ``tolerance`` until then.
+    """
+    finer, coarser, alpha = fine.outcome, coarse.outcome, run.pier.alpha
+    change = abs(finer.theta_max_in_motion - coarser.theta_max_in_motion)
+    if finer.theta_max_in_motion == ON_ITS_SIDE or not change <= tolerance * alpha:
+        return outcome
+    last = run.motion.npts - 1.0
+    until = int(window_of(last, last + quiet_samples(quiet_s, run.motion.dt))[0])
+    if (np.abs(fine.extremes[:until] - coarse.extremes[:until]) > tolerance * alpha).any():
+        return outcome
+    return outcome.changed(change_in_motion=max(change, _least_error(run.base) * alpha))
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
@@ -224,7 +248,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
             finer = finer.changed(theta_max_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
-        fewer, more = sorted((getattr(coarser, name), getattr(finer, name)))
+        fewer, more = sorted((getattr(coarser, name) or 0, getattr(finer, name) or 0))
         if fewer != more:
             notes.append(f"{name} not settled: {fewer} or {more}")
     if finer.status == "ok" and finer.t_flight != coarser.t_flight:
@@ -235,9 +259,11 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     return finer.noted(*notes)
 
 
-def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
+def _not_converged(run: Run, levels: Sequence[Trial], tolerance: float, quiet_s: float, more: str) -> Outcome:
     """Return the finest of a run's ``levels``, with its values, as failed."""
-    finest = levels[-1].outcome
+    finest, pier = levels[-1].outcome, run.pier
+    if len(levels) > 1:
+        finest = _with_peak_in_motion(finest, levels[-1], levels[-2], run, tolerance, quiet_s)
     if finest.status == "failed":
         return finest
     change = "the outcome"
