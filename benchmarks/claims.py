@@ -110,7 +110,7 @@ def survey(base: str, count: int, seed: int) -> Iterator[Row]:
     while group := list(islice(made, GROUP)):
         runs = [Run(pier, base, motion) for _, pier, base, motion in group]
         outcomes = run_all_to_tolerance(runs, TOLERANCE, QUIET_S, Stop())
-        kept = [i for i, outcome in enumerate(outcomes) if outcome is not None and outcome.theta_max_error is not None]
+        kept = [i for i, outcome in enumerate(outcomes) if outcome is not None and outcome.status in ("ok", "flight")]
         substeps = [outcomes[i].substeps for i in kept]  # type: ignore[union-attr]
         probes = [
             run_all_fixed(

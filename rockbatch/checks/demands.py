@@ -72,6 +72,8 @@ class Demand:
         Device that the pier has to have.
     held : bool
         True if it applies on every base to a pier that dampers may hold at a tilt.
+    reached : function or None
+        Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
     """
 
     words: str
@@ -86,6 +88,7 @@ class Demand:
     weighed: bool = False
     device: str = ""
     held: bool = False
+    reached: Of | None = None
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
@@ -111,6 +114,12 @@ FORCES = "base_shear_m_s2"
 
 ROCKING = "theta_rocking_over_alpha"
 """A column that every run with rocking has."""
+
+IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"
+"""Columns of the peak until a motion ends, which a run that failed later has reached, and of its error."""
+
+DEVICES_ERROR = "devices_error"
+"""Column of the error of all demands on devices but counts, as a share."""
 
 BROUGHT = {"forces": FORCES, "rocking": ROCKING}
 """By keys of [output], a column that each brings."""
@@ -164,12 +173,16 @@ def _largest(*columns: str, times: Lever = _ONE) -> Of:
 
 def _rotation(words: str, name: str, lever: Lever, **more: Any) -> Demand:
     """Return |θ|/α times ``lever``, from the columns NAME_over_alpha and NAME_error."""
+    reached = _angle(IN_MOTION, IN_MOTION_ERROR, lever) if name == "theta_max" else None
+    values = _angle(f"{name}_over_alpha", f"{name}_error", lever)
+    return Demand(words, values, most=Most(lever, _OVERTURNS), reached=reached, **more)
 
-    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
-        value, error = np.abs(_numbers(runs, f"{name}_over_alpha")), _numbers(runs, f"{name}_error")
-        return Estimated(lever(case) * value, lever(case) * error)
 
-    return Demand(words, values, most=Most(lever, _OVERTURNS), **more)
+def _angle(column: str, of_error: str, lever: Lever) -> Of:
+    """Return a column of |θ|/α and that of its error, times ``lever``."""
+    return lambda runs, case: Estimated(
+        lever(case) * np.abs(_numbers(runs, column)), lever(case) * _numbers(runs, of_error)
+    )
 
 
 def _tilt(words: str, lever: Lever) -> Demand:
@@ -232,10 +245,20 @@ def _forces(words: str, *columns: str, times: Lever = _ONE, **more: Any) -> Dema
     return Demand(words, values, needs="forces", weighed=columns[0].endswith(("_kN", "_kN_s", "_kNm")), **more)
 
 
+def _of_device(words: str, column: str, times: Lever = _ONE, **more: Any) -> Demand:
+    """Return a column of devices, times a factor of the case."""
+
+    def values(runs: "pd.DataFrame", case: Case) -> Estimated:
+        value = times(case) * _numbers(runs, column)
+        return Estimated(value, value * _numbers(runs, DEVICES_ERROR))
+
+    return Demand(words, values, **more)
+
+
 def _in_kilonewtons(device: str) -> Demand:
     """Return the largest force of a device in kN, from that over the weight: earlier results have no other."""
-    over_weight = _largest(f"{device}_force_over_weight", times=_weight)
-    return Demand(f"greatest force of a {device.replace('_', ' ')} [kN]", over_weight, weighed=True)
+    words = f"greatest force of a {device.replace('_', ' ')} [kN]"
+    return _of_device(words, f"{device}_force_over_weight", _weight, weighed=True)
 
 
 def has_device(case: Case, device: str) -> bool:
@@ -301,38 +324,35 @@ _OF_DEVICES: dict[str, str | Demand] = {
     "damper_force_over_weight": "greatest force of a damper over the pier's weight",
     "damper_force_kN": _in_kilonewtons("damper"),
     "damper_stroke_m": "greatest elongation of a damper [m]",
-    "damper_stroke_mm": Demand(
-        "greatest elongation of a damper [mm]", _largest("damper_stroke_m", times=_always(1000.0))
-    ),
+    "damper_stroke_mm": _of_device("greatest elongation of a damper [mm]", "damper_stroke_m", _always(1000.0)),
     "damper_speed_m_s": "greatest speed of a damper [m/s]",
     "damper_energy_J_kg": "energy that all dampers take, over the pier's mass [J/kg]",
     "tendon_force_over_weight": "greatest force of a tendon over the pier's weight",
     "tendon_force_kN": _in_kilonewtons("tendon"),
     "tendon_yield_m": "by how much a tendon is longer for good [m]",
-    "tendon_slack": "how often tendons go slack",
+    "tendon_slack": Demand("how often tendons go slack", _largest("tendon_slack")),
     "stop_force_over_weight": "greatest force of a stop over the pier's weight",
     "stop_force_kN": _in_kilonewtons("stop"),
     "stop_deflection_m": "greatest deflection of a stop beyond its gap [m]",
-    "stop_deflection_mm": Demand(
-        "greatest deflection of a stop beyond its gap [mm]", _largest("stop_deflection_m", times=_always(1000.0))
+    "stop_deflection_mm": _of_device(
+        "greatest deflection of a stop beyond its gap [mm]", "stop_deflection_m", _always(1000.0)
     ),
-    "stop_blows": "how often stops are met",
+    "stop_blows": Demand("how often stops are met", _largest("stop_blows")),
     "stop_energy_J_kg": "energy that all stops take, over the pier's mass [J/kg]",
     "deck_spring_force_over_weight": "greatest force of a deck spring over the pier's weight",
     "deck_spring_force_kN": _in_kilonewtons("deck_spring"),
     "deck_spring_deflection_m": "greatest deflection of a deck spring beyond its gap [m]",
-    "deck_spring_deflection_mm": Demand(
-        "greatest deflection of a deck spring beyond its gap [mm]",
-        _largest("deck_spring_deflection_m", times=_always(1000.0)),
+    "deck_spring_deflection_mm": _of_device(
+        "greatest deflection of a deck spring beyond its gap [mm]", "deck_spring_deflection_m", _always(1000.0)
     ),
-    "deck_spring_blows": "how often gaps beside the deck close",
+    "deck_spring_blows": Demand("how often gaps beside the deck close", _largest("deck_spring_blows")),
     "deck_spring_energy_J_kg": "energy that all deck springs take, over the pier's mass [J/kg]",
 }
-"""Demands that need devices: words alone if the column has the demand's name."""
+"""Demands that need devices: words alone if the column has the demand's name, and an error, which counts have not."""
 
 
 def _with_device(name: str, demand: str | Demand) -> Demand:
-    demand = Demand(demand, _largest(name)) if isinstance(demand, str) else demand
+    demand = _of_device(demand, name) if isinstance(demand, str) else demand
     return replace(demand, device=next(device for device in KINDS if name.startswith(f"{device}_")))
 
 

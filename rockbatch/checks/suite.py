@@ -169,6 +169,10 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     # A peak or a count is at least what it was when the run was cut short; what has not settled is nothing
     nothing = missing | (unknown & (status == "failed"))
     low = np.where(nothing, 0.0, low)
+    if demand.reached:  # before a run failed
+        reached, error = demand.reached(runs, case)
+        known = unknown & (status == "failed") & ~np.isnan(error)
+        low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
     return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
 
 

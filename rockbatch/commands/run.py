@@ -14,7 +14,7 @@ from rockbatch.commands import check
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
-from rockbatch.commands.summary import flexible, summary, warnings
+from rockbatch.commands.summary import failed_later, flexible, summary, warnings
 from rockbatch.results.beside_peaks import write_semicolons
 from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
@@ -89,5 +89,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
         say(f"{words}: the column reason of peaks.csv says why")
         for reason, times in reasons_of_failure(runs).items():
             say(f"  {times} ×: {reason}")
+        if later := failed_later(runs):
+            say(later)
         code = 1
     return code

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.listening import count
+from rockbatch.checks.demands import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.checks.suite import with_case
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
-from rockbatch.simulation.outcome import LEANS, LINEARISED, WOULD_SLIDE
+from rockbatch.simulation.outcome import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.study import PIER_KEYS, Study
 
 MOST_RUNS = 1000
@@ -73,6 +74,19 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
         ),
     ]  # fmt: skip
     return [sentence for sentence in sentences if sentence]
+
+
+def failed_later(runs: "pd.DataFrame") -> str:
+    """Return how many runs failed after their motion with a peak until then that holds, and what to change; empty if none."""
+    failed = (runs["status"] == "failed") & runs[IN_MOTION_ERROR].notna()
+    if not failed.any():
+        return ""
+    ratchet = int(runs.loc[failed, "reason"].str.contains(RATCHETS).sum())
+    n, advice = int(failed.sum()), ""
+    if ratchet:
+        share = "in all of them" if ratchet == n else f"in {ratchet:,}"
+        advice = f'; {share} the springs ratchet on undamped vibration: add zeta, or take spring = "epp" or "hardening"'
+    return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 
 def flexible(study: Study) -> list[str]:

@@ -163,6 +163,20 @@ def turn_window(lanes, i, theta, results):
 
 
 @kernel
+def note_motion_over(lanes, i, results):
+    """Write the greatest |θ| so far if this is the record's last sample."""
+    if lanes.clock.sample[i] == lanes.clock.npts[i] - 1.0:
+        results[int(lanes.clock.number[i])].theta_in_motion = lanes.peak.theta[i]
+
+
+@inlined
+def motion_due(lanes, i):
+    """Return the record's last sample, infinite from there on."""
+    last = lanes.clock.npts[i] - 1.0
+    return last if lanes.clock.sample[i] < last else math.inf
+
+
+@kernel
 def include_peak(lanes, i, y, end, start, done, h):
     """Bring the peak up to that of a smooth part of ``h`` [s] from ``y`` to ``end``, ``done`` [s] after ``start``.
 

@@ -164,6 +164,24 @@ def largest_within(f0, d0, f1, d1, h, best):
 
 
 @kernel
+def steepest_within(f0, d0, f1, d1, h):
+    """Return the |slope| of the Hermite cubic at its inflection; 0 if it has none inside the step."""
+    if h == 0.0:
+        return 0.0
+    mean = (f1 - f0) / h
+    curve, c = 3.0 * (d0 + d1 - 2.0 * mean), 3.0 * mean - 2.0 * d0 - d1  # slope(s) = d0 + 2 c s + curve s²
+    s = -c / curve if curve != 0.0 else 0.0
+    return abs(d0 + c * s) if 0.0 < s < 1.0 else 0.0
+
+
+@kernel
+def highest_within(f0, d0, f1, d1, h):
+    """Return the greatest value of the Hermite cubic in the step."""
+    inside = hermite(f0, d0, f1, d1, h, turning_point(f0, d0, f1, d1, h)) if d0 > 0.0 > d1 else f1
+    return max(f0, f1, inside)
+
+
+@kernel
 def lowest_within(f0, d0, f1, d1, h, best):
     """Return the least f so far, with the minimum inside this step if there is one."""
     if d0 < 0.0 and d1 > 0.0 and min(inner_points(f0, d0, f1, d1, h)) < best:

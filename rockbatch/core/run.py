@@ -20,7 +20,9 @@ from rockbatch.core.clock import (
     ground_rests,
     include_height,
     include_peak,
+    motion_due,
     note_flight,
+    note_motion_over,
     read_ground,
     start_clock,
     turn_window,
@@ -243,7 +245,7 @@ def _through(traits, lanes, i, devices, marks, substep, settings, ground, histor
 
 
 @kernel
-def _begin(traits, lanes, i, number, runs, devices, ground, history):
+def _begin(traits, lanes, i, number, runs, devices, ground, history, results):
     """Let run ``number`` begin in lane ``i``: its status."""
     run = runs[number]
     begin(traits, lanes, i, run)
@@ -252,6 +254,7 @@ def _begin(traits, lanes, i, number, runs, devices, ground, history):
     start_clock(lanes, i, number, run, at_rest(m), math.atan2(m.half_width, m.height), y.theta)
     read_ground(lanes, i, ground)
     expect(traits, lanes, i, run)
+    note_motion_over(lanes, i, results)
     here = ground_at(lanes, i, 0.0)
     start_devices(m, devices, y, contact, lanes.clock.rest[i], here)
     write(history, number, 0.0, SAMPLE, m, devices, y, contact, here)
@@ -330,8 +333,9 @@ def _at_sample(traits, lanes, i, devices, results):
         return RUNNING
     turn_window(lanes, i, theta, results)
     peak.in_window[i] = max(peak.in_window[i], abs(theta))
+    note_motion_over(lanes, i, results)
     status = over(traits, lanes, i, devices)
-    clock.due[i] = min(peak.next_window[i], next_due(traits, lanes, i))
+    clock.due[i] = min(peak.next_window[i], next_due(traits, lanes, i), motion_due(lanes, i))
     return status
 
 
@@ -376,7 +380,7 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
     waiting, count = NONE, NONE
     while True:
         while count < LANES and waiting < len(runs):
-            status = _begin(traits, lanes, count, waiting, runs, devices, ground, history)
+            status = _begin(traits, lanes, count, waiting, runs, devices, ground, history, results)
             waiting += 1
             if status == RUNNING:
                 count += 1

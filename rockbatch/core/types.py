@@ -88,6 +88,7 @@ class Result(NamedTuple):
     t_end: float
     theta_max: float
     t_max: float
+    theta_in_motion: float  # greatest |θ| until the record's last sample; NaN of a run that ended before it
     impacts: int
     uplifts: int  # separations of pivots, or lift-offs from rest
     t_flight: float  # first time of flight; NaN without one

@@ -10,7 +10,7 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Any, Literal, NamedTuple
 
-from rockbatch.checks.demands import ROCKING
+from rockbatch.checks.demands import DEVICES_ERROR, IN_MOTION, IN_MOTION_ERROR, ROCKING
 from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet
@@ -303,6 +303,15 @@ MORE = (
         "far before; empty where it rocks",
         "theta_max_is", kind="text", page=OnPage("θ_max is", behind="theta_max_error"), bases=YIELDING, sometimes=True,
     ),
+    Column(
+        IN_MOTION,
+        "greatest rotation over α until the record's last sample: of a run that failed later, a lower bound of its peak",
+        "theta_max_in_motion", over_alpha=True,
+    ),
+    Column(
+        IN_MOTION_ERROR, "estimated error of it over α; empty where it has not converged, and with a fixed step",
+        "theta_max_in_motion_error", over_alpha=True, sometimes=True,
+    ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""
 
@@ -516,6 +525,13 @@ ASKED = (
         "[output] rocking = true",
         "theta_lean_error", page=OnPage("±", ".0e", behind="theta_lean_over_alpha"), over_alpha=True, bases=YIELDING,
         stood=True, requested=lambda study: study.output.rocking,
+    ),
+    Column(
+        DEVICES_ERROR,
+        "estimated error, as a share of itself, of that of the columns of devices, but for counts, whose error is the largest: "
+        "what halving the step still changed; empty with a fixed step",
+        "devices_error", page=OnPage("devices ±", ".0e", behind="deck_spring_energy_J_kg"), stood=True,
+        requested=lambda study: any(case.base.restraints for case in study.cases),
     ),
 )  # fmt: skip
 """Columns at the end of a table, on request of the study."""

@@ -8,9 +8,10 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.core.clock import window_of
+from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, Damper, Pier
+from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.models import fastest_rate, first_substeps, readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
@@ -40,7 +41,7 @@ MARGIN = 2.0
 SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
 
-COUNTS = ("impacts", "separations", "flights")
+COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
 
 FAR_BELOW = 3.0
 """An extreme that has not converged is harmless if it is below the peak by so many times its change."""
@@ -98,11 +99,12 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
             if enough(agreements[i]):
-                samples = runs[i].motion.npts - 1 + quiet_samples(quiet_s, runs[i].motion.dt)
-                peak = int(window_of(fine.outcome.t_max / runs[i].motion.dt, float(samples))[0])
+                until = _window_at(runs[i], runs[i].motion.duration, quiet_s)
+                peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
-                outcomes[i] = _with_drift(runs[i], outcome)
-                if _is_doubtful(runs[i], fine, coarse, len(agreements[i])):
+                outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerance * pier.alpha, until)
+                outcomes[i] = outcome = _with_drift(runs[i], outcome)
+                if _is_doubtful(runs[i], fine, coarse, outcome, len(agreements[i]), until):
                     doubtful[i] = fine
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
@@ -116,20 +118,28 @@ def _same_counts(fine: Outcome, coarse: Outcome) -> bool:
     return all(getattr(fine, name) == getattr(coarse, name) for name in COUNTS)
 
 
-def _is_doubtful(run: Run, fine: Trial, coarse: Trial, halvings: int) -> bool:
-    """Return whether the results of a run that converged may be chaotic.
+def _window_at(run: Run, t: float, quiet_s: float) -> int:
+    """Return the window of a run's extremes in which ``t`` [s] lies."""
+    samples = run.motion.npts - 1 + quiet_samples(quiet_s, run.motion.dt)
+    return int(window_of(t / run.motion.dt, float(samples))[0])
+
+
+def _is_doubtful(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, halvings: int, until: int) -> bool:
+    """Return whether the results of a run that converged may be chaotic; its motion lasts ``until`` this window.
 
     A chaotic peak magnifies the errors of steps as it does changes of the motion (THEORY.md, The error that a row reports). A
     residual is a sum over the motion, so that its chaos is not seen in rotations.
     """
-    outcome = fine.outcome
     if outcome.theta_res_error is not None and (halvings > 1 or not _same_counts(outcome, coarse.outcome)):
         return True
-    if outcome.theta_max_error is None or outcome.theta_max == 0.0:
-        return False
     greatest, change = _windows(fine, coarse)
+    peak, claimed = outcome.theta_max, outcome.theta_max_error
+    if claimed is None:
+        peak, claimed = outcome.theta_max_in_motion, outcome.change_in_motion
+        greatest, change = greatest[: until + 1], change[: until + 1]
     resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
-    return bool((change * greatest > SENSITIVE * run.pier.alpha * outcome.theta_max * resolved**2).any())
+    magnified = change * greatest > SENSITIVE * run.pier.alpha * peak * resolved**2
+    return claimed is not None and bool(magnified.any())
 
 
 def _look_for_chaos(
@@ -155,6 +165,10 @@ def _look_for_chaos(
 
 def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, changed: str) -> Outcome:
     """Return ``outcome`` with the error of θ_max that ``probe``, under a ``changed`` motion, shows; none if it is chaotic."""
+    if outcome.change_in_motion is not None:
+        within = MARGIN * abs(probe.outcome.theta_max_in_motion - outcome.theta_max_in_motion)
+        known = max(outcome.change_in_motion, within) if within <= tolerance else None
+        outcome = outcome.changed(change_in_motion=known)
     if outcome.theta_max_error is None:
         return outcome
     least = MARGIN * abs(probe.outcome.theta_max - outcome.theta_max)
@@ -168,7 +182,7 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
     else:
         becomes = f"comes to {probe.outcome.theta_max:.3g} rad"
     chaos = f"the peak is chaotic, under a motion {changed} the pier {becomes}: no error of it is claimed"
-    return outcome.noted(chaos, theta_max_error=None)
+    return outcome.noted(chaos, theta_max_error=None, devices_error=None)
 
 
 def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier: Pier) -> Outcome:
@@ -211,7 +225,21 @@ def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
         errors["theta_res_error"] = max(abs(fine.theta_res - coarse.theta_res), least)
     if run.base.yields and fine.settlement is not None and coarse.settlement is not None:
         errors["settlement_error"] = max(abs(fine.settlement - coarse.settlement), least * run.pier.half_width)
-    return fine.changed(**errors)
+    return fine.changed(devices_error=change_of_devices(fine, coarse, run.pier), **errors)
+
+
+def _with_peak_in_motion(
+    run: Run, fine: Trial, coarse: Trial, outcome: Outcome, tolerance: float, until: int
+) -> Outcome:
+    """Return ``outcome``, that of ``fine``, with the error of the peak within the motion, whose last window is ``until``.
+
+    It has none if ``coarse``, with twice the step, does not agree to the ``tolerance`` [rad] until then.
+    """
+    change = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
+    before = _windows(fine, coarse)[1][:until]
+    if outcome.theta_max_in_motion == ON_ITS_SIDE or not change <= tolerance or (before > tolerance).any():
+        return outcome
+    return outcome.changed(change_in_motion=max(change, _least_error(run.base) * run.pier.alpha))
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
@@ -234,7 +262,8 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
     if finer.status != coarser.status:
         return Agreement.NONE
     if finer.status == "failed":
-        alike = finer.reason == coarser.reason and abs(finer.theta_max - coarser.theta_max) <= tolerance
+        moved = abs(finer.theta_max_in_motion - coarser.theta_max_in_motion)  # what comes after it is no result
+        alike = finer.reason == coarser.reason and moved <= tolerance
         return Agreement.THROUGHOUT if alike and finer.reason in LEFT_ALONE else Agreement.NONE
     greatest, change = _windows(fine, coarse)
     if finer.status == "overturned":
@@ -293,10 +322,10 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     if extent < Agreement.THROUGHOUT and differs.any():
         notes.append(f"lesser rotations, up to {greatest[differs].max():.2g} rad, have not settled")
         if differs[: peak + 1].any() and finer.status == "ok":
-            finer = finer.changed(theta_max_error=None)
+            finer = finer.changed(theta_max_error=None, devices_error=None)
             notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
-        fewer, more = sorted((getattr(coarser, name), getattr(finer, name)))
+        fewer, more = sorted((getattr(coarser, name) or 0, getattr(finer, name) or 0))
         if fewer != more:
             notes.append(f"{name} not settled: {fewer} or {more}")
     if finer.status == "ok" and finer.t_flight != coarser.t_flight:

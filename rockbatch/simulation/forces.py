@@ -1,7 +1,7 @@
 """Forces along a recorded run, and those that a designer sizes: peaks, the hardest impact, uplift."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
 from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
 from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
@@ -226,23 +227,20 @@ def _in_kilonewtons(pier: Pier, force: float) -> str:
 LARGE_ERROR = 0.01
 """Error of a force, as a share of it, beyond which a run carries a note."""
 
-_FLOOR = 0.01
-"""Share of a quantity's scale below which it governs no design: an error is a share of no less than that."""
-
 _SIZED = {
-    "base shear": (("base_shear",), "force"),
-    "normal force": (("normal_force",), "force"),
-    "base moment": (("base_moment",), "moment"),
-    "friction demand": (("friction_demand",), "friction"),
-    "force of a support": (("pivot_left", "pivot_right"), "share"),
-    "heel gap": (("heel_gap_left", "heel_gap_right"), "gap"),
-    "heel speed": (("heel_speed_left", "heel_speed_right"), "speed"),
-    "acceleration of the deck": (("deck_acceleration",), "force"),
-    "landing velocity": (("landing_velocity",), "speed"),
-    "impulse": (("impulse",), "speed"),
-    "friction demand of impacts": (("impact_friction_demand",), "friction"),
-    "angular velocity": (("omega_over_p",), "rotation"),
-    "base shear on the keys": (("key_shear",), "force"),
+    "base shear": Sized(("base_shear",), "force"),
+    "normal force": Sized(("normal_force",), "force"),
+    "base moment": Sized(("base_moment",), "moment"),
+    "friction demand": Sized(("friction_demand",), "friction"),
+    "force of a support": Sized(("pivot_left", "pivot_right"), "share"),
+    "heel gap": Sized(("heel_gap_left", "heel_gap_right"), "gap"),
+    "heel speed": Sized(("heel_speed_left", "heel_speed_right"), "speed"),
+    "acceleration of the deck": Sized(("deck_acceleration",), "force"),
+    "landing velocity": Sized(("landing_velocity",), "speed"),
+    "impulse": Sized(("impulse",), "speed"),
+    "friction demand of impacts": Sized(("impact_friction_demand",), "friction"),
+    "angular velocity": Sized(("omega_over_p",), "rotation"),
+    "base shear on the keys": Sized(("key_shear",), "force"),
 }
 """Fields of PeakForces that have an error, those of both pivots together, and the scale of each."""
 
@@ -252,26 +250,6 @@ def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakFo
 
     The second value is a note on what has not converged; empty if all has.
     """
-    scales = _scales(pier)
-    changes = {}
-    for name, (fields, measure) in _SIZED.items():
-        finer, coarser = ([getattr(forces, field) or 0.0 for field in fields] for forces in (fine, coarse))
-        changed = max(abs(new - old) for new, old in zip(finer, coarser, strict=True))
-        changes[name] = changed / max(*finer, _FLOOR * scales[measure])
-    worst = max(changes, key=changes.__getitem__)
-    most = changes[worst]
+    worst, most = greatest_change(_SIZED, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""
     return replace(fine, error=most), note
-
-
-def _scales(pier: Pier) -> Mapping[str, float]:
-    """Return the scales of quantities: the weight, friction tan α, and a pier that leans by α."""
-    return {
-        "force": pier.gravity,
-        "moment": pier.gravity * pier.half_width,
-        "share": 1.0,
-        "friction": math.tan(pier.alpha),
-        "gap": 2.0 * pier.half_width * pier.alpha,
-        "speed": pier.size * pier.alpha * pier.p,
-        "rotation": pier.alpha,
-    }

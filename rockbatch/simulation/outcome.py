@@ -8,6 +8,9 @@ from typing import Any
 WOULD_SLIDE = "would slide"
 """Words of a note on a run whose friction demand is greater than what the interface has."""
 
+RATCHETS = "the pier leans further and further"
+"""Words of the reason of a run that failed because its springs ratchet on vibration after the motion."""
+
 LINEARISED = "linearised kinematics"
 """Words of a note on a run whose rotations are too large for them."""
 
@@ -119,6 +122,10 @@ class Outcome:
         Remarks on a valid run, e.g. counts that did not converge; empty otherwise.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
+    theta_max_in_motion : float
+        Greatest rotation |θ| until the record's last sample, or the end of a run that ended before it [rad].
+    change_in_motion : float or None
+        By how much halving the step still changed that [rad], where it has converged.
     theta_max_is : str
         "lean" where ``theta_max`` is mostly the lean of a base that has yielded; empty where the pier rocks.
     theta_rocking, theta_lean : float or None
@@ -162,6 +169,8 @@ class Outcome:
         Of stops: greatest force over M g and deflection [m] of any; how often they were met; energy that all took [J/kg].
     deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
         Of deck springs, likewise.
+    devices_error : float or None
+        By which share of itself halving the step still changed one of these demands at most, but for counts.
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
@@ -208,6 +217,9 @@ class Outcome:
     energies: Mapping[str, float] | None = None
     forces: PeakForces | None = None
     note: str = ""
+    devices_error: float | None = None
+    theta_max_in_motion: float = math.nan
+    change_in_motion: float | None = None
     flights: int = 0
     flight_duration: float = 0.0
     flight_height: float = 0.0
@@ -222,6 +234,16 @@ class Outcome:
     def was_run(self) -> bool:
         """True unless the run was refused with a reason: it would blow up or take too long."""
         return not math.isnan(self.theta_max)
+
+    @property
+    def theta_max_in_motion_error(self) -> float | None:
+        """Estimated error of ``theta_max_in_motion`` [rad]: that of ``theta_max`` if they are the same, none if that has none.
+
+        A run that overturned or failed after its motion has one, too.
+        """
+        stood = self.status in ("ok", "flight")
+        same = self.theta_max_error is None or self.theta_max == self.theta_max_in_motion
+        return self.theta_max_error if stood and same else self.change_in_motion
 
     def changed(self, **fields: Any) -> "Outcome":
         """Return the outcome with other ``fields``, in a tenth of the time of ``dataclasses.replace``."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
-from rockbatch.core.devices.laws import SPRING, STICKS, Element
+from rockbatch.core.devices.laws import STICKS, Element
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
@@ -40,7 +40,7 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import LINEARISED, RELEASED, Outcome
+from rockbatch.simulation.outcome import LINEARISED, RATCHETS, RELEASED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 
@@ -58,8 +58,8 @@ _STATUS = {
     types.UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
     types.GROWING: (
         "failed",
-        "left alone after the record, the pier leans further and further: yielding springs ratchet on vibration that "
-        'nothing damps; spring = "epp" and "hardening" do so least',
+        f"left alone after the record, {RATCHETS}: yielding springs ratchet on vibration that nothing damps; zeta damps it, and "
+        'spring = "epp" and "hardening" ratchet least',
     ),
 }
 
@@ -263,7 +263,7 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
     dampers, tendons = (use[kinds == stop_kind].view(np.recarray) for stop_kind in ("damper", "tendon"))
     demands: dict[str, Any] = {}
     if len(dampers):
-        demands["damper_force"] = float(np.maximum(dampers.most, -dampers.least).max()) / run.pier.gravity
+        demands["damper_force"] = float(dampers.most.max()) / run.pier.gravity
         demands["damper_stroke"] = float(dampers.stroke.max())
         demands["damper_speed"] = float(dampers.speed.max())
         demands["damper_energy"] = float(dampers.lost.sum())
@@ -280,12 +280,10 @@ def _use(run: Run, use: np.recarray) -> dict[str, Any]:
 
 def _of_contacts(laws: list[Element], use: np.recarray, name: str, gravity: float) -> dict[str, Any]:
     """Return the demands on stops or deck springs, all of which are straight on first loading."""
-    linear = np.array([law.kind == SPRING for law in laws])
     stiffness = np.array([law.stiffness for law in laws])
-    force = np.where(linear, stiffness * use.stroke, use.most)
     return {
-        f"{name}_force": float(force.max()) / gravity,
-        f"{name}_depth": float((force / stiffness).max()),
+        f"{name}_force": float(use.most.max()) / gravity,
+        f"{name}_depth": float((use.most / stiffness).max()),
         f"{name}_blows": int(use.times.sum()),
         f"{name}_energy": float(use.lost.sum()),
     }
@@ -324,6 +322,7 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
     if result.status == types.FLIGHT:
         reason = cause_of_flight(run.motion, omega_v, pier.gravity, result.t_flight, result.t_impact, zeta)
+    in_motion = result.theta_max if math.isnan(result.theta_in_motion) else result.theta_in_motion
     notes = []
     if result.status == types.RESTLESS:
         notes.append(_RESTLESS.format(seconds=result.t_end - run.motion.duration))
@@ -340,6 +339,7 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         status=status,
         reason=reason,
         theta_max=min(result.theta_max, ON_ITS_SIDE),
+        theta_max_in_motion=min(in_motion, ON_ITS_SIDE),
         separations=result.uplifts,
         t_flight=None if math.isnan(result.t_flight) else result.t_flight,
         substeps=substeps,

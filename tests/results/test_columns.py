@@ -127,6 +127,7 @@ def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
     of_functions = {"energies", "forces"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
+    of_functions |= {"change_in_motion"}  # the error of the peak in motion where that is not theta_max
     assert {field.name for field in fields(Outcome)} - taken == of_functions
 
 
@@ -143,7 +144,8 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 
 
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
-    asked = [column for column in ASKED if column not in DEVICES]  # it has neither dampers nor tendons
+    of_devices = (*DEVICES, COLUMNS["devices_error"])  # it has neither dampers nor tendons
+    asked = [column for column in ASKED if column not in of_devices]
     assert list(table) == [*names(STAYING), *study.varied, *names(MORE), *names(asked)]
 
 
@@ -164,10 +166,11 @@ def test_demands_read_columns_of_the_table_only():
 
 
 def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
-    """All but which image a row is: the page has no mirror images. Those that belong together stand side by side."""
+    """All but which image a row is, for the page has no mirror images, and the peak in motion, which stands in the cell of a
+    peak that failed later. Those that belong together stand side by side."""
     shown = names([*on_page(), *on_page("forces")])
     assert len(shown) == len(set(shown))
-    assert set(shown) == {*COLUMNS} - {"mirror_of"}
+    assert set(shown) == {*COLUMNS} - {"mirror_of", "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"}
     for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])
         assert shown[start : start + len(together)] == together

@@ -60,10 +60,9 @@ class Response(NamedTuple):
 
 
 class Use(NamedTuple):
-    """Extremes of an element in a run: greatest and least force [m/s²], elongation [m], speed [m/s], energy [J/kg]."""
+    """Extremes of an element in a run: greatest |force| [m/s²], |elongation| [m] and |speed| [m/s]; energy [J/kg]."""
 
     most: float
-    least: float
     stroke: float
     speed: float
     lost: float

@@ -1,10 +1,16 @@
 """Use of devices in a run: greatest forces, strokes and speeds, energies."""
 
 from rockbatch.core.devices.elongation import lifted
-from rockbatch.core.devices.laws import MAXWELL, OPENS, TAUT, TENDON, VISCOUS, force, slip_rate
+from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, OPENS, SPRING, TAUT, TENDON, VISCOUS, force, slip_rate
 from rockbatch.core.devices.pull import END, START
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.roots import hermite, largest_within
+from rockbatch.core.roots import highest_within, largest_within, steepest_within
+
+
+@inlined
+def _greatest(f0, d0, f1, d1, h, best):
+    """Return the greatest |f| so far; a speed has jumped at the start of a part if that is behind an impact."""
+    return largest_within(f0, d0, f1, d1, h, max(best, abs(f0)))[1]
 
 
 @kernel
@@ -18,8 +24,8 @@ def _of_braced(devices, j, h):
     slips, slips_end = slip_rate(of, was), slip_rate(of, now)
     way = devices.gaps[START, j].elongation - was / of.stiffness
     way_end = devices.gaps[END, j].elongation - now / of.stiffness
-    line.stroke = largest_within(way, slips, way_end, slips_end, h, line.stroke)[1]
-    pull = largest_within(was, devices.rates[START, j], now, devices.rates[END, j], h, 0.0)[1]
+    line.stroke = _greatest(way, slips, way_end, slips_end, h, line.stroke)
+    pull = _greatest(was, devices.rates[START, j], now, devices.rates[END, j], h, 0.0)
     line.speed = max(line.speed, slip_rate(of, pull))
     return pull
 
@@ -32,8 +38,33 @@ def _of_braced_steel(devices, j, h):
     was, now = devices.gaps[START, j], devices.gaps[END, j]
     speed, speed_end = was.speed - brace * devices.rates[START, j], now.speed - brace * devices.rates[END, j]
     way, way_end = was.elongation - brace * devices.x[j], now.elongation - brace * devices.end[j]
-    line.stroke = largest_within(way, speed, way_end, speed_end, h, line.stroke)[1]
-    line.speed = max(line.speed, abs(speed), abs(speed_end))
+    line.stroke = _greatest(way, speed, way_end, speed_end, h, line.stroke)
+    line.speed = max(line.speed, abs(speed), abs(speed_end), steepest_within(way, speed, way_end, speed_end, h))
+
+
+@kernel
+def _of_own_way(devices, j, k, k_end, h):
+    """Bring stroke and speed of a device without a brace up to a smooth part of ``h`` [s]."""
+    line, was, now = devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
+    line.stroke = _greatest(was.elongation, was.speed, now.elongation, now.speed, h, line.stroke)
+    lift, lift_end = lifted(was, k.v_rate, k.omega), lifted(now, k_end.v_rate, k_end.omega)
+    line.speed = _greatest(was.speed, lift, now.speed, lift_end, h, line.speed)
+
+
+@kernel
+def _pull(devices, j, h):
+    """Return the greatest |force| [m/s²] of a device in a smooth part of ``h`` [s], up to which its use has been brought."""
+    of, line, was, now = devices.elements[j], devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
+    if of.kind == VISCOUS:
+        return force(of, 0.0, line.speed, 0.0, TAUT, OPENS)
+    if of.kind == SPRING:
+        return of.stiffness * line.stroke
+    if of.kind == HYSTERETIC:
+        return of.strength * max(abs(devices.x[j]), abs(devices.end[j]))
+    longest = now.elongation
+    if of.kind == TENDON:
+        longest = highest_within(was.elongation, was.speed, now.elongation, now.speed, h)
+    return abs(force(of, longest, now.speed, devices.end[j], devices.modes[j], devices.goes[j]))
 
 
 @kernel
@@ -43,21 +74,13 @@ def _take_in(devices, k, k_end, h):
         of, line = devices.elements[j], devices.use[j]
         if of.kind == MAXWELL:
             pull = _of_braced(devices, j, h)
-            line.most, line.lost = max(line.most, pull), devices.end[n + j]
-            continue
-        was, now = devices.gaps[START, j], devices.gaps[END, j]
-        if of.give > 0.0:
+        elif of.give > 0.0:
             _of_braced_steel(devices, j, h)
+            pull = _pull(devices, j, h)
         else:
-            line.stroke = largest_within(was.elongation, was.speed, now.elongation, now.speed, h, line.stroke)[1]
-        lift, lift_end = lifted(was, k.v_rate, k.omega), lifted(now, k_end.v_rate, k_end.omega)
-        fastest_at, fastest = largest_within(was.speed, lift, now.speed, lift_end, h, line.speed)
-        line.speed = fastest if of.give == 0.0 else line.speed
-        pull = force(of, now.elongation, now.speed, devices.end[j], devices.modes[j], devices.goes[j])
-        if of.kind == VISCOUS and fastest_at >= 0.0:
-            pull = force(of, 0.0, hermite(was.speed, lift, now.speed, lift_end, h, fastest_at), 0.0, TAUT, OPENS)
-        line.most, line.least = max(line.most, pull), min(line.least, pull)
-        line.lost = devices.end[n + j]
+            _of_own_way(devices, j, k, k_end, h)
+            pull = _pull(devices, j, h)
+        line.most, line.lost = max(line.most, pull), devices.end[n + j]
         line.yielded = devices.end[j] if of.kind == TENDON else 0.0
 
 

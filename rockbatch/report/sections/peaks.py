@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.checks.demands import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished, as_dicts, worst_first
@@ -64,7 +65,7 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
     if status == "flight" and flight == flight:
         return alarm(f"flight at {number(flight)} s")
     if status != "ok" or math.isnan(theta):
-        return alarm(status)
+        return alarm(join(status, ", ", least) if (least := at_least(run)) else status)
     value = number(theta, THETA_FORMAT)
     shown = tag("strong", value) if theta == worst else value
     marks = []
@@ -73,6 +74,14 @@ def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
     if leans := run["theta_max_is"]:
         marks.append(tag("sup", "\u2009", leans, title="mostly the lean of a base that has yielded; see its note"))
     return join(shown, *marks) if marks or isinstance(shown, Markup) else theta
+
+
+def at_least(run: dict[str, Any]) -> Markup:
+    """Return the lower bound of θ_max/α of a run that failed after its motion: "≥ 0.31240"; empty if it has none."""
+    error = run[IN_MOTION_ERROR]
+    if run["status"] != "failed" or error != error:
+        return Markup("")
+    return Markup(f"≥\u00a0{number(run[IN_MOTION] - error, THETA_FORMAT)}")
 
 
 def _every_run(finished: Finished) -> Markup:
@@ -93,11 +102,13 @@ def _every_run(finished: Finished) -> Markup:
         if name not in COLUMNS and name not in ("vertical", *varied)
     }
 
+    def cell(run: dict[str, Any], name: str) -> object:
+        if name == "settlement_m":
+            return _settlement(run)
+        return (name == "theta_max_over_alpha" and at_least(run)) or _cell(name, run[name])
+
     def cells(run: dict[str, Any]) -> list[object]:
-        return [
-            *(run[name] for name in names),
-            *(_settlement(run) if name == "settlement_m" else _cell(name, run[name]) for name in columns),
-        ]
+        return [*(run[name] for name in names), *(cell(run, name) for name in columns)]
 
     return every_run(finished, [head(COLUMNS["record"]), *names.values(), *columns.values()], cells, "Every run")
 
