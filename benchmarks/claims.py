@@ -1,4 +1,4 @@
-"""Do claimed errors hold? New pools of random hard cases, each run again under motions that differ by less than a record resolves.
+"""Do claimed errors hold? Pools of random hard cases, each run again under motions that differ by less than a record resolves.
 
     python benchmarks/claims.py [--base rigid|springs] [--cases 2000] [--seed 0] [--repeats 0] [--csv FILE]
 
@@ -66,7 +66,9 @@ def cases(base: str, count: int, seed: int) -> Iterator[tuple[str, Pier, Base, M
     if base == "rigid":
         made = rigid_survey.KINDS.items()
         for kind in [kind for kind, _ in made if kind != "by a hair"]:
-            yield from ((c.id, c.pier, c.base, c.motion) for c in rigid_survey.cases(count, seed, kind) if c.kind == kind)
+            yield from (
+                (c.id, c.pier, c.base, c.motion) for c in rigid_survey.cases(count, seed, kind) if c.kind == kind
+            )
         return
     for case in pool.cases(count, seed):
         if case.hair is None and case.base.on_springs:
@@ -136,7 +138,10 @@ def _with_zeros(motion: Motion) -> Motion:
 
 def summary(rows: Sequence[Row]) -> list[str]:
     """Return what is printed at the end."""
-    lines = ["| result | claims | beyond | greatest move within it | zeros beyond the errors |", "| --- | --- | --- | --- | --- |"]
+    lines = [
+        "| result | claims | beyond | greatest move within it | zeros beyond the errors |",
+        "| --- | --- | --- | --- | --- |",
+    ]
     for result, name in enumerate(RESULTS):
         claims = [row for row in rows if not math.isnan(row.claimed[result])]
         if not claims:

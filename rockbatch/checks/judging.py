@@ -21,6 +21,7 @@ from rockbatch.checks.suite import (
     creeps,
     governing,
     lacking,
+    noted,
     of_runs,
     simulated,
     suites,
@@ -28,6 +29,7 @@ from rockbatch.checks.suite import (
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import CHAOTIC
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
 
@@ -164,6 +166,7 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
         _laws(rule, suite, case, deciding),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
+        _chaotic(rule, suite, case),
     ]
     run: dict[str, Any] = {}
     if deciding is not None:
@@ -191,6 +194,14 @@ def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -
         remark += f": {of_case:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite["status"] == "ok").to_numpy()).sum())
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
+
+
+def _chaotic(rule: Rule, suite: "pd.DataFrame", case: Case) -> str:
+    """Return the remark on runs that claim no error because their results are chaotic."""
+    if DEMANDS[rule.demand].event:
+        return ""
+    unclaimed = int((np.isnan(DEMANDS[rule.demand].evaluate(suite, case).error) & noted(suite, CHAOTIC)).sum())
+    return f"{unclaimed} of the runs are chaotic: twice their value counts" if unclaimed else ""
 
 
 def _directions(records: Mapping[str, tuple[int, int]]) -> str:

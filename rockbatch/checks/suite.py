@@ -11,6 +11,7 @@ from rockbatch.checks.demands import DEMANDS, Case
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.statistics import Values
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.pier.bases import RATCHETING
 
 OTHER_LAW = "settlement_other_law_m"
@@ -142,13 +143,14 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     estimated = bool(np.isfinite(error).any())
-    margin = np.nan_to_num(error)
+    margin = np.where(np.isnan(error), np.where(noted(runs, CHAOTIC), np.abs(value), 0.0), error)
     low, high = np.maximum(value - margin, 0.0), value + margin
     status = runs["status"].to_numpy()
     counting = np.ones(len(runs), dtype=bool)
     if demand.event:
         if rule.demand != "failed":  # what a run that was cut short would have come to is open
-            high = np.where((status == "failed") | (status == "flight"), 1.0, high)
+            open_ = (status == "failed") | (status == "flight")
+            high = np.where(open_ | (noted(runs, OVERTURNS) & (rule.demand == "overturned")), 1.0, high)
         return Bounds(value, low, high, False), counting
 
     by_other = by_other_law(rule, runs, case)
@@ -174,6 +176,13 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
         known = unknown & (status == "failed") & ~np.isnan(error)
         low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
     return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
+
+
+def noted(runs: "pd.DataFrame", words: str) -> npt.NDArray[np.bool_]:
+    """Return True for each run whose note has these words, shape (n,)."""
+    if "note" not in runs:
+        return np.zeros(len(runs), dtype=bool)
+    return runs["note"].fillna("").astype(str).str.contains(words, regex=False).to_numpy(dtype=bool)
 
 
 def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:

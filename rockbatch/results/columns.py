@@ -187,7 +187,8 @@ STAYING = (
     ),
     Column(
         "theta_max_error",
-        "estimated error of the greatest rotation over α: what halving the step still changed; empty with a fixed step",
+        "estimated error of the greatest rotation over α: what halving the step, or a motion 10⁻⁸ stronger or weaker, still "
+        "changed; empty where it is chaotic, and with a fixed step",
         "theta_max_error", page=OnPage("±", ".0e"), over_alpha=True, stood=True,
     ),
     Column("t_max_s", "time of the greatest rotation", "t_max", "s", OnPage("at t [s]", ".2f")),
@@ -216,8 +217,8 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 MORE = (
     Column(
         "theta_res_error",
-        "estimated error of the residual rotation over α, including its drift while it was read; empty with a "
-        "fixed step",
+        "estimated error of the residual rotation over α, including its drift while it was read; empty where it is chaotic, "
+        "and with a fixed step",
         "theta_res_error", page=OnPage("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=TILTS,
         stood=True,
     ),
@@ -311,6 +312,12 @@ MORE = (
     Column(
         IN_MOTION_ERROR, "estimated error of it over α; empty where it has not converged, and with a fixed step",
         "theta_max_in_motion_error", over_alpha=True, sometimes=True,
+    ),
+    Column(
+        "settlement_error_m",
+        "estimated error of the settlement, including its drift while it was read; empty where it is chaotic, and with a "
+        "fixed step",
+        "settlement_error", "m", OnPage("± [mm]", ".0e", 1000, "settlement_m"), bases=YIELDING, stood=True, sometimes=True,
     ),
 )  # fmt: skip
 """Columns that follow those of the varied keys. A table of an earlier version may lack the last of them."""

@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, Damper, Pier
@@ -176,12 +177,12 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
         greatest, change = _windows(probe, fine)
         if _far_below(greatest, change, change > tolerance, outcome.theta_max):
             return outcome.changed(theta_max_error=max(outcome.theta_max_error, least))
-        becomes = "comes as near to it at another time"
+        becomes = "the pier comes as near to it at another time"
     elif probe.outcome.status == "overturned":
-        becomes = "overturns"
+        becomes = OVERTURNS
     else:
-        becomes = f"comes to {probe.outcome.theta_max:.3g} rad"
-    chaos = f"the peak is chaotic, under a motion {changed} the pier {becomes}: no error of it is claimed"
+        becomes = f"the pier comes to {probe.outcome.theta_max:.3g} rad"
+    chaos = f"the peak is {CHAOTIC}, under a motion {changed} {becomes}: no error of it is claimed"
     return outcome.noted(chaos, theta_max_error=None, devices_error=None)
 
 
@@ -192,7 +193,9 @@ def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier:
     tilted = MARGIN * _apart(probe.theta_res, outcome.theta_res)
     sunk = MARGIN * _apart(probe.settlement, outcome.settlement)
     if max(tilted, sunk / pier.half_width) > tolerance * pier.alpha:
-        chaos = f"the residuals are chaotic, a motion {abs(CHANGES['weaker']):g} off moves them: no error of them is claimed"
+        chaos = (
+            f"the residuals are {CHAOTIC}, a motion {CHANGES['stronger']:g} off moves them: no error of them is claimed"
+        )
         return outcome.noted(chaos, theta_res_error=None, settlement_error=None)
     settlement_error = None if outcome.settlement_error is None else max(outcome.settlement_error, sunk)
     return outcome.changed(theta_res_error=max(outcome.theta_res_error, tilted), settlement_error=settlement_error)
@@ -323,7 +326,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
         notes.append(f"lesser rotations, up to {greatest[differs].max():.2g} rad, have not settled")
         if differs[: peak + 1].any() and finer.status == "ok":
             finer = finer.changed(theta_max_error=None, devices_error=None)
-            notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
+            notes.append(f"some of them before the peak, which is {CHAOTIC}: no error of it is claimed")
     for name in COUNTS:
         fewer, more = sorted((getattr(coarser, name) or 0, getattr(finer, name) or 0))
         if fewer != more:

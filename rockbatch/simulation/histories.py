@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.errors import InputError
@@ -195,7 +196,7 @@ def with_observed(
 
     These are, if ``ledger``, the energy balance at its end, with the greatest residual on the way; and the greatest forces,
     friction counted while N is above the share ``least_normal`` of the weight, unless that is None, with their ``error`` by
-    a run of twice the step.
+    a run of twice the step unless the run is chaotic.
     """
     if not ledger and least_normal is None:
         return outcome
@@ -207,7 +208,7 @@ def with_observed(
     if least_normal is not None:
         peaks, note = peak_forces(run, rows, least_normal)
         outcome = outcome.noted(note)
-        if error and outcome.substeps % 2 == 0:
+        if error and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note:
             del rows  # a history of every step may be large
             rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
             peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
