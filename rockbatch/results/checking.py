@@ -42,8 +42,8 @@ def check(
     Returns
     -------
     DataFrame
-        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. Of a folder, first those
-        on the suite itself if the study fits it to a target spectrum, without a case.
+        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. Of a folder, first that
+        of the suite, without a case, if the study fits it to a target spectrum; a table alone has no spectra.
 
     Raises
     ------
