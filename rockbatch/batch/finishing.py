@@ -19,6 +19,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.shocks import rows_by_shock, sequences_of
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.files import legible, read_text
 from rockbatch.errors import InputError
@@ -51,7 +52,7 @@ class FinishedBatch:
     motions : MotionSet
         What the study was run under, and what of it could not be used.
     verdicts : list of Verdict
-        Those of the study's checks; empty where it has none.
+        Those of the study's checks, and of its target spectrum; empty where it has neither.
     files : tuple of Path
         Table, run.json, histories, checks and report, those that were written.
     without : InputError or None
@@ -155,8 +156,8 @@ def finish(
         saved = open_results(directory)
     histories, refusal = _keep_histories(saved, study, runs, listener, records)
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
-        judged = verdicts(saved) if study.checks else []
-        checks = write_verdicts(directory, judged) if study.checks else None
+        judged = verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
+        checks = write_verdicts(directory, judged) if judged else None
     tables = [
         *_beside_peaks(saved, study, motions),
         *_shocks(saved, study, motions, runs, listener),

@@ -38,7 +38,8 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
     case_of, record_of : function
         Of a verdict: the name of its case, and of the record that governs it.
     """
-    cases = grouped(verdicts, case_of)
+    below = [verdict for verdict in verdicts if not verdict.case and verdict.verdict == FAIL]
+    cases = grouped((verdict for verdict in verdicts if verdict.case), case_of)
     kinds = {name: {verdict.verdict for verdict in of_case} for name, of_case in cases.items()}
     failing = [name for name, of_case in kinds.items() if FAIL in of_case]
     open_ = [name for name, of_case in kinds.items() if NOT_DECIDED in of_case and FAIL not in of_case]
@@ -51,7 +52,20 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
         every.failing(failing),
         every.undecided(open_, failing),
     ]
-    return [line for line in lines if line]
+    return [*_below(below), *(_doubted(line) if below else line for line in lines if line)]
+
+
+def _below(verdicts: Sequence[Verdict]) -> list[Line]:
+    """Return the line on a suite that fails these checks of its own; none if it fails none."""
+    details = tuple(f"{verdict.check}: {wording.against(verdict)}, {verdict.note}." for verdict in verdicts)
+    return [Line(FAIL, "The suite is below its target", "", details)] if details else []
+
+
+def _doubted(line: Line) -> Line:
+    """Return a line under a suite below its target: it fails what fails, and passes nothing."""
+    if line.verdict != PASS:
+        return line
+    return line._replace(verdict=NOT_DECIDED, text=f"{line.text}, but under a suite below its target")
 
 
 def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:

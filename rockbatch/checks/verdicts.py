@@ -17,16 +17,18 @@ from rockbatch.errors import InputError
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
 """File of the verdicts, beside peaks.csv."""
+MEAN_OVER_TARGET = "mean_over_target"
+"""Demand of the verdicts on the suite itself."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome of a check for one case at one scale.
+    """The outcome of a check for one case at one scale, or for the suite itself.
 
     Attributes
     ----------
     check, case, columns, scale
-        Name of the rule; the case, its varied values, and the scale of its suite.
+        Name of the rule; the case, its varied values, and the scale of its suite. The check of the suite itself has the case "".
     demand, statistic : str
         Names of both; ``statistic`` is empty for a demand that is the same for all records.
     words : str
@@ -96,8 +98,8 @@ class Verdict:
 
 _KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
 _WORDS: dict[str, Collection[str]] = {
-    "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY), "sense": ("at most", "at least"), "demand": DEMANDS,
-    "statistic": ("", *STATISTICS), "count": ("", *COUNTS),
+    "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY), "sense": ("at most", "at least"), "statistic": ("", *STATISTICS),
+    "demand": (*DEMANDS, MEAN_OVER_TARGET), "count": ("", *COUNTS),
 }  # fmt: skip
 """Columns of words that readers look up."""
 _LATER = {field.name for field in fields(Verdict) if field.default is not MISSING}

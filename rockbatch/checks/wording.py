@@ -11,18 +11,29 @@ from rockbatch.common.grouping import grouped
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
+SUITE = "the suite"
+"""Stands for the case in a verdict on the suite."""
 REPEATED = 3
 MOST = 30
 """Verdicts that are all printed; more are summed up, and the worst of them printed."""
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
-    """Return the verdicts that fail, by their ratio, then those that are not decided; no others."""
+    """Return the verdicts that fail, that on the suite first, then by their ratio; then those that are not decided; no others."""
     places = {FAIL: 0, NOT_DECIDED: 1}
     return sorted(
         (verdict for verdict in verdicts if verdict.verdict in places),
-        key=lambda verdict: (places[verdict.verdict], -verdict.ratio if verdict.ratio == verdict.ratio else math.inf),
+        key=lambda verdict: (
+            places[verdict.verdict],
+            bool(verdict.case),
+            -verdict.ratio if verdict.ratio == verdict.ratio else math.inf,
+        ),
     )
+
+
+def scaled(verdicts: Iterable[Verdict]) -> bool:
+    """Return whether cases were run at several scales, so that a verdict has to say which."""
+    return len({verdict.scale for verdict in verdicts if verdict.case}) > 1
 
 
 def count_of(verdicts: Iterable[Verdict]) -> dict[str, int]:

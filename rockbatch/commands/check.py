@@ -59,20 +59,22 @@ def mark(verdict: str) -> str:
 def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
     """Print the verdicts, which are in ``path``, and the answer; return 1 if a check fails or is not decided, else 0."""
     many = len(verdicts) > wording.MOST
+    applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
+    idle = bool(applicable) and not any(applicable)
     show(summed_up(verdicts) if many else table(verdicts))
     show("\n" + answered(verdicts, saved))
     count = wording.count_of(verdicts)
     say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
     say(f"{path}{': all of them' if many else ''}")
-    if not (count["pass"] or count["fail"] or count["not decided"]):
+    if idle:
         say("none of the checks applies to these cases")
-    return 0 if count["pass"] and not (count["fail"] or count["not decided"]) else 1
+    return 0 if count["pass"] and not (count["fail"] or count["not decided"] or idle) else 1
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     """Return the answer with which the report begins, and the worst responses whether checked or not."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
-    scaled = len({verdict.scale for verdict in verdicts}) > 1
+    scaled = wording.scaled(verdicts)
 
     def case_of(verdict: Verdict) -> str:
         values = verdict.columns | ({"scale": verdict.scale} if scaled else {})
@@ -84,8 +86,8 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         words = f"{line.text}: {line.cases}." if line.cases else f"{line.text}."
         lines.append(_coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
-    if not verdicts:
-        lines.append("No limits were set: nothing here passes or fails.")
+    if not any(verdict.case for verdict in verdicts):
+        lines.append("No limits were set: no response passes or fails.")
     responses = {RESPONSES[name].words: response for name, response in worst_of_all(worst).items()}
     longest = max(map(len, responses), default=0)
     for words, response in responses.items():
@@ -117,14 +119,14 @@ def summed_up(verdicts: Sequence[Verdict]) -> str:
 def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
     """Return a block of lines for each run of verdicts of one case and scale: their numbers and remarks."""
     head, *lines = _numbers(verdicts)
-    many_scales = len({verdict.scale for verdict in verdicts}) > 1
+    many_scales = wording.scaled(verdicts)
     blocks = []
     of_verdicts = zip(verdicts, lines, strict=True)
     for (case, columns, scale), block in groupby(
         of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale)
     ):
         values = columns | ({"scale": scale} if many_scales else {})
-        parts = [f"{case}  {named(values, values.values())}".rstrip(), head]
+        parts = [f"{case}  {named(values, values.values())}".rstrip() if case else wording.SUITE, head]
         for verdict, line in block:
             parts.append(_coloured(line, verdict.verdict))
             remarks = (wording.governing(verdict), verdict.counted, notes.about(verdict))

@@ -73,7 +73,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
         say(warning)
     for warning in flexible(study):
         say(warning)
-    if study.checks:
+    if finished.verdicts:
         code = max(code, check.tell(finished.verdicts, saved.directory / CHECKS, saved))
     else:
         show(check.answered((), saved))

@@ -112,6 +112,27 @@ def at_target(
     return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
 
 
+def at_targets(
+    motion_set: MotionSet,
+    target: Target | SpectrumTarget | None,
+    vertical_target: Target | SpectrumTarget | None,
+    vertical_scale: float,
+    gravity: float,
+    confirmed: Sequence[str] = (),
+) -> MotionSet:
+    """Return motions scaled by :func:`at_target` and :func:`with_vertical`, which are fitted again without those that are
+    refused until none is: a common factor holds for the motions that it was found from."""
+    recorded = {motion.name: motion.vertical for motion in motion_set}
+    while True:
+        scaled = motion_set if target is None else at_target(motion_set, target, gravity, confirmed)
+        scaled = with_vertical(scaled, recorded, vertical_target, vertical_scale, gravity, confirmed)
+        used = {motion.name for motion in scaled}
+        if len(used) == len(motion_set.motions):
+            return scaled
+        remaining = [motion for motion in motion_set if motion.name in used]
+        motion_set = replace(motion_set, motions=remaining, unusable=scaled.unusable)
+
+
 def verticals(motions: Sequence[Motion]) -> list[Motion]:
     """Return the vertical component of each station as a motion on its own, called as the station, those that move."""
     moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}

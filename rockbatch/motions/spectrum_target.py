@@ -46,7 +46,7 @@ class SpectrumTarget:
         make one, the square root of the sum of their squares. "geomean", "rotd50", "rotd100": likewise their geometric mean,
         and the median and the greatest over all directions; these take both components of a station.
     at_least : float, optional
-        Share of the target; by default that of :data:`PAIRS`.
+        Share of the target; by default that of :data:`PAIRS`. It is a check of the suite, with "none" only if it is given.
 
     Components of one station have one factor, and the vertical one has that of its horizontal.
     """
@@ -153,7 +153,7 @@ class SpectrumTarget:
         return bool(unpaired(station)) if self.pairs in DIRECTIONS else len(station) != 2
 
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
-        """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used."""
+        """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used, 0 of none."""
         return {
             "spectrum": str(self.spectrum),
             "damping": self.spectrum.damping,
@@ -162,9 +162,10 @@ class SpectrumTarget:
             "pairs": self.pairs,
             "alone": sum(self._is_alone([motions[i] for i in station]) for station in _stations(motions)),
             "at_least": self.share,
+            "required": self.factors != "none" or self.at_least is not None,
             "period_s": _short(self.periods),
             "sa_g": _short(self.spectrum.at(self.periods)),
-            "mean_sa_g": _short(self.mean(motions, self.periods, gravity)),
+            "mean_sa_g": _short(np.nan_to_num(self.mean(motions, self.periods, gravity))),
             **self._of_components(motions, gravity),
         }
 

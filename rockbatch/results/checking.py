@@ -8,6 +8,8 @@ from typing import Any
 from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
 from rockbatch.checks.choices import implausible
 from rockbatch.checks.reading import Checks
+from rockbatch.checks.suite import with_case
+from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
@@ -40,7 +42,8 @@ def check(
     Returns
     -------
     DataFrame
-        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`.
+        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. Of a folder, first that
+        of the suite, without a case, if the study fits it to a target spectrum; a table alone has no spectra.
 
     Raises
     ------
@@ -67,11 +70,13 @@ def verdicts(
     """Return the verdicts of :func:`check`, one for each row."""
     given_rules = _rules_of(rules)
     records: Mapping[str, str] | None = None
+    of_suite: list[Verdict] = []
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
+        of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
     else:
         if study is None:
             raise InputError("check: a table does not name its piers; give study = the study it was run from")
@@ -79,13 +84,13 @@ def verdicts(
         own_rules, count = study.checks, study.count
         table, cases = results, [describe_case(case) for case in study.cases]
     rules = own_rules if given_rules is None else given_rules
-    if not rules:
+    if not (rules or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
     if given_rules is not None:  # the study's own are held against its piers when it is read
         wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
-    return judge(rules, table, cases, records, count)
+    return [*of_suite, *(judge(rules, table, cases, records, count) if rules else ())]
 
 
 def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:

@@ -48,7 +48,7 @@ _SPECTRA = {
 }  # fmt: skip
 _TARGET = {
     "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
-    "alone": int, "at_least": float, "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
+    "alone": int, "at_least": float, "required": Maybe(bool), "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
     "components_sa_g": Maybe([float]),
 }  # fmt: skip
 
@@ -125,6 +125,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     """Return the entries of a study and its motions in run.json."""
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
+    fitted = [motion for motion in motions.motions if not _is_pulse(motion, study)]
     with_pulses = target is not None or study.output.intensity
     return {
         "study": {
@@ -142,13 +143,19 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
         "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
-        "spectra": _spectra(motions.motions, gravity, target),
-        **({} if target is None else {"target": target.described(motions.motions, gravity)}),
+        "spectra": _spectra(motions.motions, fitted, gravity, target),
+        **({} if target is None else {"target": target.described(fitted, gravity)}),
         **_vertical_target(study, motions, gravity),
         "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [asdict(reference) for reference in study.references],
     }
+
+
+def _is_pulse(motion: Motion, study: Study) -> bool:
+    """Return whether a motion is a pulse of the study, or a sequence of pulses, which no target scales."""
+    names = [shock.name for shock in motion.shocks] or [motion.name]
+    return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
 
 
 def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[str, Any]:
@@ -159,8 +166,11 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[s
     return {"vertical_target": target.described(verticals(motions.motions), gravity)}
 
 
-def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | None) -> dict[str, Any] | None:
-    """Return response spectra of a suite that is not too large; with the damping and periods of its target, if any."""
+def _spectra(
+    motions: list[Motion], fitted: list[Motion], gravity: float, target: SpectrumTarget | None
+) -> dict[str, Any] | None:
+    """Return response spectra of a suite that is not too large; with the damping and periods of its target, if any, and the mean
+    of those ``fitted`` to it."""
     if len(motions) > MOST_SPECTRA:
         return None
     if target is None:
@@ -168,7 +178,9 @@ def _spectra(motions: list[Motion], gravity: float, target: SpectrumTarget | Non
     spectra = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
     of_target = target.spectrum.at(np.array(spectra["period_s"], dtype=np.float64))
     periods = np.array(spectra["period_s"], dtype=np.float64)
-    mean = target.mean(motions, periods, gravity, np.array(spectra["sa_g"], dtype=np.float64))
+    names = {motion.name for motion in fitted}
+    rows = [sa for motion, sa in zip(motions, spectra["sa_g"], strict=True) if motion.name in names]
+    mean = target.mean(fitted, periods, gravity, np.array(rows, dtype=np.float64))
     return spectra | {
         "mean_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in mean],
         "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],

@@ -6,7 +6,7 @@ from dataclasses import replace
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.pairs import DIRECTIONS
-from rockbatch.motions.scaling import at_target, with_vertical
+from rockbatch.motions.scaling import at_targets
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
 from rockbatch.study.load import Study
@@ -40,10 +40,7 @@ def ground_motions(study: Study) -> MotionSet:
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = with_sequences(records, spec.sequences, pulses)
     records = selected(records, spec.select, gravity)
-    recorded = {motion.name: motion.vertical for motion in records}
-    if spec.target is not None:
-        records = at_target(records, spec.target, gravity, spec.confirm)
-    records = with_vertical(records, recorded, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
+    records = at_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")

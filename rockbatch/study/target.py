@@ -111,7 +111,8 @@ _SPECTRUM = {
         'Whether each component has its own spectrum, "apart", or each station one of both components: "srss" as in EN 1998-2, '
         '"geomean", "rotd50" (median direction), or "rotd100" (maximum direction, as in ASCE 7). With `sa_g`, what of a pair '
         "that is; not srss."),
-    "at_least": Key(positive, "0.9", "Share of the target that the mean of the suite has to reach everywhere in the range."),
+    "at_least": Key(positive, "0.9",
+        "Share of the target that the mean of the suite has to reach everywhere in the range: the check `suite to target`."),
     "damping": _MEASURE["damping"],
     "interpolation": Key(choice("logarithmic", "linear"), '"linear"',
         'How a table goes between its points: straight in logarithms, or "linear", as the spectra by 22 points of ASCE 7-22 and '

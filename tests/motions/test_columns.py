@@ -103,7 +103,7 @@ def test_what_excel_exports_in_any_country_is_read(tmp_path, text, encoding):
         ("time(s) NS(gal)\n0 1\n1 2\n".encode("utf-16-le"), "to be saved as UTF-8"),
         (b"\xff\xfe" + "0 1\n".encode("utf-16-le") + b"\x00", "begins as UTF-16 text"),
         (b"# NPTS = 4\n# time(s) NS(gal)\n0 1\n1 2\n2 3\n", "the header says 4 samples, but there are 3 rows"),
-        (b"# dt = fast\n# NS(gal)\n1\n2\n", "state it in the study, e.g. dt"),
+        (b"# dt = fast\n# NS(gal)\n1\n2\n", "write dt = 0.01 under [motions]"),
         (b"# dt = -0.1\n# NS(gal)\n1\n2\n", 'found "dt = -0.1"; expected e.g. dt = 0.01 s'),
         (b"# time(s)\n1\n2\n", "a column of time and no other"),
         (b"# time(s) NS(gal)\n0 1\n1 1e300\n", "expected finite numbers"),
@@ -173,7 +173,7 @@ def test_a_remark_with_a_unit_in_it_declares_nothing(tmp_path):
 @pytest.mark.parametrize("header", ["", "# t NS", "# time(s) NS", "t,NS"])
 def test_without_a_unit_the_file_is_not_used_and_the_reason_says_what_to_add(tmp_path, header):
     write(tmp_path, header, T, NS)
-    assert 'state it in the study, e.g. unit = "cm/s2"' in reason(tmp_path)
+    assert 'write unit = "cm/s2" under [motions]' in reason(tmp_path)
 
 
 def test_a_column_that_is_no_acceleration_is_left_out_with_a_reason(tmp_path):

@@ -18,7 +18,7 @@ from rockbatch.motions.design_spectra import (
     TableSpectrum,
     read_spectrum,
 )
-from rockbatch.motions.scaling import at_target
+from rockbatch.motions.scaling import MOST_FACTOR, at_target, at_targets
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.study import load_study
@@ -181,6 +181,33 @@ def test_a_record_without_motion_is_unusable_and_does_not_spoil_the_others():
         assert [motion.name for motion in found.motions] == ["m1"]
         assert found.motions[0].factor == pytest.approx(target.factors_of(SUITE[:1], 10.0)[0])
         assert "no motion that can be scaled to the spectrum table" in found.unusable[0].reason
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_suite_is_fitted_again_without_those_that_need_too_large_a_factor(seed):
+    """The first fit refuses some; the mean of what remains is the share of the target, and all factors are within the limit."""
+    sizes = np.exp(np.random.default_rng(seed).uniform(-2.5, 1.0, 12))
+    motions = MotionSet([shaking(20 * seed + i, size) for i, size in enumerate(sizes)])
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=1.1)
+    first, last = at_target(motions, target, 10.0), at_targets(motions, target, None, 1.0, 10.0)
+    assert 0 < len(first.unusable) <= len(last.unusable) < 12
+    assert {file.name for file in first.unusable} <= {file.name for file in last.unusable}
+    assert len(last.motions) + len(last.unusable) == 12
+    assert max(motion.factor for motion in last) <= MOST_FACTOR
+    over = spectra(last.motions, target).mean(axis=0) / TABLE.at(target.periods)
+    assert over.min() >= 1.1 * (1 - 1e-9)
+    confirmed = at_targets(motions, target, None, 1.0, 10.0, ["*"])
+    assert [motion.factor for motion in confirmed] == pytest.approx(target.factors_of(motions.motions, 10.0))
+
+
+def test_a_record_refused_for_its_vertical_component_is_in_no_fit_of_the_others():
+    target, vertical = SpectrumTarget(TABLE, (0.3, 3.0), "suite"), SpectrumTarget(TABLE, (0.3, 3.0), "each")
+    pairs = [replace(motion, vertical=motion.horizontal) for motion in SUITE]
+    pairs[1] = replace(pairs[1], vertical=1e-3 * pairs[1].horizontal)
+    found = at_targets(MotionSet(pairs), target, vertical, 1.0, 10.0, ["m1", "m3"])
+    assert [motion.name for motion in found] == ["m1", "m3"]
+    assert found.unusable[0].reason.startswith("its vertical component takes ")
+    assert [motion.factor for motion in found] == pytest.approx(target.factors_of([SUITE[0], SUITE[2]], 10.0))
 
 
 def test_a_range_beyond_the_target_is_refused():

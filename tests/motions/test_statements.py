@@ -1,4 +1,4 @@
-"""What a file says goes first: the study's unit, dt and columns fill gaps, and contradictions are refused."""
+"""What a file states wins: the study's unit, dt, columns and layout fill gaps, and a note tells where they differ."""
 
 import numpy as np
 import pytest
@@ -102,12 +102,12 @@ def test_a_line_with_a_value_names_no_columns_however_many_words_it_has(tmp_path
 
 
 @pytest.mark.parametrize(("line", "dt"), STEPS)
-def test_a_stated_step_that_halves_the_duration_is_refused_with_both_values(tmp_path, line, dt):
+def test_the_step_of_a_file_wins_over_that_of_the_study_and_a_note_tells_both(tmp_path, line, dt):
     write(tmp_path, f"# {line}\n# unit: g", A)
-    said = reason(tmp_path, dt=dt / 2)
-    assert f"the file says {dt:g} s, but dt = {dt / 2:g} is stated" in said
-    assert "motions.toml" in said
-    assert one(tmp_path, dt=dt).dt == pytest.approx(dt, rel=1e-12)
+    motion = one(tmp_path, dt=dt / 2)
+    assert motion.dt == pytest.approx(dt, rel=1e-12)
+    assert any(note.startswith(f"dt = {dt:g} s as the file states; {dt / 2:g} s is") for note in motion.notes)
+    assert not any("as the file states" in note for note in one(tmp_path, dt=dt).notes)
 
 
 def test_rounding_is_no_contradiction_and_the_files_own_step_is_kept(tmp_path):
@@ -131,7 +131,7 @@ def test_a_lost_sample_does_not_make_the_headers_step_wrong(tmp_path):
 
 
 @pytest.mark.parametrize("stated", ["gal", "cm/s2", "m/s2", "g/10"])
-def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, stated):
+def test_the_unit_of_a_file_wins_over_that_of_the_study_and_a_note_tells_both(tmp_path, stated):
     folders = {name: tmp_path / name for name in ("at2", "label", "line")}
     for folder in folders.values():
         folder.mkdir()
@@ -139,10 +139,31 @@ def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, 
     write(folders["label"], "# time(s) N(g)", 0.01 * np.arange(120), A)
     write(folders["line"], "# unit: g\n# dt = 0.01", A)
     for folder in folders.values():
-        said = reason(folder, unit=stated, dt=0.02)
-        assert said.lower().startswith(f'the file says g, but unit = "{stated}" is stated')
-        assert "the file says 0.01 s, but dt = 0.02 is stated" in said
-        assert one(folder, unit="G", dt=0.01).dt == 0.01
+        motion, agreed = one(folder, unit=stated, dt=0.02), one(folder, unit="G", dt=0.01)
+        np.testing.assert_array_equal(motion.horizontal, agreed.horizontal)
+        np.testing.assert_allclose(motion.horizontal / 9.81, A, atol=1e-6)
+        assert motion.dt == 0.01
+        told = [note.lower() for note in motion.notes if note not in agreed.notes]
+        assert [note.partition(";")[0] for note in told] == [
+            "unit g as the file states",
+            "dt = 0.01 s as the file states",
+        ]
+        assert f"{stated} is for files without a unit" in told[0]
+
+
+def test_a_study_states_the_unit_of_the_one_file_that_lacks_it_and_loses_none_of_the_others(tmp_path):
+    write_at2(tmp_path, "at2_000.AT2", A)
+    write(tmp_path, "# time(s) N(cm/s2)", 0.01 * np.arange(120), 981 * B, name="columns.txt")
+    write(tmp_path, "", 0.01 * np.arange(120), 9.81 * C, name="bare_N.txt")
+    lacking = read_motions(tmp_path, confirmed=["*"]).unusable
+    assert [file.name for file in lacking] == ["bare_N"]
+    for words in ("has no unit", 'unit = "cm/s2" under [motions]', "the others keep their own", "--write-manifest"):
+        assert words in lacking[0].reason
+    found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
+    assert not found.unusable
+    motions = {motion.name: motion.horizontal / 9.81 for motion in found}
+    for name, values in {"at2_000": A, "columns": B, "bare_N": C}.items():
+        np.testing.assert_allclose(motions[name], values, atol=2e-4)
 
 
 @pytest.mark.parametrize(
@@ -160,7 +181,7 @@ def test_a_stated_unit_that_contradicts_the_file_is_refused_with_both(tmp_path, 
 def test_a_unit_in_the_text_of_a_header_counts_and_is_not_overridden(tmp_path, line):
     write(tmp_path, f"# {line}\n# dt = 0.01", 100 * A)
     np.testing.assert_allclose(one(tmp_path).horizontal, A, atol=1e-6)
-    assert 'but unit = "g" is stated' in reason(tmp_path, unit="g")
+    np.testing.assert_allclose(one(tmp_path, unit="g").horizontal, A, atol=1e-6)
 
 
 def test_the_unit_of_a_peak_and_words_behind_in_are_no_unit_of_the_data(tmp_path):
@@ -183,32 +204,51 @@ def test_a_manifest_stays_the_word_for_one_file_and_says_so_whatever_the_study_s
 
 
 @pytest.mark.parametrize("header", ["# time(s) N(g) UP(g) E(g)", "t N UP E", "time,000,up,090"])
-def test_stated_columns_that_make_a_vertical_horizontal_are_refused_with_both_names(tmp_path, header):
+def test_stated_columns_make_no_vertical_horizontal_that_the_header_names(tmp_path, header):
     write(tmp_path, header, 0.01 * np.arange(120), A, B, C, name="x.txt")
     unit = None if "(g)" in header else "g"
-    said = reason(tmp_path, unit=unit, columns=("time", "000", "090", "up"))
-    assert 'column 3: the header says "UP", but columns states "090"'.lower() in said.lower()
-    found = read_motions(tmp_path, options=ReadOptions(unit=unit, columns=("time", "000", "up", "090")))
-    assert [(m.azimuth, m.vertical_source) for m in found.motions] == [
-        (0.0, found.motions[0].vertical_source),
-        (90.0, found.motions[0].vertical_source),
-    ]
-    assert "up" in found.motions[0].vertical_source.lower()
+    for columns in (("time", "000", "090", "up"), ("time", "000", "up", "090")):
+        found = read_motions(tmp_path, options=ReadOptions(unit=unit, columns=columns))
+        assert not found.unusable
+        assert [motion.azimuth for motion in found] == [0.0, 90.0]
+        assert all("up" in motion.vertical_source.lower() for motion in found)
+        noted = ["are those of other files" in note for note in found.motions[0].notes]
+        assert any(noted) == (columns[2] != "up")
 
 
 @pytest.mark.parametrize(
-    ("header", "columns", "message"),
+    ("header", "columns", "names"),
     [
-        ("# time(s) N(g)", ("000", "time"), 'column 1: the header says "time", but columns states "000"'),
-        ("# N(g) E(g)", ("time", "090"), 'column 1: the header says "N", but columns states "time"'),
-        ("# time(s) N(g)", ("time", "180"), 'column 2: the header says "N", but columns states "180"'),
-        ("# time(s) Zdown(g)", ("time", "up"), 'column 2: the header says "Zdown", but columns states "up"'),
-        ("# T(s) Sa(g)", ("time", "000"), "a response spectrum is no time history"),
+        ("# time(s) N(g)", ("000", "time"), ["x"]),
+        ("# N(g) E(g)", ("time", "090"), ["x.N", "x.E"]),
+        ("# time(s) N(g)", ("time", "180"), ["x"]),
     ],
 )
-def test_stated_columns_cannot_change_what_the_header_names(tmp_path, header, columns, message):
-    write(tmp_path, header, 0.01 * np.arange(120), A, name="x.txt")
-    assert message in reason(tmp_path, dt=0.01, columns=columns)
+def test_stated_columns_cannot_change_what_the_header_names(tmp_path, header, columns, names):
+    first = 0.01 * np.arange(120) if "time" in header else A
+    write(tmp_path, header, first, B, name="x.txt")
+    found = read_motions(tmp_path, options=ReadOptions(dt=0.01, columns=columns), confirmed=["*"])
+    assert not found.unusable
+    assert [motion.name for motion in found] == names
+    assert found.motions[0].azimuth == 0.0
+    assert "are those of other files" in " ".join(found.motions[0].notes)
+
+
+def test_stated_columns_make_no_record_of_a_spectrum(tmp_path):
+    write(tmp_path, "# T(s) Sa(g)", 0.01 * np.arange(120), A, name="x.txt")
+    assert "a response spectrum is no time history" in reason(tmp_path, dt=0.01, columns=("time", "000"))
+
+
+def test_a_layout_of_the_study_is_for_files_whose_header_names_no_columns(tmp_path):
+    write(tmp_path, "", *A.reshape(-1, 5).T, name="wrapped_N.txt")
+    write(tmp_path, "# time(s) E(g)", 0.01 * np.arange(120), B, name="named_E.txt")
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=0.01, layout="wrapped"), confirmed=["*"])
+    assert not found.unusable
+    for motion, values in zip(found, (B, A), strict=True):
+        np.testing.assert_allclose(motion.horizontal / 9.81, values, atol=1e-6)
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "named_E.txt"\nlayout = "wrapped"\n')
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", dt=0.01, layout="wrapped"), confirmed=["*"])
+    assert max(motion.npts for motion in found) == 240
 
 
 def test_stated_columns_fill_what_the_header_leaves_open_and_leave_columns_out(tmp_path):
@@ -240,9 +280,9 @@ def test_columns_of_other_files_do_not_concern_one_whose_header_tells_its_own(tm
     assert "the 4 that are stated are those of other files" in found.motions[2].notes[0]
 
 
-def test_the_commands_options_are_refused_in_the_same_way(tmp_path, capsys):
+def test_the_commands_options_are_for_files_that_state_none_too(tmp_path, capsys):
     write(tmp_path, "# SAMPLING INTERVAL (sec) : 0.01\n# unit: g", A)
-    assert main(["motions", str(tmp_path), "--dt", "0.005", "--unit", "cm/s2"]) == 1
+    assert main(["motions", str(tmp_path), "--dt", "0.005", "--unit", "cm/s2"]) == 0
     shown = capsys.readouterr().out
-    assert 'the file says g, but unit = "cm/s2" is stated' in shown
-    assert "the file says 0.01 s, but dt = 0.005 is stated" in shown
+    assert "x_N" in shown
+    assert "unit g as the file states" in shown

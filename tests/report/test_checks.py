@@ -120,7 +120,7 @@ def test_what_a_statistic_of_a_code_rests_on_is_said(tmp_path):
 def test_a_study_without_checks_does_not_claim_to_pass(tmp_path):
     write_results(tmp_path)
     text = Page(write_report(tmp_path, []).read_text(encoding="utf-8")).text
-    assert "No limits were set: nothing here passes or fails." in text
+    assert "No limits were set: no response passes or fails." in text
     assert "✓" not in text
 
 

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
@@ -65,14 +65,14 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     (recording,) = _parse(file.data.decode("latin-1"))
     unit = recording.unit or file.options.unit
     if unit is None:
-        raise UnstatedError('no unit in the header ("… IN UNITS OF G"); state it in the study, e.g. unit = "g"', "unit")
+        raise unstated('no unit in the header ("… IN UNITS OF G")', 'unit = "g"', "unit")
     try:
         acceleration_factor(unit, file.gravity)
     except ValueError as error:
         raise InputError(f"header: {error}") from None
-    file.options.hold_against(unit, recording.dt, file.gravity)
+    notes = (*recording.notes, *file.options.overruled(unit, recording.dt, file.gravity))
     orientation = orientation_of(recording.label) or split_stem(file.stem)[1]
-    return to_components(file, [replace(recording, unit=unit, orientation=orientation)])
+    return to_components(file, [replace(recording, unit=unit, orientation=orientation, notes=notes)])
 
 
 def _parse(text: str) -> list[Recording]:

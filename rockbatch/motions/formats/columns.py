@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
     SAME_STEP,
@@ -26,7 +26,7 @@ from rockbatch.motions.formats.column_header import (
     stated_unit,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
+from rockbatch.motions.formats.record_file import ReadOptions, RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
@@ -59,9 +59,10 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
     of spectra. Uneven times are interpolated, and it is said.
     """
     recordings = _parse(file.text, file.options)
-    for recording in recordings:
+    for i, recording in enumerate(recordings):
         if is_acceleration(recording.unit):
-            file.options.hold_against(recording.unit, recording.dt, file.gravity)
+            overruled = file.options.overruled(recording.unit, recording.dt, file.gravity)
+            recordings[i] = replace(recording, notes=(*recording.notes, *overruled))
     if len(recordings) > 1:
         return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
     (only,) = recordings
@@ -72,7 +73,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 def _parse(text: str, options: ReadOptions) -> list[Recording]:
     """Return the columns of acceleration; ``InputError`` where they are not known, or have no unit."""
-    header, table = read_table(text, wrapped=options.layout == "wrapped")
+    header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead)
     if len(table) < 2:
         raise InputError("found one row of numbers; expected at least two samples")
     columns, notes = _columns(header, options, table)
@@ -85,11 +86,7 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
     lacking = [f"{_called(i, columns[i])} has no unit" for i in used if not (columns[i].unit or unit)]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
-        raise UnstatedError(
-            f"{'; '.join(lacking)}; write it in the header, e.g. # time(s) NS(cm/s2), "
-            'or state it in the study, e.g. unit = "cm/s2"',
-            *(("unit", "dt") if untimed else ("unit",)),
-        )
+        raise unstated("; ".join(lacking), 'unit = "cm/s2"', *(("unit", "dt") if untimed else ("unit",)))
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
         raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
@@ -114,13 +111,17 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     columns = columns_with_units(header, width) or columns_without_units(header, width)
     stated = options.columns
     notes: tuple[str, ...] = ()
-    if stated is not None and len(stated) != width:
-        if columns is None:
-            raise InputError(f"found {width} columns; the study states columns = {list(stated)}")
-        notes = (f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",)
-    elif stated is not None:
+    if stated is not None:
         known = columns or [Column("")] * width
-        columns = [_completed(i, column, label) for i, (column, label) in enumerate(zip(known, stated, strict=True))]
+        completed = list(map(_completed, known, stated)) if len(stated) == width else [None]
+        if None not in completed:
+            columns = [column for column in completed if column]
+        elif columns is None:
+            raise InputError(f"found {width} columns; the study states columns = {list(stated)}")
+        else:
+            notes = (
+                f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
+            )
     if columns is None:
         return _guessed(header, table)
     columns = _with_time(columns, table)
@@ -129,11 +130,8 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     return columns, notes
 
 
-def _completed(i: int, header: Column, stated: str) -> Column:
-    """Return a column of the header with what the study states about it where the header says nothing.
-
-    ``InputError`` where the two contradict each other.
-    """
+def _completed(header: Column, stated: str) -> Column | None:
+    """Return a column of the header with what the study states about it where the header says nothing; None if they differ."""
     if stated == "-":
         return Column(stated)
     by_header, by_study = orientation_in(header.label), orientation_in(stated)
@@ -150,12 +148,7 @@ def _completed(i: int, header: Column, stated: str) -> Column:
         )
         unchanged = by_header.vertical or by_header.azimuth is not None or not by_study.known
         column = header if by_header.known and unchanged else Column(stated, header.unit)
-    if not agree:
-        raise InputError(
-            f'column {i + 1}: the header says "{header.label}", but columns states "{stated}"; what a file says goes '
-            "first: leave columns out, or correct the header"
-        )
-    return column
+    return column if agree else None
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
@@ -199,9 +192,7 @@ def _sampled(
     if not times:
         dt = stated.dt if stated else options.dt
         if dt is None:
-            raise UnstatedError(
-                "no column of time and no sampling interval; state it in the study, e.g. dt = 0.01", "dt"
-            )
+            raise unstated("no column of time and no sampling interval", "dt = 0.01", "dt")
         return dt, table, ()
     column = columns[times[0]]
     seconds = seconds_in(column.unit or "s")

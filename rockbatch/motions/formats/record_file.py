@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.common.units import GRAVITY, acceleration_factor
-from rockbatch.errors import InputError
+from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.formats.column_header import SAME_STEP
 from rockbatch.motions.limits import STEPS, is_step
 
@@ -24,8 +24,8 @@ _SAME_UNIT = 1e-9  # relative
 class ReadOptions:
     """Statements of a study about files that do not make them themselves.
 
-    Text columns and AT2 files, whose headers people write, are refused where they say otherwise; files of formats that
-    always have their unit and step are not concerned.
+    A file that states its own keeps it. Where the header is one that people write, as of text columns and AT2 files, a note
+    tells where it differs.
 
     Attributes
     ----------
@@ -89,25 +89,25 @@ class ReadOptions:
         if wrong:
             raise InputError(*wrong)
 
-    def hold_against(self, unit: str, dt: float, gravity: float) -> None:
-        """Raise ``InputError`` where a file with a header of free text says another ``unit`` or ``dt`` [s] than is stated.
-
-        What a manifest states is for this very file, and replaces what it says afterwards; ``gravity`` [m/s²].
-        """
-        wrong = []
+    def overruled(self, unit: str, dt: float, gravity: float) -> tuple[str, ...]:
+        """Return notes on a study's unit and step that a file does not take, since it states another ``unit`` or ``dt`` [s]."""
+        notes = []
         if self.unit is not None and "unit" not in self.instead:
             by_file, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
             if abs(by_file - stated) > _SAME_UNIT * by_file:
-                wrong.append(("unit", unit, f'"{self.unit}"'))
+                notes.append(f"unit {unit} as the file states; {self.unit} is for files without a unit")
         if self.dt is not None and "dt" not in self.instead and abs(self.dt - dt) > SAME_STEP * dt:
-            wrong.append(("dt", f"{dt:g} s", f"{self.dt:g}"))
-        if wrong:
-            reasons = [
-                f"the file says {by_file}, but {key} = {stated} is stated for files that do not say: leave it out, and write "
-                f"{key} in motions.toml for those that need it"
-                for key, by_file, stated in wrong
-            ]
-            raise InputError("; ".join(reasons))
+            notes.append(f"dt = {dt:g} s as the file states; {self.dt:g} s is for files without a step")
+        return tuple(notes)
+
+
+def unstated(lack: str, example: str, *keys: str) -> UnstatedError:
+    """Return the refusal of a file that does not state its unit or step, with the places where its user can."""
+    return UnstatedError(
+        f"{lack}; write {example} under [motions] in the study, for all files that state none (the others keep their own), or "
+        "for this file in motions.toml, which `rockbatch motions FOLDER --write-manifest` drafts",
+        *keys,
+    )
 
 
 @dataclass(frozen=True)

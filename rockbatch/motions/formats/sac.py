@@ -6,9 +6,9 @@ import numpy as np
 
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError, UnstatedError
+from rockbatch.errors import InputError
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
-from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
@@ -43,10 +43,8 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             "this file in motions.toml"
         )
     if options.unit is None and options.sensitivity is None:
-        raise UnstatedError(
-            'SAC files do not tell their unit reliably; state it in the study, e.g. unit = "g" '
-            "(or sensitivity = … for counts per m/s²)",
-            "unit",
+        raise unstated(
+            "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
         )
     start = stats.starttime.timestamp
     factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)

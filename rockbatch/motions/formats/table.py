@@ -25,14 +25,14 @@ _SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 
 
-def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
+def read_table(text: str, wrapped: bool = False, named: bool = True) -> tuple[list[str], Samples]:
     """Return the header lines, without their comment sign, and the table of numbers, shape (npts, columns).
 
     Columns stand between blanks, tabs, commas or semicolons. Decimal commas are understood where they cannot
     be anything else: between semicolons, tabs or blanks in a file without a decimal point. Raises
     ``InputError`` with the line for a row unlike those above it, and for commas that may be either. A ``wrapped`` table is one
     column that goes on from line to line, as is one whose header states as many samples as there are numbers; its last row
-    may be shorter.
+    may be shorter. Columns that the header names are not wrapped, unless ``named`` is False.
     """
     header: list[str] = []
     remainder: list[float] = []
@@ -62,8 +62,8 @@ def read_table(text: str, wrapped: bool = False) -> tuple[list[str], Samples]:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
         raise NoRecordError("no columns of numbers found in it")
-    if width > 1 and stated_count(header) == len(rows) + len(remainder):
-        wrapped = wrapped or not (columns_with_units(header, width) or columns_without_units(header, width))
+    if width > 1 and (wrapped or stated_count(header) == len(rows) + len(remainder)):
+        wrapped = not (named and (columns_with_units(header, width) or columns_without_units(header, width)))
     if remainder and not wrapped:
         hint = f". {WRAPPED}" if width > 2 else ""
         raise _refused(lines, f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above{hint}")

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks.suite_target import NAMES, suite_verdicts
+from rockbatch.checks.verdicts import FAIL
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, join
 from rockbatch.report.sections.motions import Record, spectra
@@ -27,8 +29,23 @@ def section(finished: Finished) -> Markup:
         parts.append(_horizontal(finished, horizontal, records))
     if vertical is not None:
         factors = [record["vertical_factor"] for record in records if record.get("vertical_factor") is not None]
-        parts.append(render("sections/vertical_target.html", target=vertical, factors=factors, **_mean_over(vertical)))
+        parts.append(
+            render(
+                "sections/vertical_target.html",
+                target=vertical,
+                factors=factors,
+                below=_is_below(finished, "vertical_target"),
+                **_mean_over(vertical),
+            )
+        )
     return join(*parts)
+
+
+def _is_below(finished: Finished, entry: str) -> bool:
+    """Return whether the suite fails the check of a target, ``entry`` of run.json."""
+    return any(
+        verdict.verdict == FAIL for verdict in suite_verdicts(finished.info, ()) if verdict.check == NAMES[entry]
+    )
 
 
 def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
@@ -55,7 +72,7 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
-        "sections/target.html", target=target, records=records, **_mean_over(target),
+        "sections/target.html", target=target, records=records, below=_is_below(finished, "target"), **_mean_over(target),
         run=(both / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(both) == len(target["sa_g"]) else [],
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),

@@ -50,14 +50,13 @@ def mark(verdict: str, words: str) -> Markup:
 def answer(finished: Finished) -> Markup:
     """Report the cases that pass, what fails and by how much, and what is not decided."""
     verdicts = finished.verdicts
-    if not verdicts:
-        return join(
-            "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),
-            " judges finished results by rules.",
-        )  # fmt: skip
-    scaled = len({row.scale for row in verdicts}) > 1
+    scaled = wording.scaled(verdicts)
     lines = answered(verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record))
-    return tag("ul", *map(_line, lines), class_="answer")
+    listed = tag("ul", *map(_line, lines), class_="answer") if lines else ""
+    if any(verdict.case for verdict in verdicts):
+        return join(listed)
+    hint = join(tag("code", "rockbatch check"), " judges finished results by rules.")
+    return join(listed, "No limits were set: no response passes or fails. ", hint)
 
 
 def _line(line: Line) -> Markup:
@@ -67,6 +66,8 @@ def _line(line: Line) -> Markup:
 
 
 def _case(verdict: Verdict, scaled: bool) -> str:
+    if not verdict.case:
+        return wording.SUITE
     words = [quantity(key, value) for key, value in verdict.columns.items()]
     words += [f"motions scaled by {verdict.scale:g}"] if scaled else []
     return verdict.case + (f" ({', '.join(words)})" if words else "")
@@ -85,7 +86,7 @@ def matrix(verdicts: Sequence[Verdict]) -> Markup:
     """Return a row for each case, a column for each check: demand over limit, and the verdict."""
     checks = list(dict.fromkeys(verdict.check for verdict in verdicts))
     rows = []
-    scaled = len({verdict.scale for verdict in verdicts}) > 1
+    scaled = wording.scaled(verdicts)
     for case, of_case in grouped(verdicts, lambda verdict: _case(verdict, scaled)).items():
         by_check = {verdict.check: verdict for verdict in of_case}
         rows.append([case, *(_cell(by_check[name]) if name in by_check else "" for name in checks)])
@@ -133,7 +134,7 @@ def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
         ),
         Head("note"),
     ]
-    scaled = len({row.scale for row in verdicts}) > 1
+    scaled = wording.scaled(verdicts)
     rows = [
         [
             row.check, _case(row, scaled), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
