@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
+from rockbatch.checks.coverage import CaseRuns, stations_of
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.report.finished import Finished
@@ -49,15 +50,18 @@ def mark(verdict: str, words: str) -> Markup:
 
 def answer(finished: Finished) -> Markup:
     """Report the cases that pass, what fails and by how much, and what is not decided."""
-    verdicts = finished.verdicts
-    if not verdicts:
-        return join(
-            "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),
-            " judges finished results by rules.",
-        )  # fmt: skip
-    scaled = len({row.scale for row in verdicts}) > 1
-    lines = answered(verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record))
-    return tag("ul", *map(_line, lines), class_="answer")
+    scaled = len({runs.scale for runs in finished.suites}) > 1
+    lines = answered(
+        finished.verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record),
+        finished.suites, stations_of(finished.info),
+    )  # fmt: skip
+    listed = tag("ul", *map(_line, lines), class_="answer") if lines else Markup("")
+    if finished.verdicts:
+        return listed
+    return join(
+        listed, "No limits were set: nothing here passes or fails. ", tag("code", "rockbatch check"),
+        " judges finished results by rules.",
+    )  # fmt: skip
 
 
 def _line(line: Line) -> Markup:
@@ -66,7 +70,7 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _case(verdict: Verdict, scaled: bool) -> str:
+def _case(verdict: Verdict | CaseRuns, scaled: bool) -> str:
     words = [quantity(key, value) for key, value in verdict.columns.items()]
     words += [f"motions scaled by {verdict.scale:g}"] if scaled else []
     return verdict.case + (f" ({', '.join(words)})" if words else "")
