@@ -3,19 +3,23 @@
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from rockbatch.checks import wording
+from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
+from rockbatch.toml.kinds import shown
 
 MOST_NAMES = 6
 MOST_CHECKS = 3
 """Greatest number of checks that fail or are not decided with a line each in the answer."""
 
 Words = Callable[[Verdict], str]
+CaseWords = Callable[[Verdict | CaseRuns], str]
 
 
 class Line(NamedTuple):
@@ -27,8 +31,15 @@ class Line(NamedTuple):
     details: tuple[str, ...]
 
 
-def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, record_of: Words) -> list[Line]:
-    """Return the lines of the answer.
+def answer(
+    verdicts: Sequence[Verdict],
+    worst: Sequence[Worst],
+    case_of: CaseWords,
+    record_of: Words,
+    runs: Sequence[CaseRuns] = (),
+    stations: Stations = ALL_STATIONS,
+) -> list[Line]:
+    """Return the lines of the answer; none is green that says nothing of a case or of a station.
 
     Parameters
     ----------
@@ -37,21 +48,33 @@ def answer(verdicts: Sequence[Verdict], worst: Sequence[Worst], case_of: Words, 
         The worst response of every case.
     case_of, record_of : function
         Of a verdict: the name of its case, and of the record that governs it.
+    runs : sequence of CaseRuns
+        Every case of the study, checked or not; by default those of the verdicts.
+    stations : Stations
+        Stations of the suite, and those without a motion.
     """
     below = [verdict for verdict in verdicts if not verdict.case and verdict.verdict == FAIL]
-    cases = grouped((verdict for verdict in verdicts if verdict.case), case_of)
+    of_cases = [verdict for verdict in verdicts if verdict.case]
+    cases = grouped(of_cases, case_of)
+    names_of = {(*_key(verdict.case, verdict.columns), verdict.scale): case_of(verdict) for verdict in of_cases}
+    by_name = {names_of.get((*_key(case.case, case.columns), case.scale)) or case_of(case): case for case in runs}
+    every = _Cases(cases, by_name, case_of, record_of, stations)
     kinds = {name: {verdict.verdict for verdict in of_case} for name, of_case in cases.items()}
     failing = [name for name, of_case in kinds.items() if FAIL in of_case]
     open_ = [name for name, of_case in kinds.items() if NOT_DECIDED in of_case and FAIL not in of_case]
-    meeting = [name for name in cases if name not in failing and name not in open_]
+    meeting = [name for name in cases if name not in {*failing, *open_, *every.unchecked}]
     free = {name: _unlimited(cases[name], worst) for name in meeting}
-    every = _Cases(cases, case_of, record_of)
+    passing = every.passing([name for name in meeting if not free[name]])
     lines = [
-        every.passing([name for name in meeting if not free[name]]),
+        passing,
         every.without_limit({name: free[name] for name in meeting if free[name]}),
         every.failing(failing),
         every.undecided(open_, failing),
+        None if passing or not of_cases else every.unchecked_alone(),
     ]
+    missing = missing_stations(stations)
+    # It qualifies what passes; what fails does so without these stations, too
+    lines = [missing, *lines] if meeting else [*lines, missing]
     return [*_below(below), *(_doubted(line) if below else line for line in lines if line)]
 
 
@@ -66,6 +89,27 @@ def _doubted(line: Line) -> Line:
     if line.verdict != PASS:
         return line
     return line._replace(verdict=NOT_DECIDED, text=f"{line.text}, but under a suite below its target")
+
+
+def missing_stations(stations: Stations) -> Line | None:
+    """Return the line on stations without a motion or with fewer components than they have, with the reasons."""
+    if not stations.unusable:
+        return None
+    whole = [name for name in stations.unusable if name not in stations.used]
+    parts = {name: files for name, files in stations.unusable.items() if name in stations.used}
+    names = whole + [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in parts.items()]
+    text = f"{_listed(names, ', ')} could not be used"
+    if stations.known:
+        text = f"{len(stations.used)} of {stations.total} stations; {text}"
+    reasons = grouped(stations.unusable, lambda name: str(stations.unusable[name][0]["reason"]).rstrip("."))
+    details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
+    more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
+    keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
+    listed = ", ".join([*map(shown, keys[:MOST_NAMES]), *("…" for _ in keys[MOST_NAMES : MOST_NAMES + 1])])
+    remedy = f"To leave them out on purpose: leave_out = [{listed}] under [motions]."
+    if len(details) == 1:
+        return Line(NOT_DECIDED, text, next(iter(reasons)), (remedy,))
+    return Line(NOT_DECIDED, text, "", (*details[:MOST_CHECKS], *more, remedy))
 
 
 def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:
@@ -83,11 +127,27 @@ def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
 
 @dataclass(frozen=True)
 class _Cases:
-    """Verdicts by the name of their case, and the words for the case and the record of a verdict."""
+    """Verdicts and runs by the name of their case, the words for the case and the record of a verdict, and the stations."""
 
     verdicts: Mapping[str, Sequence[Verdict]]
-    case_of: Words
+    runs: Mapping[str, CaseRuns]
+    case_of: CaseWords
     record_of: Words
+    stations: Stations
+
+    @cached_property
+    def every(self) -> list[str]:
+        """Names of all cases."""
+        return list(dict.fromkeys((*self.runs, *self.verdicts)))
+
+    @cached_property
+    def unchecked(self) -> list[str]:
+        """Names of cases to which no check applies, or of which checks pass though no run ends standing."""
+        return [name for name in self.every if not self._of([name], FAIL, NOT_DECIDED) and not self._passes(name)]
+
+    def _passes(self, name: str) -> bool:
+        runs = self.runs.get(name)
+        return bool(self._of([name], PASS)) and (runs is None or sum(runs.ended.values()) < runs.runs)
 
     def passing(self, names: Sequence[str]) -> Line | None:
         """Return the line on cases that pass every check."""
@@ -99,9 +159,42 @@ class _Cases:
         if closest is not None:
             place = f", in {self.case_of(closest)}" if len(names) > 1 else ""
             details = (f"Closest to its limit: {closest.check}, {wording.against(closest)}{place}.", *details)
-        if len(names) == len(self.verdicts):
-            return Line(PASS, f"Every check passes in {self._among(names)}", "", details)
-        return Line(PASS, f"{self._among(names)} pass{'es' * (len(names) == 1)} every check", _listed(names), details)
+        details = (*details, *self._cut_short(names), *self._left_out())
+        verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
+        if len(names) == len(self.every):
+            return Line(verdict, f"Every check passes in {self._among(names)}", "", details)
+        passes = f"{self._among(names)} pass{'es' * (len(names) == 1)}"
+        if not self.unchecked:
+            return Line(verdict, f"{passes} every check", _listed(names), details)
+        rest = f"{len(self.unchecked)} {'is' if len(self.unchecked) == 1 else 'are'} not checked"
+        lists = f"Not checked: {self._with_ends(self.unchecked)}.", f"Passes: {_listed(names)}."
+        return Line(verdict, f"{passes}; {rest}", "", (*lists, *details))
+
+    def unchecked_alone(self) -> Line | None:
+        """Return the line on cases that are not checked, if none of the others passes."""
+        names = self.unchecked
+        if not names:
+            return None
+        text = f"{self._among(names)} {'is' if len(names) == 1 else 'are'} not checked"
+        return Line(NOT_DECIDED, _capital(text), self._with_ends(names), ())
+
+    def _with_ends(self, names: Sequence[str]) -> str:
+        """Return the names of cases, first those with runs that do not end standing, with the number of these."""
+        ends = {name: self.runs[name].in_words if name in self.runs else "" for name in names}
+        order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
+        words = [f"{name} ({ends[name]})" if ends[name] else name for name in order]
+        more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
+        return _listed(words) + (f", {more} of them with runs that do not end standing" if more else "")
+
+    def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return which of these cases have runs that do not end standing, in a sentence."""
+        ended = [name for name in names if name in self.runs and self.runs[name].ended]
+        return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
+
+    def _left_out(self) -> tuple[str, ...]:
+        """Return the stations that are left out by name, in a sentence."""
+        names = list(self.stations.left_out)
+        return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:
         """Return the line on cases that pass only because their governing responses have no limit."""
@@ -111,7 +204,8 @@ class _Cases:
         names = ", ".join(RESPONSES[name].words for name in worst)
         text = f"{self._among(free)} meet{'s' * (len(free) == 1)} the limits, but none is set on {names}"
         values = ", ".join(f"{RESPONSES[name].words} {in_words(response)}" for name, response in worst.items())
-        return Line(NOT_DECIDED, _capital(text), _listed(list(free)), (f"Without a limit, at most: {values}.",))
+        details = f"Without a limit, at most: {values}.", *self._cut_short(list(free))
+        return Line(NOT_DECIDED, _capital(text), _listed(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
         """Return the line on checks that fail, each with its worst demand, and the case nearest to passing."""
@@ -133,7 +227,7 @@ class _Cases:
     def _failure(self, verdict: Verdict, more: int) -> str:
         """Return a check with its demand, its limit and the record that governs it; ``more`` cases fail it, too."""
         other_cases = f" and {more} more case{'s' * (more > 1)}" if more else ""
-        place = f"in {self.case_of(verdict)}{other_cases}" if len(self.verdicts) > 1 else ""
+        place = f"in {self.case_of(verdict)}{other_cases}" if len(self.every) > 1 else ""
         record = self.record_of(verdict) if verdict.record else ""
         if verdict.is_ban:
             verb = DEMANDS[verdict.demand].verb if verdict.demand in DEMANDS else "is not so"
@@ -158,7 +252,7 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _listed(names), tuple(details))
 
     def _doubt(self, verdict: Verdict) -> str:
-        case = f" in {self.case_of(verdict)}" if len(self.verdicts) > 1 else ""
+        case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
         limit = "" if verdict.is_ban else f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip()
         cause = f"left open by {self.record_of(verdict)}" if verdict.record else ""
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
@@ -172,12 +266,13 @@ class _Cases:
             if checks
         )
 
-    def _of(self, names: Sequence[str], kind: str = "") -> list[Verdict]:
-        """Return the verdicts of these cases, all or those of one kind."""
-        return [verdict for name in names for verdict in self.verdicts[name] if not kind or verdict.verdict == kind]
+    def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:
+        """Return the verdicts of these cases, all or those of some kinds."""
+        verdicts = (verdict for name in names for verdict in self.verdicts.get(name, ()))
+        return [verdict for verdict in verdicts if not kinds or verdict.verdict in kinds]
 
     def _among(self, cases: Collection[str]) -> str:
-        total = len(self.verdicts)
+        total = len(self.every)
         if len(cases) == total:
             return {1: "the only case", 2: "both cases"}.get(total, f"all {total} cases")
         return f"{len(cases)} of {total} cases"
@@ -192,6 +287,6 @@ def _capital(words: str) -> str:
     return words[0].upper() + words[1:]
 
 
-def _listed(names: Sequence[str]) -> str:
+def _listed(names: Sequence[str], comma: str = "; ") -> str:
     more = len(names) - MOST_NAMES
-    return "; ".join(names[:MOST_NAMES]) + (f"; and {more} more" if more > 0 else "")
+    return comma.join(names[:MOST_NAMES]) + (f"{comma}and {more} more" if more > 0 else "")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
+from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
@@ -37,8 +38,6 @@ def main(arguments: argparse.Namespace) -> int:
     """Check results against rules; print and write the verdicts, and rewrite the report if it exists."""
     saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
-    if unusable := len(saved.info["unusable"]):
-        say(f"files that are not usable as records, and in no suite: {unusable}")
     code = tell(results, write_verdicts(arguments.directory, results), saved)
     if is_plain(arguments.directory / "report.html"):
         say(str(write_report(arguments.directory, saved=saved)))
@@ -57,7 +56,11 @@ def mark(verdict: str) -> str:
 
 
 def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
-    """Print the verdicts, which are in ``path``, and the answer; return 1 if a check fails or is not decided, else 0."""
+    """Print the verdicts, which are in ``path``, and the answer; return the exit code.
+
+    It is 1 if a check fails or is not decided, if none applies, or if a file could not be used; a case without a check is no
+    failed check.
+    """
     many = len(verdicts) > wording.MOST
     applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
     idle = bool(applicable) and not any(applicable)
@@ -68,21 +71,27 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
     say(f"{path}{': all of them' if many else ''}")
     if idle:
         say("none of the checks applies to these cases")
-    return 0 if count["pass"] and not (count["fail"] or count["not decided"] or idle) else 1
+    decided = count["pass"] and not (count["fail"] or count["not decided"] or idle)
+    return 0 if decided and not saved.info["unusable"] else 1
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     """Return the answer with which the report begins, and the worst responses whether checked or not."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
-    scaled = wording.scaled(verdicts)
+    runs = simulated(with_case(saved.peaks))
+    suites = runs_of_cases(runs, saved.info["cases"], len(saved.info["records"]))
+    scaled = len({suite.scale for suite in suites}) > 1
 
-    def case_of(verdict: Verdict) -> str:
-        values = verdict.columns | ({"scale": verdict.scale} if scaled else {})
+    def case_of(verdict: Verdict | CaseRuns) -> str:
+        values = dict(verdict.columns) | ({"scale": verdict.scale} if scaled else {})
         return f"{verdict.case} {named(values, values.values())}".rstrip()
 
-    worst = worst_of_cases(simulated(with_case(saved.peaks)), saved.info["cases"])
+    worst = worst_of_cases(runs, saved.info["cases"])
     lines = []
-    for line in answer(verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record)):
+    stations = stations_of(saved.info)
+    for line in answer(
+        verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
+    ):
         words = f"{line.text}: {line.cases}." if line.cases else f"{line.text}."
         lines.append(_coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
         lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
@@ -90,6 +99,10 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         lines.append("No limits were set: no response passes or fails.")
     responses = {RESPONSES[name].words: response for name, response in worst_of_all(worst).items()}
     longest = max(map(len, responses), default=0)
+    ended = sum(sum(suite.ended.values()) for suite in suites)
+    if ended and responses:
+        planned = sum(suite.runs for suite in suites)
+        lines.append(f"Worst of {planned - ended} of {planned} runs that end standing")
     for words, response in responses.items():
         columns = response.case["columns"]
         hint = (

@@ -24,6 +24,7 @@ from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
+from rockbatch.motions.leaving_out import LeaveOut
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
@@ -63,6 +64,7 @@ def read_motions(
     azimuths: Sequence[float] = (),
     confirmed: Sequence[str] = (),
     confirmed_pga: Sequence[str] = (),
+    leave_out: Sequence[str] = (),
 ) -> MotionSet:
     """Return the motions of files and folders, in order of their paths, and what could not be used.
 
@@ -88,12 +90,14 @@ def read_motions(
         Names of motions, or patterns with * and ?, that are right whatever is odd about them (``plausible``).
     confirmed_pga : sequence of str
         Likewise, of those whose PGA is right though it is outside 0.001–5 g; nothing else is confirmed by it.
+    leave_out : sequence of str
+        Names of records, files, folders or stations, or patterns, that are left out.
 
     Raises
     ------
     InputError
-        For paths that do not exist, stations that are unknown, and mistakes in manifests, all at once. A file
-        that cannot be used is no error: it is in ``unusable``, with the reason.
+        For paths that do not exist, stations that are unknown, and mistakes in manifests, all at once; for a name in
+        ``leave_out`` that matches nothing. A file that cannot be used is no error: it is in ``unusable``, with the reason.
 
     Returns
     -------
@@ -116,15 +120,37 @@ def read_motions(
     roots = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
     packaged = _packaged(roots, fema, gravity)
     readings, _, sequences = read_files(roots, options=options, gravity=gravity, offset=offset)
+    leaving_out = LeaveOut(leave_out)
+    readings = leaving_out.readings(readings)
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
-    unusable = [*(reading for reading in readings if isinstance(reading, Unusable)), *paired.unusable]
-    left_out = [*(reading for reading in readings if isinstance(reading, LeftOut)), *doubles]
-    motions = MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out)
+    placed = _with_stations(readings, paired)
+    unusable = [*(reading for reading in placed if isinstance(reading, Unusable)), *paired.unusable]
+    left_out = [*(reading for reading in placed if isinstance(reading, LeftOut)), *doubles]
+    motions = leaving_out.motions(MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out))
+    leaving_out.finish()
     for manifest, of_manifest in grouped(sequences, lambda pair: pair[0]).items():
         motions = with_sequences(motions, [sequence for _, sequence in of_manifest], source=manifest)[0]
     return motions
+
+
+def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusable | LeftOut]:
+    """Return the readings that are no record, each with the station of the records that share its file or its name."""
+    sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
+    sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
+    of_file = {file_of(source): station for source, station in sources}
+    of_site = {
+        (_folder(reading), reading.site): of_file[file]
+        for reading in readings
+        if isinstance(reading, Component) and (file := file_of(reading.source)) in of_file
+    }
+
+    def station(reading: Unusable | LeftOut) -> str:
+        by_name = of_site.get((_folder(reading), reading.station), reading.station)
+        return of_file.get(file_of(reading.source), by_name)
+
+    return [replace(r, station=station(r)) for r in readings if not isinstance(r, Component)]
 
 
 def _packaged(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
@@ -178,7 +204,8 @@ def _unless_changed(readings: list[Reading], file: Found, state: tuple[int, ...]
     records = any(isinstance(reading, Component) for reading in readings)
     if not records or archives.state(file.path) in (state, ()):
         return readings
-    return [Unusable(archives.bare(file.path).stem, file.source, CHANGED)]
+    path = archives.bare(file.path)
+    return [Unusable(path.stem, file.source, CHANGED, station=_site(path, split_stem(path.stem)[0]))]
 
 
 def _with_progress(files: Sequence[Found]) -> Iterable[Found]:
@@ -248,13 +275,15 @@ def _readings(file: Found, request: _Asked) -> list[Reading]:
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
     """
-    stem = archives.bare(file.path).stem
+    path = archives.bare(file.path)
+    site = _site(path, path.stem if file.path in request.numbered else split_stem(path.stem)[0])
     lacks: tuple[str, ...] = ()
     companion = None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
             readings = _used(file, request)
-        return [with_legible_texts(reading) for reading in readings]
+        at_site = (r if isinstance(r, Component) else replace(r, station=site) for r in readings)
+        return [with_legible_texts(reading) for reading in at_site]
     except InputError as error:
         reason = "; ".join(error.problems)
         lacks = error.keys if isinstance(error, UnstatedError) else ()
@@ -267,7 +296,8 @@ def _readings(file: Found, request: _Asked) -> list[Reading]:
         )
     except Exception as error:  # the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    return [with_legible_texts(Unusable(stem, file.source, reason, lacks=lacks, companion=companion))]
+    unusable = Unusable(path.stem, file.source, reason, lacks=lacks, companion=companion, station=site)
+    return [with_legible_texts(unusable)]
 
 
 def _used(file: Found, job: _Asked) -> list[Reading]:
@@ -275,7 +305,7 @@ def _used(file: Found, job: _Asked) -> list[Reading]:
     path = archives.bare(file.path)
     entries = job.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
-        return [LeftOut(path.stem, file.source, entries[0].unused)]
+        return [LeftOut(path.stem, file.source, entries[0].unused, named=True)]
     if file.companion:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
@@ -288,7 +318,8 @@ def _used(file: Found, job: _Asked) -> list[Reading]:
         if is_clock(item.label):
             readings.append(LeftOut(item.name, item.source, f"no record: {item.label}, the recorder's clock"))
         else:
-            readings.append(LeftOut(item.name, item.source, unwanted[0].unused) if unwanted else item)
+            reason = unwanted[0].unused if unwanted else ""
+            readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
     components = [
         _placed(reading, path, file.path in job.numbered) for reading in read if isinstance(reading, Component)
     ]
@@ -296,7 +327,7 @@ def _used(file: Found, job: _Asked) -> list[Reading]:
         if used:
             readings.append(_finished(component, job))
         else:
-            readings.append(LeftOut(component.name, component.source, entries[0].unused))
+            readings.append(LeftOut(component.name, component.source, entries[0].unused, named=True))
     return readings
 
 
@@ -312,14 +343,18 @@ def _read(file: Found, options: ReadOptions, request: _Asked) -> Sequence[Compon
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
     """Return a component with its folder, and its station by its file's name; without an azimuth that is a file's number."""
-    rsn = _RSN.match(path.stem)
     site, by_name = split_stem(path.stem)
     if numbered:
         site = path.stem
         if component.orientation == by_name:
             component = replace(component, orientation=unknown())
-    site = f"RSN{rsn[1]}" if rsn else site or path.parent.name  # UP.txt and 090.txt are of the station of their folder
-    return replace(component, site=site, folder=path.parent.absolute().as_posix())
+    return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
+
+
+def _site(path: Path, site: str) -> str:
+    """Return the station by a file's name, of which ``site`` is the station's part: UP.txt is of the station of its folder."""
+    rsn = _RSN.match(path.stem)
+    return f"RSN{rsn[1]}" if rsn else site or path.parent.name
 
 
 def _finished(component: Component, request: _Asked) -> Component | Unusable:

@@ -414,7 +414,7 @@ class Unusable:
     ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
     ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
     in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
-    those of a station.
+    those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
     """
 
     name: str
@@ -424,12 +424,18 @@ class Unusable:
     lacks: tuple[str, ...] = ()
     number: int = 0
     companion: str | None = None
+    station: str = ""
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A file or record that is left out on purpose, and why: not selected, not to be used, a copy, or no record."""
+    """A file or record that is left out on purpose, and why: not selected, not to be used, a copy, or no record.
+
+    If a manifest or the study names it, it is ``named``, and ``station`` is what it would count as.
+    """
 
     name: str
     source: str
     reason: str
+    station: str = ""
+    named: bool = False

@@ -20,7 +20,7 @@ from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
-from rockbatch.motions.stations import by_station, station_names
+from rockbatch.motions.stations import by_station, station_names, station_of
 from rockbatch.toml.kinds import shown
 
 _NO_VERTICAL = (
@@ -50,7 +50,9 @@ def to_motions(
     for their PGA), come back as unusable with the reason.
     """
     unusable = [
-        Unusable(c.name, c.source, _question(c), c.orientation.label) for c in components if not c.orientation.known
+        Unusable(c.name, c.source, _question(c), c.orientation.label, station=station_of(c))
+        for c in components
+        if not c.orientation.known
     ]
     components = _with_packaged([c for c in components if c.orientation.known], packaged)
     stations = by_station(components)
@@ -59,7 +61,7 @@ def to_motions(
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
     horizontals = [(number[id(c)], c) for c in components if not c.orientation.vertical]
     if azimuths:
-        horizontals, refused_ones = _turned(horizontals, azimuths)
+        horizontals, refused_ones = _turned(horizontals, azimuths, known_as)
         unusable += refused_ones
 
     used: set[int] = set()
@@ -71,7 +73,11 @@ def to_motions(
             together = [v for v in _candidates(component, station, verticals) if overlap(component, v)]
             partner, refused = _partner(component, together)
             notes += [f"no vertical: {v.source}: {obstacle}" for v, obstacle in refused]
-            unusable += [Unusable(v.name, v.source, obstacle) for v, obstacle in refused if id(v) not in used]
+            unusable += [
+                Unusable(v.name, v.source, obstacle, station=known_as[number[id(v)]])
+                for v, obstacle in refused
+                if id(v) not in used
+            ]
             used.update(id(v) for v in together)
         motion = _motion(component, partner, notes)
         lacking = bool(vertical) and motion.vertical is None
@@ -79,7 +85,10 @@ def to_motions(
     if vertical:
         reason = "a vertical component without a usable horizontal one of its station in its folder"
         unused = [v for group in verticals for v in group if id(v) not in used]
-        unusable += [Unusable(v.name, v.source, f"{reason} ({v.station or v.site})") for v in unused]
+        unusable += [
+            Unusable(v.name, v.source, f"{reason} ({v.station or v.site})", station=known_as[number[id(v)]])
+            for v in unused
+        ]
     peaks = [[(c, c.pga) for c in station if not c.orientation.vertical] for station in stations]
     named = _named(motions, [c.folder for _, c in horizontals])
     judged = [
@@ -100,9 +109,10 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
         motion, of_motion = station.motion, findings(station)
         keys = {*station.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
-            unusable.append(Unusable(motion.name, motion.files, f"{motion.label} {_NO_VERTICAL}"))
+            reason = f"{motion.label} {_NO_VERTICAL}"
+            unusable.append(Unusable(motion.name, motion.files, reason, station=motion.of_station))
         elif refusal := doubt(motion.name, of_motion, keys):
-            unusable.append(Unusable(motion.name, motion.files, refusal))
+            unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station))
         else:
             remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in of_motion]
             motions.append(replace(motion, findings=of_motion, notes=(*motion.notes, *remarks)))
@@ -138,15 +148,18 @@ def _with_packaged(files: Sequence[Component], packaged: Sequence[Component]) ->
 
 
 def _turned(
-    horizontals: Sequence[tuple[int, Component]], azimuths: Sequence[float]
+    horizontals: Sequence[tuple[int, Component]], azimuths: Sequence[float], known_as: Sequence[str]
 ) -> tuple[list[tuple[int, Component]], list[Unusable]]:
-    """Return horizontals of files with the numbers of their stations, turned; a package's are as they were asked for."""
+    """Return horizontals of files with the numbers of their stations, turned; a package's are as they were asked for.
+
+    ``known_as`` has the names of the stations.
+    """
     turned: list[tuple[int, Component]] = []
     unusable: list[Unusable] = []
     for station, group in grouped([pair for pair in horizontals if pair[1].folder], lambda pair: pair[0]).items():
         along, refused = rotated_to([component for _, component in group], azimuths)
         turned += [(station, component) for component in along]
-        unusable += refused
+        unusable += [replace(component, station=known_as[station]) for component in refused]
     return turned + [pair for pair in horizontals if not pair[1].folder], unusable
 
 

@@ -131,12 +131,19 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
     records = list(dict.fromkeys(map(first_of, root)))
     firsts = [stations[i][0] for i in records]
     names = distinct(
-        [c.site if is_numbered(c.site) else c.sensor.station.strip() or c.site or c.station or c.name for c in firsts],
+        list(map(station_of, firsts)),
         lambda i, name: f"{name} {firsts[i].event}".strip(),
         lambda i, name: f"{name} {firsts[i].folder.rsplit('/', 1)[-1]}".strip(),
     )
     name_of = dict(zip(records, names, strict=True))
     return [name_of[first_of(i)] for i in range(len(stations))]
+
+
+def station_of(component: Component) -> str:
+    """Return the name of a component's station: PEER's number, that of its header, or that of its file."""
+    if is_numbered(component.site):
+        return component.site
+    return component.sensor.station.strip() or component.site or component.station or component.name
 
 
 def _keys(component: Component) -> Iterator[Hashable]:

@@ -65,7 +65,11 @@ def _better(studies: list[Finished], responses: list[dict[str, Worst]]) -> Marku
     for name, pair in in_both.items():
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
         parts.append(f"{RESPONSES[name].words} {100 * changes[name]:+.3g} % ({'; then '.join(dict.fromkeys(labels))})")
-    lead = f": from A to B, worst {', '.join(parts)}." if parts else ": no run ends standing."
+    lead = f": from A to B, worst {', '.join(parts)}" if parts else ": no run ends standing"
+    if parts and lost[0]:
+        n = len(studies[0].runs)
+        lead += f", of the {n - lost[0]} of {n} runs that end standing in each"
+    lead += "."
     return join(tag("strong", BETTER[smaller, larger]), lead)
 
 
@@ -84,7 +88,8 @@ def _pairs(pair: Pair) -> str:
     ends = [(float(ratio[place]), runs.iloc[place]) for place in (int(ratio.argmin()), int(ratio.argmax()))]
     shown = [f"{value:.2g} times ({pair.named.label(run['record'])}, {pair.named.case_of(run)})" for value, run in ends]
     return (
-        f"From A to B the rotation becomes smaller in {int((ratio < 1.0).sum())} of {counted(len(ratio), 'pair')} of runs, "
+        f"From A to B the rotation becomes smaller in {int((ratio < 1.0).sum())} of {counted(len(ratio), 'pair')} of runs"
+        f"{'' if comparable.all() else f' ({int((~comparable).sum())} more have no ratio)'}, "
         f"larger in {int((ratio > 1.0).sum())}; it changes to {shown[0]} at least and to {shown[1]} at most."
     )
 

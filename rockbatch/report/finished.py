@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.checks import Verdict, read_verdicts
+from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
-from rockbatch.checks.suite import counts_as, simulated, with_case
+from rockbatch.checks.suite import NOT_RUN, counts_as, simulated, with_case
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.report.finished_analysis import Contents
-from rockbatch.report.labels import Key, Series, digits_that_tell, named, quantity
+from rockbatch.report.labels import Key, Series, counted, digits_that_tell, named, quantity
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
@@ -92,6 +93,21 @@ class Finished(Contents):
     def worst(self) -> list[Worst]:
         """Return the worst responses of every case."""
         return worst_of_cases(self.runs, [self.cases[places] for places in sorted(self.cases)])
+
+    @cached_property
+    def suites(self) -> list[CaseRuns]:
+        """Return every case at every scale, with how many of its runs do not end standing."""
+        return runs_of_cases(self.runs, self.info["cases"], len(self.info["records"]))
+
+    @cached_property
+    def not_run(self) -> int:
+        """Return how many planned runs have no row in the table."""
+        return sum(suite.ended.get(NOT_RUN, 0) for suite in self.suites)
+
+    def of_all(self, runs: int, words: str) -> str:
+        """Return a number of runs, and of how many if these are not all that were planned: "8 of 10 runs that end standing"."""
+        planned = len(self.runs) + self.not_run
+        return counted(runs, "run") if runs == planned else f"{runs:,} of {counted(planned, 'run')} that {words}"
 
     @cached_property
     def both_directions(self) -> bool:

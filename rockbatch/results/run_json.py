@@ -41,7 +41,7 @@ _RESTRAINT = {
     "at": Maybe((float, str)),
     "side": Maybe(str),
 }
-_OF_FILE = {"name": str, "source": str, "reason": str}
+_OF_FILE = {"name": str, "source": str, "reason": str, "station": Maybe(str), "named": Maybe(bool)}
 _SPECTRA = {
     "damping": float, "period_s": [float], "sa_g": [[float]], "mean_sa_g": Maybe([_NUMBER]),
     "target_sa_g": Maybe([_NUMBER]),

@@ -92,6 +92,9 @@ MOTIONS = Section(("motions",), (
         '"scale", where that is.', many=True),
     "confirm_pga": Key(text, '["RSN825_CAPEMEND_CPM000"]',
         "Names of records, or patterns, whose peak acceleration is right though it is far from usual.", many=True),
+    "leave_out": Key(text, '["RSN1633_*", "broken.AT2"]',
+        "Names of records, files, folders or stations of the study's sources, or patterns with * and ?, that are left out.",
+        many=True),
     "strict": Key(boolean, "true", "Whether one record that cannot be used ends the study before anything is run."),
 }, homes=(MotionSpec,), clashes=(
     Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",

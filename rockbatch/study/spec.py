@@ -70,6 +70,7 @@ class MotionSpec:
     vertical_scale: float = 1.0
     confirm: tuple[str, ...] = ()
     confirm_pga: tuple[str, ...] = ()
+    leave_out: tuple[str, ...] = ()
     strict: bool = False
     fema_p695: tuple[FemaSpec, ...] = ()
     pulses: tuple[PulseSpec, ...] = ()

@@ -34,13 +34,17 @@ def ground_motions(study: Study) -> MotionSet:
             azimuths=azimuths,
             confirmed=spec.confirm,
             confirmed_pga=spec.confirm_pga,
+            leave_out=spec.leave_out if spec.instead is None else (),
         )
         if azimuths != spec.azimuths:
             records = _along_the_axis(records, azimuths)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = with_sequences(records, spec.sequences, pulses)
+    station = {motion.name: motion.of_station for motion in records}
     records = selected(records, spec.select, gravity)
     records = at_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
+    unusable = [replace(file, station=file.station or station.get(file.name, file.name)) for file in records.unusable]
+    records = replace(records, unusable=unusable)
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")

@@ -2,11 +2,13 @@
 
 import math
 
+import pandas as pd
 import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import answer
+from rockbatch.checks.answer import MOST_NAMES, answer
+from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.pier import Damper, RigidBase
@@ -16,8 +18,13 @@ YIELDED = SETTLED | {"ductility_left": 2.0, "ductility_right": [1.0, 33.0, 1.0, 
 LIMITS = {"rotation": "theta_max_over_alpha", "shims": "settlement_m", "soil": "ductility", "tilt": "base_tilt_rad"}
 
 
-def lines(verdicts, worst=()):
-    return answer(verdicts, worst, lambda one: one.case, lambda one: f"record {one.record}")
+def lines(verdicts, worst=(), runs=(), stations=ALL_STATIONS):
+    return answer(verdicts, worst, lambda one: one.case, lambda one: f"record {one.record}", runs, stations)
+
+
+def all_runs(**ended):
+    """Ten runs of each case; ``ended`` are those of a case that do not end standing."""
+    return [CaseRuns(name, {}, 1.0, 10, of_case) for name, of_case in ended.items()]
 
 
 def worst(name="pads", **cells):
@@ -123,6 +130,88 @@ def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
     assert [line.verdict for line in lines([rotation, residual], leans)] == [PASS]
     back = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0), [held])
     assert [line.verdict for line in lines([rotation], back)] == [PASS]
+
+
+def test_a_case_that_no_check_chooses_is_counted_and_never_green():
+    (line,) = lines([verdict("a", "pass")], runs=all_runs(a={}, b={}, c={"overturned": 4, "failed": 1}))
+    assert (line.verdict, line.text, line.cases) == (NOT_DECIDED, "1 of 3 cases passes; 2 are not checked", "")
+    assert line.details[0] == "Not checked: c (4 of 10 runs overturned, 1 failed); b."
+    assert line.details[1] == "Passes: a."
+    (line,) = lines([verdict("a", "pass")], runs=all_runs(a={}))
+    assert (line.verdict, line.text) == (PASS, "Every check passes in the only case")
+
+
+def test_a_case_to_which_no_check_applies_is_not_checked():
+    some = [verdict("a", "pass"), verdict("b", "does not apply", check="settlement")]
+    assert lines(some)[0].text == "1 of 2 cases passes; 1 is not checked"
+
+
+def test_a_case_that_is_not_checked_is_told_where_another_fails():
+    failed = verdict("a", "fail", value=0.6, ratio=1.2)
+    first, last = lines([failed], runs=all_runs(a={}, b={"flight": 2}))
+    assert (first.verdict, first.text) == (FAIL, "1 of 2 cases fails")
+    assert first.details == ("margin: 0.6\u00a0>\u00a00.5, in a.",)
+    assert (last.text, last.cases) == ("1 of 2 cases is not checked", "b (2 of 10 runs ended by flight)")
+
+
+def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted():
+    """Those that overturn come last in the study."""
+    fallen = {f"c{i}": {"overturned": 1 + i % 2} for i in range(90, 100)}
+    (line,) = lines([verdict("c0", "pass")], runs=all_runs(**{f"c{i}": {} for i in range(90)}, **fallen))
+    assert line.text == "1 of 100 cases passes; 99 are not checked"
+    assert line.details[0].count("2 of 10 runs overturned") == 5
+    rest = len(fallen) - MOST_NAMES
+    assert line.details[0].endswith(f"and {99 - MOST_NAMES} more, {rest} of them with runs that do not end standing.")
+
+
+def test_overturning_that_checks_leave_out_is_told_beside_the_green_and_takes_it_if_nothing_stands():
+    eta = verdict("a", "pass", check="capacity", demand="eta")
+    (line,) = lines([eta], runs=all_runs(a={"overturned": 3}))
+    assert line.details[-1] == "Not every run ends standing: a (3 of 10 runs overturned)."
+    (line,) = lines([eta], runs=all_runs(a={"overturned": 10}))
+    assert (line.verdict, line.text) == (NOT_DECIDED, "The only case is not checked")
+
+
+def test_a_case_at_a_scale_that_no_check_chooses_is_not_checked():
+    table = pd.concat([runs((0.1, 0.2), scale=scale) for scale in (1.0, 1.5)])
+    counted = runs_of_cases(table, [case()], records=3)
+    assert [(one.scale, one.runs, one.ended) for one in counted] == [
+        (1.0, 3, {"not run": 1}), (1.5, 3, {"not run": 1}),
+    ]  # fmt: skip
+    found = answer([verdict("pads", "pass")], (), lambda one: f"{one.case} {one.scale:g}", str, counted)
+    assert found[0].text == "1 of 2 cases passes; 1 is not checked"
+
+
+LOST = {"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}
+
+
+def test_missing_stations_come_first_and_take_the_green_from_what_passes():
+    stations = Stations([f"s{i}" for i in range(6)], {"RSN1633": [LOST]})
+    first, second = lines([verdict("a", "pass")], stations=stations)
+    assert (first.verdict, first.text) == (NOT_DECIDED, "6 of 7 stations; RSN1633 could not be used")
+    assert first.cases == "the file is cut"
+    assert 'leave_out = ["RSN1633"]' in first.details[-1]
+    assert (second.verdict, second.text) == (NOT_DECIDED, "Every check passes in the only case")
+
+
+def test_missing_stations_come_last_where_nothing_passes_and_are_told_without_checks_too():
+    stations = Stations(["s"], {"RSN1633": [LOST]})
+    failed = verdict("a", "fail", value=0.6, ratio=1.2)
+    assert [line.verdict for line in lines([failed], stations=stations)] == [FAIL, NOT_DECIDED]
+    assert [line.text for line in lines([], stations=stations)] == ["1 of 2 stations; RSN1633 could not be used"]
+
+
+def test_a_component_of_a_station_that_is_used_is_told_by_its_files():
+    other = LOST | {"name": "cut", "station": "s", "reason": "no numbers"}
+    (line, _) = lines([verdict("a", "pass")], stations=Stations(["s"], {"RSN1633": [LOST], "s": [other]}))
+    assert line.text == "1 of 2 stations; RSN1633, 1 file of s could not be used"
+    assert line.details[:2] == ("RSN1633: the file is cut.", "s: no numbers.")
+    assert 'leave_out = ["RSN1633", "cut"]' in line.details[2]
+
+
+def test_stations_that_are_left_out_by_name_stay_green_and_are_listed():
+    (line,) = lines([verdict("a", "pass")], stations=Stations(["s"], {}, {"RSN1633": [LOST]}))
+    assert (line.verdict, line.details[-1]) == (PASS, "Left out by name: RSN1633.")
 
 
 def test_of_a_mean_the_record_is_the_one_with_the_largest_demand_and_says_so():

@@ -253,8 +253,21 @@ def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, cap
         MARGIN,
         unusable=[{"name": "notes", "source": "notes.txt", "reason": "no record"}],
     )
-    assert main(["check", str(out)]) == 0
-    assert "not usable as records, and in no suite: 1" in capsys.readouterr().err
+    assert main(["check", str(out)]) == 1
+    assert "? notes could not be used: no record." in capsys.readouterr().out
+
+
+def test_a_case_that_no_check_chooses_is_told_and_is_no_failed_check(tmp_path, capsys):
+    table = pd.concat([runs([0.1, 0.2]), runs([0.1, 9.0], "wide", status=["ok", "overturned"])])
+    out = folder(
+        tmp_path / "out", table, [case(), case("wide")], MARGIN.replace("[[check]]", '[[check]]\ncase = "pads"')
+    )
+    for arguments in ([], ["--rules", str(rules_file(tmp_path / "a.toml", MARGIN + 'case = "pads"\n'))]):
+        assert main(["check", str(out), *arguments]) == 0
+        printed = capsys.readouterr().out
+        assert "? 1 of 2 cases passes; 1 is not checked." in printed
+        assert "Not checked: wide (1 of 2 runs overturned)." in printed
+        assert "Worst of 3 of 4 runs that end standing" in printed
 
 
 def test_a_record_without_any_row_is_not_forgotten(tmp_path):

@@ -5,17 +5,21 @@ import re
 
 from check_samples import verdict
 from report_page import Page
-from report_samples import FOUNDATIONS, write_results
+from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 
 from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.pier import Pier
 from rockbatch.report import write_report
 
 GOVERNING = ("theta_max_over_alpha", "toe_settlement_m", "ductility")
 """Demands whose limits bound all that governs a pier on yielding springs: the settlement of the toe has the tilt in it."""
 
 
-def page(directory, *verdicts: Verdict) -> Page:
-    write_results(directory)
+def page(directory, *verdicts: Verdict, cases=None, **results) -> Page:
+    """The page of results of these cases; by default of those that the verdicts are about, as far as there are such."""
+    names = cases or {one.case for one in verdicts}
+    entries = [case_entry(name, {}, Pier(alpha=0.13, p=0.38), base) for name, base in FOUNDATIONS if name in names]
+    write_results(directory, cases=entries, **results)
     write_verdicts(directory, verdicts)
     return Page(write_report(directory, []).read_text(encoding="utf-8"))
 
@@ -45,6 +49,37 @@ def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(t
     assert "✓ Every check passes in the only case." in shown.text
     assert "Closest to its limit: theta_max_over_alpha, 0.25 ≤ 0.5." in shown.text
     assert "What does not pass" not in shown.text
+
+
+FELL = {"status": "overturned", "theta_max_over_alpha": 9.0}
+
+
+def test_a_case_without_a_check_is_counted_and_its_overturning_told(tmp_path):
+    checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
+    fell = {(record, "rigid"): FELL for record, _ in FIG7[:2]}
+    shown = page(tmp_path, *checked, cases=("rigid", "1", "2"), changes=fell)
+    assert "? 1 of 3 cases passes; 2 are not checked." in shown.text
+    assert "Not checked: rigid (2 of 6 runs overturned); 2." in shown.text
+    assert "✓ " not in shown.text[: shown.text.index("Peak rotations")]
+
+
+def test_a_station_that_could_not_be_used_takes_the_green_from_what_passes(tmp_path):
+    checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
+    lost = [{"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}]
+    shown = page(tmp_path, *checked, unusable=lost)
+    assert "? 6 of 7 stations; RSN1633 could not be used: the file is cut." in shown.text
+    assert "? Every check passes in the only case." in shown.text
+    assert 'leave_out = ["RSN1633"]' in shown.text
+
+
+def test_a_station_that_is_left_out_by_name_is_told_beside_the_green(tmp_path):
+    checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
+    file = {"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "use = false in motions.toml"}
+    spectra = {"name": "x", "source": "x.txt", "reason": "no record: a spectrum"}
+    shown = page(tmp_path, *checked, left_out=[spectra, file | {"station": "RSN1633", "named": True}])
+    assert "✓ Every check passes in the only case." in shown.text
+    assert "Left out by name: RSN1633." in shown.text
+    assert [row[0] for row in shown.tables["unusable"]] == ["record", "ABBAR--L", "record", "x"]
 
 
 def test_a_demand_beside_its_limit_shows_on_which_side_it_lies(tmp_path):

@@ -7,9 +7,11 @@ import sys
 
 import pandas as pd
 import pytest
+from check_samples import verdict
 from report_page import Page, panels
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
+from rockbatch.checks import write_verdicts
 from rockbatch.cli import main
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_comparison
@@ -42,6 +44,29 @@ def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(tmp_pat
     assert rows[0][:2] == ["SYL360", "2"]  # the worst of both comes first
     assert [float(cell) for cell in rows[0][2:5]] == pytest.approx([ours, 0.5, 0.5 / ours], abs=5e-4)
     assert {row[4] for row in rows[1:]} == {"1.000"}
+
+
+def test_a_case_without_a_check_and_a_missing_station_are_told_of_each_study(tmp_path):
+    lost = [{"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}]
+    a, b = two(tmp_path, {"changes": {("SYL360", "rigid"): {"status": "overturned"}}}, {"unusable": lost})
+    for folder in (a, b):
+        write_verdicts(
+            folder,
+            [verdict("2", "pass", check=d, demand=d) for d in ("theta_max_rad", "toe_settlement_m", "ductility")],
+        )
+    text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
+    of_both = text[text.index("Does it pass") :]
+    assert of_both.count("? 1 of 5 cases passes; 4 are not checked.") == 2
+    assert "Not checked: rigid (1 of 6 runs overturned);" in of_both
+    assert "? 6 of 7 stations; RSN1633 could not be used: the file is cut." in of_both
+
+
+def test_what_both_studies_lose_is_told_beside_the_better_one(tmp_path):
+    fell = {("SYL360", "rigid"): {"status": "overturned"}}
+    a, b = two(tmp_path, {"changes": fell}, {"changes": fell})
+    text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
+    assert ", of the 29 of 30 runs that end standing in each." in text
+    assert "of 29 pairs of runs (1 more have no ratio)" in text
 
 
 def test_panels_hold_both_studies(tmp_path):

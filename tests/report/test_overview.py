@@ -75,7 +75,7 @@ def test_what_has_no_peak_is_told_by_foundation_or_by_number(tmp_path):
 
 
 def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_path):
-    write_results(tmp_path)
+    write_results(tmp_path, cases=[case_entry(f"c{i}", {}, PIER, RigidBase()) for i in range(40)])
     ratios = [1.1 + i / 10 for i in range(40)]
     some = [verdict(f"c{i}", "fail", ratio=r, value=0.5 * r, check="drift") for i, r in enumerate(ratios)]
     write_verdicts(tmp_path, some)

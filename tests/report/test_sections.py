@@ -8,7 +8,7 @@ from importlib import import_module
 import pandas as pd
 import pytest
 from report_page import Page
-from report_samples import case_entry, write_results
+from report_samples import FOUNDATIONS, case_entry, write_results
 
 import rockbatch.report.sections
 from rockbatch.pier import Damper, Pier, RigidBase
@@ -17,7 +17,7 @@ from rockbatch.report.finished import read
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.markup import Markup
 from rockbatch.report.page import PARTS, PARTS_OF_TWO, page, sections
-from rockbatch.report.sections import answer
+from rockbatch.report.sections import answer, forces
 from rockbatch.report.templates import Section, document
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
@@ -163,6 +163,36 @@ def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_pat
     told = Page(section_of(tmp_path, answer)).text
     assert "In 2 runs both pivots left the ground, guided as by shear keys; the lower pivot rose by" in told
     assert "In one run both pivots leave the ground, and the analysis stops there: CPM000, case 2" in told
+
+
+@pytest.mark.parametrize(("status", "words"), [
+    ("ok", "No run asks more friction than its interface has, of 30 runs."),
+    ("overturned", "No run asks more friction than its interface has, of 30 runs."),
+    ("flight", "Of 30 runs, 2 were not seen through; none of the other 28 asks more friction than its interface has."),
+    ("failed", "Of 30 runs, 2 were not seen through; none of the other 28 asks more friction than its interface has."),
+])  # fmt: skip
+def test_the_friction_of_all_runs_is_claimed_of_those_that_were_seen_through(tmp_path, status, words):
+    pier = Pier(alpha=0.13, p=0.38)
+    cases = [case_entry(name, {}, pier, base) for name, base in FOUNDATIONS]
+    cases = [entry | {"parameters": entry["parameters"] | {"friction": 0.5}} for entry in cases]
+    write_results(tmp_path, cases=cases, changes={(record, "1"): {"status": status} for record in ("ERZ-NS", "SYL360")})
+    pd.read_csv(tmp_path / "peaks.csv").assign(friction_demand=0.2).to_csv(tmp_path / "peaks.csv", index=False)
+    assert words in Page(section_of(tmp_path, forces)).text
+
+
+def test_the_worst_is_claimed_of_the_runs_that_end_standing_and_a_missing_row_is_none_that_converged(tmp_path):
+    write_results(tmp_path, changes={("ERZ-NS", "1"): {"status": "failed"}, ("SYL360", "1"): {"status": "overturned"}})
+    assert (
+        "Worst of all 5 cases, of 28 of 30 runs that end standing, whatever is checked"
+        in Page(section_of(tmp_path, answer)).text
+    )
+    write_results(tmp_path)
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    peaks.iloc[:-3].to_csv(tmp_path / "peaks.csv", index=False)
+    told = Page(section_of(tmp_path, answer)).text
+    assert "Worst of all 5 cases, of 27 of 30 runs that end standing" in told
+    assert "3 runs not run" in told
+    assert "every peak converged" not in told
 
 
 def section_of(directory, module):

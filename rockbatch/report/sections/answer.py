@@ -6,13 +6,14 @@ from decimal import ROUND_UP, Decimal
 import numpy as np
 
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
+from rockbatch.checks.suite import NOT_RUN
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
 from rockbatch.report.templates import render
-from rockbatch.results.suite_statistics import NO_PEAK, reasons_of_failure
+from rockbatch.results.suite_statistics import reasons_of_failure
 
 MOST_COMPARED = 4
 """Cases whose greatest rotations stand beside each other."""
@@ -36,18 +37,23 @@ def worst(finished: Finished) -> Markup:
     stood, unread = runs["status"] == "ok", len(finished.info["unusable"])
     failed = int((runs["status"] == "failed").sum())
     guided = runs.loc[stood & runs["flight_s"].notna(), "flight_height_m"]
-    lost = [f"{counted(unread, 'file')} could not be used"] if unread else []
+    lost = [
+        f"{counted(n, noun)} {state}"
+        for n, noun, state in (
+            (unread, "file", "could not be used"), (failed, "run", "failed"), (finished.not_run, "run", NOT_RUN)
+        )
+        if n
+    ]  # fmt: skip
     return render(
         "sections/answer.html", finished=finished, runs=runs, guided=guided,
         alphas={f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()},
         symbols=any("=" in words for words in (*(series.label for series in finished.series), *finished.piers)),
         over=runs[runs["status"] == "overturned"],
         flown=runs[runs["status"] == "flight"].sort_values("flight_s", kind="stable"),
-        lost=lost + ([f"{counted(failed, 'run')} failed"] if failed else []),
+        lost=lost, standing=finished.of_all(int(stood.sum()), "end standing"), all_stand=stood.all() and not finished.not_run,
         reasons=reasons_of_failure(runs),
         responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
         went="every peak converged" if finished.info["numerics"].get("tolerance") else "none failed",
-        without_peak=runs["status"].isin(NO_PEAK).any() and stood.any(),
         height=float(guided.max()), error=_error(finished), noted=int((runs.loc[stood, "note"] != "").sum()),
     )  # fmt: skip
 
@@ -112,12 +118,14 @@ def _by_case(finished: Finished) -> Facts:
 def _error(finished: Finished) -> str:
     """Report the largest error of the peaks, or that none was estimated."""
     numerics = finished.info["numerics"]
-    largest = finished.runs["theta_max_error"].max()
+    errors = finished.runs.loc[finished.runs["status"] == "ok", "theta_max_error"]
+    largest, lacking = errors.max(), int(errors.isna().sum())
     if largest == largest and numerics["tolerance"]:
         error = Decimal(repr(max(float(largest), LEAST_ERROR)))
         error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
         allowed = Decimal(repr(float(numerics["tolerance"])))
-        return f"Estimated error of rotation: at most {error:f} α ({allowed:f} α allowed)."
+        unknown = f"; of {counted(lacking, 'run')} it is not known" if lacking else ""
+        return f"Estimated error of rotation: at most {error:f} α ({allowed:f} α allowed){unknown}."
     if numerics.get("substeps"):
         steps = counted(numerics["substeps"], "step")
         return f"Every sampling interval was integrated in {steps}; the error was not estimated."

@@ -33,13 +33,15 @@ def section(finished: Finished) -> Markup:
     places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
     demands = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
+    cut_short = finished.runs["status"].isin(_CUT_SHORT).to_numpy()
+    known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
     return render(
         "sections/forces.html", of_cases=_of_cases(finished, shown),
         every_run=every_run(finished, heads, cells, "Forces of every run"),
         interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
-        known=int((np.isfinite(available) & ~np.isnan(demands)).sum()),
+        known=int(known.sum()), on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,
         frames=any("deck_over_columns" in case["pier"] for case in finished.info["cases"]),
-        bounds=bool(finished.runs["status"].isin(_CUT_SHORT).any()),
+        bounds=bool(cut_short.any()),
     )  # fmt: skip
 
 

@@ -101,4 +101,9 @@ def unusable(finished: Finished) -> Markup:
     if not left_out:
         return drawn
     heads = [Head("record", value="name"), Head("file", value="source"), Head("why", value="reason")]
-    return join(drawn, tag("h3", "Left out"), listed(heads, left_out, prose=True, name="Left out"))
+    named = [file for file in left_out if file.get("named")]
+    others = [file for file in left_out if not file.get("named")]
+    for title, files in (("Left out by name", named), ("Left out", others)):
+        if files:
+            drawn = join(drawn, tag("h3", title), listed(heads, files, prose=True, name=title))
+    return drawn

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
+from rockbatch.checks.coverage import CaseRuns, stations_of
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.report.finished import Finished
@@ -49,11 +50,13 @@ def mark(verdict: str, words: str) -> Markup:
 
 def answer(finished: Finished) -> Markup:
     """Report the cases that pass, what fails and by how much, and what is not decided."""
-    verdicts = finished.verdicts
-    scaled = wording.scaled(verdicts)
-    lines = answered(verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record))
+    scaled = len({runs.scale for runs in finished.suites}) > 1
+    lines = answered(
+        finished.verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record),
+        finished.suites, stations_of(finished.info),
+    )  # fmt: skip
     listed = tag("ul", *map(_line, lines), class_="answer") if lines else ""
-    if any(verdict.case for verdict in verdicts):
+    if any(verdict.case for verdict in finished.verdicts):
         return join(listed)
     hint = join(tag("code", "rockbatch check"), " judges finished results by rules.")
     return join(listed, "No limits were set: no response passes or fails. ", hint)
@@ -65,7 +68,7 @@ def _line(line: Line) -> Markup:
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _case(verdict: Verdict, scaled: bool) -> str:
+def _case(verdict: Verdict | CaseRuns, scaled: bool) -> str:
     if not verdict.case:
         return wording.SUITE
     words = [quantity(key, value) for key, value in verdict.columns.items()]

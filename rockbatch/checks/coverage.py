@@ -1,0 +1,97 @@
+"""Coverage of the verdicts: every case at every scale with how its runs ended, and the stations of the suite."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rockbatch.checks.demands import Case
+from rockbatch.checks.suite import NOT_RUN, rows_of_cases
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+
+ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
+"""Words for runs that do not end standing."""
+
+File = Mapping[str, Any]
+"""Entry of run.json on a file that was not used."""
+
+
+class CaseRuns(NamedTuple):
+    """A case at one scale: its planned runs, and how many of them do not end standing, by the keys of :data:`ENDED`."""
+
+    case: str
+    columns: Mapping[str, float | str]
+    scale: float
+    runs: int
+    ended: Mapping[str, int]
+
+    @property
+    def in_words(self) -> str:
+        """How many runs do not end standing: "2 of 10 runs overturned, 1 failed"; empty if all do."""
+        counts = [f"{n} {ENDED[status]}" for status, n in self.ended.items()]
+        if not counts:
+            return ""
+        first, _, rest = counts[0].partition(" ")
+        return ", ".join([f"{first} of {self.runs} runs {rest}", *counts[1:]])
+
+
+class Stations(NamedTuple):
+    """Stations with a ground motion, files that could not be used by their stations, and stations that are left out by name."""
+
+    used: Sequence[str] = ()
+    unusable: Mapping[str, Sequence[File]] = {}
+    left_out: Mapping[str, Sequence[File]] = {}
+    known: bool = True
+    """Whether the stations of files that could not be used are known, which an earlier version did not write."""
+
+    @property
+    def total(self) -> int:
+        """Number of stations, those that are left out by name not counted."""
+        return len({*self.used, *self.unusable})
+
+
+ALL_STATIONS = Stations()
+"""No station is missing."""
+
+
+def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> list[CaseRuns]:
+    """Return every case at every scale, in order.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        Simulated rows of peaks.csv.
+    cases : sequence of mappings
+        Cases as run.json has them.
+    records : int
+        Number of ground motions, each of which every case should meet.
+    """
+    scales, scale_of = np.unique(runs["scale"].to_numpy(np.float64), return_inverse=True)
+    statuses = [status for status in ENDED if status != NOT_RUN]
+    status_of = runs["status"].to_numpy(object)
+    planned = records * runs["polarity"].nunique()
+    counted = []
+    for case, rows in rows_of_cases(runs, cases):
+        for place, scale in enumerate(scales):
+            of_scale = rows[scale_of[rows] == place]
+            ended = {status: int((status_of[of_scale] == status).sum()) for status in statuses}
+            ended[NOT_RUN] = max(planned - len(of_scale), 0)
+            counts = {status: n for status, n in ended.items() if n}
+            total = max(planned, len(of_scale))
+            counted.append(CaseRuns(str(case["case"]), case["columns"], float(scale), total, counts))
+    return counted
+
+
+def stations_of(info: Mapping[str, Any]) -> Stations:
+    """Return the stations of the suite in run.json; a record or a file of which it is not known is its own."""
+    used = [str(record.get("station") or record["record"]) for record in info["records"]]
+
+    def station(file: File) -> str:
+        return str(file.get("station") or file["name"])
+
+    unusable = grouped(info["unusable"], station)
+    named = grouped((file for file in info.get("left_out", ()) if file.get("named")), station)
+    left_out = {name: files for name, files in named.items() if name not in used and name not in unusable}
+    known = all(file.get("station") for file in info["unusable"])
+    return Stations(list(dict.fromkeys(used)), unusable, left_out, known)

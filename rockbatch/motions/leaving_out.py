@@ -1,0 +1,85 @@
+"""Records, files and stations that a study leaves out by name."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+from rockbatch.common.grouping import closest
+from rockbatch.errors import InputError
+from rockbatch.motions.component import Component, file_of
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
+from rockbatch.motions.motion_set import MotionSet
+from rockbatch.motions.plausible import fits
+from rockbatch.motions.stations import station_of
+from rockbatch.toml.kinds import shown
+
+Reading = Component | Unusable | LeftOut
+
+
+class LeaveOut:
+    """Names and patterns of what is left out; it notes which of them match, and all names for the others' messages."""
+
+    def __init__(self, patterns: Sequence[str]) -> None:
+        self._patterns = patterns
+        self._matched: set[str] = set()
+        self._names: dict[str, None] = {}
+
+    def readings(self, readings: Iterable[Reading]) -> list[Reading]:
+        """Return the readings of files, with those left out whose record, file, folder or station is named."""
+        if not self._patterns:
+            return list(readings)
+        return [self._reading(reading) for reading in readings]
+
+    def _reading(self, reading: Reading) -> Reading:
+        stations = [reading.station]
+        if isinstance(reading, Component):
+            stations = [station_of(reading), reading.origin.station, reading.site]
+        file = PurePosixPath(file_of(reading.source))
+        folders = [str(folder) for folder in file.parents if folder.name]
+        pattern = self._fitting(reading.name, *stations, str(file), file.name, file.stem, *folders)
+        if not pattern or isinstance(reading, LeftOut):
+            return reading
+        return _left_out(reading.name, reading.source, pattern, stations[0])
+
+    def motions(self, motions: MotionSet) -> MotionSet:
+        """Return the motions without those whose record or station is named, nor such among the unusable ones."""
+        if not self._patterns:
+            return motions
+        used: list[Motion] = []
+        unusable: list[Unusable] = []
+        left_out = list(motions.left_out)
+        for motion in motions.motions:
+            if pattern := self._fitting(motion.name, motion.of_station):
+                left_out.append(_left_out(motion.name, motion.files, pattern, motion.of_station))
+            else:
+                used.append(motion)
+        for file in motions.unusable:
+            if pattern := self._fitting(file.name, file.station):
+                left_out.append(_left_out(file.name, file.source, pattern, file.station))
+            else:
+                unusable.append(file)
+        return replace(motions, motions=used, unusable=unusable, left_out=left_out)
+
+    def finish(self) -> None:
+        """Raise ``InputError`` with every name that matches nothing."""
+        wrong = []
+        for pattern in self._patterns:
+            if pattern not in self._matched:
+                nearest = closest(pattern, self._names)
+                hint = f"; did you mean {shown(nearest)}?" if nearest else "; `rockbatch motions FOLDER` lists them"
+                wrong.append(
+                    f"[motions] leave_out: no record, file or station is called {shown(pattern)}, or matches it{hint}"
+                )
+        if wrong:
+            raise InputError(*wrong)
+
+    def _fitting(self, *names: str) -> str:
+        """Return the first pattern that one of these names fits; empty if none does."""
+        self._names.update(dict.fromkeys(filter(None, names)))
+        fitting = [pattern for pattern in self._patterns if any(fits(name, [pattern]) for name in names)]
+        self._matched.update(fitting)
+        return fitting[0] if fitting else ""
+
+
+def _left_out(name: str, source: str, pattern: str, station: str) -> LeftOut:
+    return LeftOut(name, source, f"leave_out = [{shown(pattern)}] in the study", station, named=True)

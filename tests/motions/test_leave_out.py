@@ -1,0 +1,70 @@
+"""Stations of what cannot be used, and records, files and stations that are left out by name."""
+
+import pytest
+from motion_files import wiggle, write_at2
+
+from rockbatch.errors import InputError
+from rockbatch.motions import read_motions
+
+UNITLESS = "# time acc\n" + "\n".join(f"{i / 100} {v}" for i, v in enumerate(wiggle(50)))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two stations: of RSN7 one horizontal component is cut, of RSN9 no file states its unit."""
+    for seed, name in enumerate(("RSN7_A_B000", "RSN7_A_B090", "RSN7_A_B-UP")):
+        write_at2(tmp_path, f"{name}.AT2", wiggle(50, seed), title=f"Made-up, 1/17/1994, B, {name[8:].strip('-')}")
+    cut = tmp_path / "RSN7_A_B090.AT2"
+    cut.write_text("\n".join(cut.read_text().splitlines()[:-2]))
+    (tmp_path / "lobby").mkdir()
+    for name in ("RSN9_C_D000", "RSN9_C_D090"):
+        (tmp_path / "lobby" / f"{name}.txt").write_text(UNITLESS)
+    return tmp_path
+
+
+def test_every_file_that_cannot_be_used_has_the_station_that_it_would_count_as(folder):
+    found = read_motions(folder)
+    assert [(motion.name, motion.station) for motion in found] == [("RSN7_A_B000", "RSN7")]
+    assert [(file.name, file.station) for file in found.unusable] == [
+        ("RSN7_A_B090", "RSN7"), ("RSN9_C_D000", "RSN9"), ("RSN9_C_D090", "RSN9"),
+    ]  # fmt: skip
+
+
+def test_a_channel_that_cannot_be_used_is_of_the_station_of_the_others_in_its_file(tmp_path):
+    rows = "\n".join(f"{i / 100} {v} {'nan' if i == 9 else v} {v}" for i, v in enumerate(wiggle(50)))
+    (tmp_path / "x_y.txt").write_text(f"# time(s) NS(g) EW(g) UD(g)\n{rows}\n")
+    found = read_motions(tmp_path)
+    stations = {motion.of_station for motion in found} | {file.station for file in found.unusable}
+    assert len(stations) == 1
+
+
+@pytest.mark.parametrize(
+    "patterns",
+    [["RSN9"], ["RSN9_*"], ["lobby"], ["lobby/*.txt"], ["RSN9_C_D000", "RSN9_C_D090.txt"], ["lobby/RSN9_C_D?[09]0.txt"]],
+)  # fmt: skip
+def test_a_station_is_left_out_by_its_name_its_files_their_records_or_their_folder(folder, patterns):
+    found = read_motions(folder, leave_out=patterns)
+    assert [file.station for file in found.unusable] == ["RSN7"]
+    assert [(file.name, file.station, file.named) for file in found.left_out] == [
+        ("RSN9_C_D000", "RSN9", True), ("RSN9_C_D090", "RSN9", True),
+    ]  # fmt: skip
+    assert f'leave_out = ["{patterns[0]}"]' in found.left_out[0].reason
+
+
+def test_a_record_that_could_be_used_is_left_out_and_one_of_a_manifest_counts_as_named_too(folder):
+    found = read_motions(folder, leave_out=["RSN7*"])
+    assert not found.motions
+    assert {file.name for file in found.left_out} == {"RSN7_A_B000", "RSN7_A_B090", "RSN7_A_B-UP"}
+    (folder / "motions.toml").write_text('[[record]]\nfile = "lobby/RSN9_C_D000.txt"\nuse = false\n')
+    (left,) = read_motions(folder).left_out
+    assert (left.station, left.named) == ("RSN9", True)
+
+
+def test_a_name_that_matches_nothing_is_refused_with_the_one_that_was_meant(folder):
+    with pytest.raises(InputError) as caught:
+        read_motions(folder, leave_out=["RSN9_C_D001", "RSN9*", "nobody"])
+    first, second = caught.value.problems
+    assert '"RSN9_C_D001"' in first
+    assert 'did you mean "RSN9_C_D0' in first
+    assert '"nobody"' in second
+    assert "`rockbatch motions FOLDER` lists them" in second
