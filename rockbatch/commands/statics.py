@@ -81,6 +81,7 @@ def rotations(sheet: Statics) -> str:
         "held by [g]": cells_of(curve.acceleration, "z.4f"),
         f"moment [{unit}]": cells_of(curve.moment, form, size),
         "of tendons": cells_of(curve.tendons, form, size) if curve.tendons.any() else [],
+        "of stops, springs": cells_of(curve.stops, form, size) if curve.stops.any() else [],
         "of dampers": cells_of(curve.dampers, form, size) if curve.dampers.any() else [],
         "period [s]": of_swings(swings.period, ".3g"),
         "damping": of_swings(swings.impact_damping, ".2%"),
