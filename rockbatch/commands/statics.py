@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks.remarks import weak_supports
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
 from rockbatch.common.files import csv_text, write_whole
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
+from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study, load_study
 
 MOST_CASES = 12
@@ -25,6 +27,8 @@ def main(arguments: argparse.Namespace) -> int:
     """Print the statics sheets of a study, and write them if asked."""
     study = load_study(arguments.file, motions=Motion("none", 0.01, np.zeros(2)))
     sheets = [(case, statics(case.pier, case.base)) for case in study.cases]
+    if weak := weak_supports([describe_case(case) for case in study.cases]):
+        show(f"{weak}\n")
     show(table(sheets))
     if len(sheets) <= MOST_CASES:
         for case, sheet in sheets:
