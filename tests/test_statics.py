@@ -15,7 +15,16 @@ from studies import study_text, write_study
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.core.springs.laws import static_deflection as series
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, rocking_frequency, static_deflection
+from rockbatch.pier import (
+    ElasticBase,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    least_beta,
+    problems,
+    rocking_frequency,
+    static_deflection,
+)
 from rockbatch.pier.equilibrium import SlowTurn, deflection_under, first_loading
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import FACTS, sheet_of
@@ -118,6 +127,67 @@ def test_supports_that_cannot_bear_all_never_let_go_and_topple_at_the_summit(eta
     lean = math.asin(share * sheet.settlement_m / PIER.half_width)
     assert sheet.strength_g == pytest.approx(share * math.tan(0.2) - math.tan(lean), rel=1e-5)
     assert "yields before" in repr(sheet) if eta < 2.0 else "yields" not in repr(sheet).splitlines()[2]
+
+
+def weak_pairs(count, devices=lambda rng: ()):
+    """Return piers on elastic–perfectly plastic supports that cannot bear them alone, at random."""
+    rng = np.random.default_rng(44)
+    pairs = []
+    while len(pairs) < count:
+        pier = Pier(alpha=rng.uniform(0.08, 0.35), p=rng.uniform(0.4, 1.5), mu=rng.uniform(1.5, 4.0))
+        springs = {"spring": "epp", "kinematics": ("first-order", "finite")[len(pairs) % 2], "restraints": devices(rng)}
+        base = YieldingBase(beta=rng.uniform(20.0, 80.0), eta=rng.uniform(1.2, 1.98), **springs)
+        if not problems(pier, base):
+            pairs.append((pier, base))
+    return pairs
+
+
+def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form_between_its_points():
+    """Without a point at first yield the curve is 0.9 to 4.2 % low there."""
+    for pier, base in weak_pairs(28):
+        sheet = rb.statics(pier, base)
+        theta = np.linspace(1e-6, sheet.unstable_rad, 20_001)[:-1]
+        finite = base.kinematics == "finite"
+        sine, cosine = (np.sin(theta), np.cos(theta)) if finite else (theta, np.ones_like(theta))
+        b, h = pier.half_width, pier.height
+        toe = np.minimum(0.5 + 0.5 * b * sine / static_deflection(pier, base), 0.5 * base.eta)
+        held = (b * cosine - h * sine - (1.0 - toe) * 2.0 * b * cosine) / (h * cosine)
+        curve = sheet.curve
+        on_curve = np.interp(theta, curve["theta_rad"], curve["acceleration_g"])
+        assert on_curve == pytest.approx(held, abs=1e-4 * sheet.strength_g)
+        at_strength = np.interp(sheet.strength_rad, curve["theta_rad"], curve["acceleration_g"])
+        assert at_strength == pytest.approx(sheet.strength_g, rel=1e-6)
+        assert sheet.strength_g == pytest.approx(held.max(), rel=1e-3)  # the grid of the closed form misses the kink
+
+
+@pytest.mark.parametrize("kind", ["tendon", "stop", "round"])
+def test_the_curve_has_the_printed_strength_of_weak_supports_with_devices_and_of_round_laws(kind):
+    """Kinks of tendons that yield and stops that are met, too: between its points the curve is what 4,000 points say."""
+    makes = {
+        "tendon": lambda rng: (rb.Tendon(psi=0.01, lam=rng.uniform(0.05, 0.5), strength=rng.uniform(0.03, 0.3)),),
+        "stop": lambda rng: (rb.Stop(gap_m=rng.uniform(0.005, 0.05), lam=rng.uniform(0.1, 0.8)),),
+        "round": lambda rng: (),
+    }
+    for pier, weak in weak_pairs(6, makes[kind]):
+        base = dataclasses.replace(weak, spring="bouc-wen") if kind == "round" else weak
+        sheet = sheet_of(pier, base)
+        curve = sheet.equilibria
+        if sheet.strength_g is not None:
+            at_strength = np.interp(sheet.strength_rad, curve.theta, curve.acceleration)
+            assert at_strength == pytest.approx(sheet.strength_g, rel=1e-9)
+        theta = np.linspace(1e-6, curve.theta[-1], 4001)[:-1]
+        fine = SlowTurn(pier, base).at(theta).acceleration
+        on_curve = np.interp(theta, curve.theta, curve.acceleration)
+        assert on_curve == pytest.approx(fine, abs=(2e-3 if kind == "round" else 1e-4) * fine.max())
+
+
+def test_the_rotations_that_the_command_prints_are_points_of_the_curve():
+    """Interpolation between others is off where the curve bends: here lift-off of one side is in the curve of the other."""
+    pads = ElasticBase(30.0, restraints=(rb.DeckSpring(0.3, gap_m=0.01, side="left"),))
+    for base in (pads, YieldingBase(30.0, eta=1.7), RigidBase(restraints=(TENDON,))):
+        sheet = rb.statics(PIER, base)
+        printed = {*sheet.swings_at.amplitude, sheet.lift_off_rad or 0.0, sheet.strength_rad}
+        assert printed <= set(sheet.equilibria.theta)
 
 
 @pytest.mark.parametrize("n", [1.0, 2.5, 5.0, 40.0])
@@ -387,8 +457,9 @@ def test_a_stop_holds_the_pier_beyond_its_gap_and_quickens_its_swings():
         held = k * max(2.0 * reach * math.sin(theta / 2.0) - gap, 0.0) * reach * math.cos(theta / 2.0)
         return PIER.size * math.sin(PIER.alpha - theta) + held
 
-    theta = sheet.curve["theta_rad"].to_numpy()
-    assert sheet.curve["moment_over_weight_m"].to_numpy() == pytest.approx(list(map(moment, theta)), abs=1e-8)
+    curve = sheet.equilibria
+    assert curve.moment == pytest.approx(list(map(moment, curve.theta)), abs=1e-9)
+    assert sheet.curve["of_stops_m"].max() > 0.0 == sheet.curve["of_tendons_m"].abs().max()
     assert sheet.unstable_rad is None
     start = 0.5 * PIER.alpha
     upright = lambda t, y: y[0]  # noqa: E731

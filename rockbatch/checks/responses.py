@@ -44,6 +44,12 @@ _TAKEN = (
 )  # fmt: skip
 """Columns of peaks.csv that they are made of."""
 
+PERMANENT = ("settlement_m", "base_tilt_rad")
+"""Responses that only supports that yield have."""
+
+ROUNDING = 1e-9
+"""Settlement [m] or tilt [rad] that is rounding."""
+
 _HELD = 1e-4
 """Least residual rotation over α on rigid ground that counts."""
 
@@ -82,10 +88,14 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
         for name in RESPONSES if len(rows) else ():
             if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
                 continue
+            if name in PERMANENT and case["base"] != "yielding":
+                continue
             values = DEMANDS[name].evaluate(numbers_of_case, case).value
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
-                worst.append(Worst(name, float(values[place]), case, runs, int(rows[place])))
+                value = float(values[place])
+                value = 0.0 if name in PERMANENT and value < ROUNDING else value
+                worst.append(Worst(name, value, case, runs, int(rows[place])))
     return worst
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
+from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
@@ -87,7 +88,8 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         return f"{verdict.case} {named(values, values.values())}".rstrip()
 
     worst = worst_of_cases(runs, saved.info["cases"])
-    lines = []
+    weak, undamped = weak_supports(saved.info["cases"]), undamped_settlement(worst)
+    lines = [_filled(weak, 0, 2)] if weak else []
     stations = stations_of(saved.info)
     for line in answer(
         verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
@@ -110,6 +112,8 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
             f"{named(columns, columns.values())}"
         )
         lines.append(_filled(f"{words:<{longest}}  {in_words(response)}: {hint.rstrip()}", 2, longest + 6))
+    if undamped:
+        lines.append(_filled(undamped, 2, 4))
     return "\n".join(lines)
 
 

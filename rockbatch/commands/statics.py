@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks.remarks import weak_supports
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
 from rockbatch.common.files import csv_text, write_whole
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
+from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study, load_study
 
 MOST_CASES = 12
@@ -25,6 +27,8 @@ def main(arguments: argparse.Namespace) -> int:
     """Print the statics sheets of a study, and write them if asked."""
     study = load_study(arguments.file, motions=Motion("none", 0.01, np.zeros(2)))
     sheets = [(case, statics(case.pier, case.base)) for case in study.cases]
+    if weak := weak_supports([describe_case(case) for case in study.cases]):
+        show(f"{weak}\n")
     show(table(sheets))
     if len(sheets) <= MOST_CASES:
         for case, sheet in sheets:
@@ -81,6 +85,7 @@ def rotations(sheet: Statics) -> str:
         "held by [g]": cells_of(curve.acceleration, "z.4f"),
         f"moment [{unit}]": cells_of(curve.moment, form, size),
         "of tendons": cells_of(curve.tendons, form, size) if curve.tendons.any() else [],
+        "of stops, springs": cells_of(curve.stops, form, size) if curve.stops.any() else [],
         "of dampers": cells_of(curve.dampers, form, size) if curve.dampers.any() else [],
         "period [s]": of_swings(swings.period, ".3g"),
         "damping": of_swings(swings.impact_damping, ".2%"),

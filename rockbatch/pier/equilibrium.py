@@ -28,6 +28,9 @@ MOST_STEPS, NEAR = 64, 1e-8
 BALANCED = 1e-14
 """Excess of vertical force over the weight that is rounding."""
 
+PASSES, PARTS = 5, 64
+"""Passes of the search for kinks, each of which divides the steps that hold one into so many."""
+
 ONSET = 1e-12
 """Rotation [rad] that stands for the first one, at which friction has its full force and stiffnesses have added nothing."""
 
@@ -181,9 +184,9 @@ class Equilibria:
 
     Attributes
     ----------
-    weight, tendons, dampers : ndarray
+    weight, tendons, stops, dampers : ndarray
         Their shares of the righting moment about the pivot that bears more, over the weight [m]; the P–Δ moment is in ``weight``,
-        and what stops and deck springs bear in ``tendons``.
+        that of deck springs in ``stops``.
     lever : ndarray
         Height by which a horizontal ground acceleration turns the pier [m].
     toe, heel : ndarray
@@ -195,6 +198,7 @@ class Equilibria:
     theta: Array
     weight: Array
     tendons: Array
+    stops: Array
     dampers: Array
     lever: Array
     toe: Array
@@ -204,7 +208,7 @@ class Equilibria:
     @property
     def moment(self) -> Array:
         """Return the righting moment over the weight [m]."""
-        return self.weight + self.tendons + self.dampers
+        return self.weight + self.tendons + self.stops + self.dampers
 
     @property
     def acceleration(self) -> Array:
@@ -389,20 +393,22 @@ class SlowTurn:
             depth, heel, pulls = *self._without_devices(theta, on_both), []
         else:
             depth, pulls, heel = self._balanced(theta, since, on_both)
-        of_tendons, of_dampers = np.zeros_like(theta), np.zeros_like(theta)
+        of_tendons, of_stops, of_dampers = np.zeros_like(theta), np.zeros_like(theta), np.zeros_like(theta)
         down = np.ones_like(theta)
         for place, pull in zip(self.places, pulls, strict=True):
             moment = pull * self._arm(place, theta, self.elongation(place, theta, depth))
             if isinstance(place.device, Damper):
                 of_dampers += moment
-            else:
+            elif isinstance(place.device, Tendon):
                 of_tendons += moment
+            else:
+                of_stops += moment
             down += 0.0 if place.height else pull * self._by_v(theta)
         width = 2.0 * self.b * (np.cos(theta) if self.finite else 1.0)
         level = self.h * np.cos(theta) if self.finite else np.full_like(theta, self.h)
         lever = level if on_both and self.spring is not None else level + self._rise(theta)
         of_weight = self._toe_arm(theta) - heel * width
-        return Equilibria(theta, of_weight, of_tendons, of_dampers, lever, down - heel, heel, depth)
+        return Equilibria(theta, of_weight, of_tendons, of_stops, of_dampers, lever, down - heel, heel, depth)
 
     def at(self, theta: Array) -> Equilibria:
         """Return the equilibria at rotations ``theta`` > 0 [rad]; at that of lift-off the pier still stands on both supports."""
@@ -439,20 +445,60 @@ class SlowTurn:
         return high - step * float(moments[i] / (moments[i] - previous))
 
     def curve(self, until: float, before: int = 12, after: int = 100) -> Equilibria:
-        """Return the equilibria from the first rotation to ``until`` [rad], and on both sides of lift-off."""
-        start = min(self.lift_off or 0.0, until)
-        grid = [ONSET, start, float(np.nextafter(start, 2.0)), *np.linspace(0.0, start, before + 1)[1:]]
+        """Return the equilibria from the first rotation to ``until`` [rad], on both sides of lift-off or of first yield."""
+        start = self.lift_off
+        if start is None and self.spring is not None:
+            # twice the rotation at which the toe, elastic up to there, yields
+            start = 2.0 * (self.spring.strength - self.at_rest) / self.spring.stiffness / self.b
+            before *= 2
+        start = min(start or 0.0, until)
+        beyond = [] if self.lift_off is None else [float(np.nextafter(start, 2.0))]
+        grid = [ONSET, *beyond, *np.linspace(0.0, start, before + 1)[1:]]
         grid += [*(start + (until - start) * np.linspace(0.0, 1.0, after + 1) ** 2)[1:]]
         return self._from_rest(grid)
 
-    def _from_rest(self, grid: Sequence[float]) -> Equilibria:
+    def _from_rest(self, grid: Sequence[float] | Array) -> Equilibria:
         """Return the equilibria at rotations in order, each once, of which the first may be 0."""
         equilibria = self.at(np.unique(np.maximum(grid, ONSET)))
         return replace(equilibria, theta=np.where(equilibria.theta > ONSET, equilibria.theta, 0.0))
 
-    def strongest(self, quantity: str, curve: Equilibria) -> tuple[float, float]:
+    def with_rotations(self, curve: Equilibria, rotations: Array) -> Equilibria:
+        """Return a curve with the equilibria at further ``rotations`` within it [rad]."""
+        inside = rotations[(rotations > curve.theta[0]) & (rotations < curve.theta[-1])]
+        parts = zip(vars(curve).values(), vars(self.at(inside)).values(), strict=True)
+        _, places = np.unique(np.concatenate((curve.theta, inside)), return_index=True)
+        return Equilibria(*(np.concatenate(both)[places] for both in parts))
+
+    def kinks(self, curve: Equilibria) -> Array:
+        """Return rotations within a curve, beside lift-off, at which a support, tendon, stop or deck spring yields,
+        is met or lets go [rad]."""
+        changes = self._changes(curve)
+        for _ in range(PASSES):
+            if len(changes):
+                grid = np.linspace(curve.theta[changes], curve.theta[changes + 1], PARTS + 1)
+                curve = self._from_rest(grid.ravel())
+                changes = self._changes(curve)
+        return curve.theta[changes + 1]
+
+    def _changes(self, curve: Equilibria) -> npt.NDArray[np.intp]:
+        """Return the places of a curve after which the regime of a support or a device changes."""
+        regimes = [np.zeros(len(curve.theta), dtype=bool)]
+        if self.spring is not None:
+            regimes += [curve.heel >= self.spring.strength]
+            if self.spring.exponent is None:
+                regimes += [curve.depth * self.spring.stiffness >= self.spring.strength]
+        for place in self.places:
+            device, elongation = place.device, self.elongation(place, curve.theta, curve.depth)
+            if isinstance(device, Tendon):
+                pull = device.psi + place.stiffness * elongation
+                regimes += [pull >= device.strength, pull <= 0.0]
+            elif isinstance(device, Stop | DeckSpring):
+                regimes += [elongation > device.gap_m]
+        return np.flatnonzero(np.any([regime[1:] != regime[:-1] for regime in regimes], axis=0))
+
+    def strongest(self, quantity: str, curve: Equilibria, kinks: Array) -> tuple[float, float]:
         """Return the greatest value of "moment" or "acceleration" along the curve, and the rotation there [rad]."""
-        corners = (0.0, self.lift_off)
+        corners = (0.0, self.lift_off, *kinks)
         for _ in range(5):
             values = getattr(curve, quantity)
             i = int(np.argmax(values))

@@ -16,7 +16,6 @@ from rockbatch.pier.bases import Base, ElasticBase, RigidBase
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.places import symmetric
-from rockbatch.pier.restraints import DeckSpring, Stop, Tendon
 
 Array = npt.NDArray[np.float64]
 
@@ -65,22 +64,20 @@ class FreeRocking:
 
     @cached_property
     def _edges(self) -> list[float]:
-        """Rotations at which the moment changes its slope: lift-off, stops that are met, tendons that yield."""
-        turn, edges = self.turn, [self.turn.lift_off or 0.0]
-        for place in turn.places:
-            rises = turn.elongation(place, self._curve.theta, self._curve.depth)
-            reached = math.inf
-            if isinstance(place.device, Stop | DeckSpring):
-                reached = place.device.gap_m
-            elif isinstance(place.device, Tendon) and place.stiffness > 0.0:
-                reached = (place.device.strength - place.device.psi) / place.stiffness
-            if reached < rises[-1]:
-                edges.append(float(np.interp(reached, rises, self._curve.theta)))
-        return sorted(edges)
+        """Rotations at which the moment changes its slope."""
+        return sorted((self.turn.lift_off or 0.0, *self._kinks))
+
+    @cached_property
+    def _kinks(self) -> Array:
+        return self.turn.kinks(self._grid)
+
+    @cached_property
+    def _grid(self) -> Equilibria:
+        return self.turn.curve(self.turn.unstable or 0.5 * math.pi, before=20, after=200)
 
     @cached_property
     def _curve(self) -> Equilibria:
-        return self.turn.curve(self.turn.unstable or 0.5 * math.pi, before=20, after=200)
+        return self.turn.with_rotations(self._grid, self._kinks)
 
     @cached_property
     def _tabulated(self) -> tuple[Array, Array, Array]:

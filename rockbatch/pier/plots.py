@@ -18,7 +18,12 @@ def statics(pier: Pier, equilibria: Equilibria, swings: Swings, width_mm: float)
     size, unit = (
         (1.0, "moment/weight [m]") if pier.mass_t is None else (1e-3 * pier.mass_t * pier.gravity, "moment [MN m]")
     )
-    shares = {"weight and supports": equilibria.weight, "tendons": equilibria.tendons, "dampers": equilibria.dampers}
+    shares = {
+        "weight and supports": equilibria.weight,
+        "tendons": equilibria.tendons,
+        "stops, deck springs": equilibria.stops,
+        "dampers": equilibria.dampers,
+    }
     shown = {name: values for name, values in shares.items() if values.any()}
     for place, (name, values) in enumerate({"all": equilibria.moment, **(shown if len(shown) > 1 else {})}.items()):
         left.plot(equilibria.theta / alpha, size * values, label=name, **line(place))

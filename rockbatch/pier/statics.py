@@ -163,8 +163,8 @@ class Statics(Shown):
         """Return the moment–rotation curve as a table, a row for each rotation up to overturning.
 
         ``theta_rad``, ``theta_over_alpha``; ``acceleration_g`` that holds the pier there; ``moment_over_weight_m``, and in it
-        the shares of weight with supports, of tendons with stops, and of dampers; ``toe_over_weight`` and ``heel_over_weight``,
-        the forces of the two supports; ``moment_kN_m`` if the mass is known.
+        the shares of weight with supports, of tendons, of stops with deck springs, and of dampers; ``toe_over_weight`` and
+        ``heel_over_weight``, the forces of the two supports; ``moment_kN_m`` if the mass is known.
         """
         equilibria = self.equilibria
         columns = {
@@ -174,6 +174,7 @@ class Statics(Shown):
             "moment_over_weight_m": equilibria.moment,
             "of_weight_m": equilibria.weight,
             "of_tendons_m": equilibria.tendons,
+            "of_stops_m": equilibria.stops,
             "of_dampers_m": equilibria.dampers,
             "toe_over_weight": equilibria.toe,
             "heel_over_weight": equilibria.heel,
@@ -314,7 +315,9 @@ def sheet_of(pier: Pier, foundation: Base) -> Statics:
     if foundation.area_m2 is not None and pier.mass_t is not None:
         stress = pier.mass_t * pier.gravity / foundation.area_m2 / 1000.0
     amplitudes = pier.alpha * np.array(AMPLITUDES)
+    amplitudes = amplitudes[amplitudes < 0.999 * balance]
     free = FreeRocking(pier, foundation)
+    shown = np.array([*amplitudes, *(side.lift_off[1] for side in sides)])
     return Statics(
         pier, foundation, "either" if even else "right" if weaker is sides[0] else "left",
         lift_off_g=_finite(first.lift_off[0]), lift_off_rad=_finite(first.lift_off[1]),
@@ -324,7 +327,7 @@ def sheet_of(pier: Pier, foundation: Base) -> Statics:
         vertical_period_s=None if springs is None else 2.0 * math.pi / vertical_frequency(pier, springs),
         full_contact_period_s=free.in_full_contact,
         stress_at_rest_MPa=_finite(stress * weaker.turn.at_rest), stress_on_one_MPa=_finite(stress * weaker.borne_alone),
-        equilibria=weaker.curve, swings_at=free.swings(amplitudes[amplitudes < 0.999 * balance]),
+        equilibria=weaker.turn.with_rotations(weaker.curve, shown), swings_at=free.swings(amplitudes),
     )  # fmt: skip
 
 
@@ -348,11 +351,14 @@ class _Side(NamedTuple):
         turn = SlowTurn(pier, base, side=side)
         unstable = SlowTurn(pier, base, without_dampers(base.restraints), side).unstable
         curve = turn.curve(min(2.0 * pier.alpha, 0.5 * math.pi) if unstable is None else unstable)
+        kinks = turn.kinks(curve)
+        curve = turn.with_rotations(curve, kinks)
         lift_off, alone = (math.inf, math.inf), float(curve.toe.max())
         if turn.lift_off is not None:
             at_lift_off = turn.at(np.array([max(turn.lift_off, ONSET)]))
             lift_off, alone = (float(at_lift_off.acceleration[0]), turn.lift_off), float(at_lift_off.toe[0])
-        strength, moment = (turn.strongest(quantity, curve) for quantity in ("acceleration", "moment"))
+        strength, moment = (turn.strongest(quantity, curve, kinks) for quantity in ("acceleration", "moment"))
+        curve = turn.with_rotations(curve, np.array([strength[1], moment[1]]))
         if unstable is None:  # what still rises at the end of the curve has no greatest value
             ends = (math.inf, math.inf)
             strength, moment = (ends if best[1] == curve.theta[-1] else best for best in (strength, moment))

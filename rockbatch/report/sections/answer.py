@@ -5,13 +5,15 @@ from decimal import ROUND_UP, Decimal
 
 import numpy as np
 
+from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
 from rockbatch.checks.suite import NOT_RUN
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, join, number, paragraphs, tag
 from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
+from rockbatch.report.table import alarm
 from rockbatch.report.templates import render
 from rockbatch.results.suite_statistics import reasons_of_failure
 
@@ -27,8 +29,9 @@ Facts = list[tuple[str, Markup]]
 
 def section(finished: Finished) -> Markup:
     """Return the first screen; every check and every run follow further down."""
+    weak = weak_supports(finished.info["cases"])
     passes = tag("div", verdicts.answer(finished), class_="lead")
-    return join(passes, worst(finished), by_record(finished))
+    return join(paragraphs(alarm(weak)) if weak else "", passes, worst(finished), by_record(finished))
 
 
 def worst(finished: Finished) -> Markup:
@@ -73,9 +76,14 @@ def _responses(finished: Finished) -> Facts:
         lean = " (mostly the lean of a base that has yielded)" if rotation and run["theta_max_is"] else ""
         qualifier = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
         facts.append((words, join(tag("strong", in_words(worst)), lean, qualifier, place)))
-    if all(worst.case["base"] == "rigid" for worst in finished.worst):
+    bases = {worst.case["base"] for worst in finished.worst}
+    if bases == {"rigid"}:
         exception = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
         facts.append(("of the supports", join(f"no settlement: the ground is rigid{exception}")))
+    elif "yielding" not in bases:
+        facts.append(("of the supports", join("no settlement: they are elastic")))
+    if undamped := undamped_settlement(finished.worst):
+        facts.append(("of the settlement", join(undamped)))
     return facts
 
 

@@ -1,0 +1,77 @@
+"""Remarks on the supports of a study's cases that a reader needs before the results: one sentence each, with the cases."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from rockbatch.checks.demands import Case
+from rockbatch.checks.responses import Worst
+from rockbatch.common.grouping import grouped
+
+MOST_NAMES = 3
+
+
+def weak_supports(cases: Sequence[Case]) -> str:
+    """Return a sentence on cases in which one support cannot carry the pier, so that it cannot step; empty for none."""
+    shares = {i: share for i, case in enumerate(cases) if (share := _borne_alone(case)) < 1.0}
+    if not shares:
+        return ""
+    least, most = (f"{100.0 * share:.3g}" for share in (min(shares.values()), max(shares.values())))
+    borne = most if least == most else f"{least} to {most}"
+    weak = [cases[i] for i in shares]
+    load = "weight and prestress" if any(map(_prestress, weak)) else "weight"
+    return (
+        f"{_named(weak, cases)}: the supports yield before the pier can step; one alone bears {borne} % of the {load}, and "
+        "lift-off is not reached under any steady acceleration"
+    )
+
+
+def undamped_settlement(worst: Sequence[Worst]) -> str:
+    """Return a sentence on cases that settle while nothing damps the vertical vibration; empty for none.
+
+    ``worst`` are the worst responses of all cases.
+    """
+    settled = [response.case for response in worst if response.demand == "settlement_m"]
+    undamped = [
+        response.case
+        for response in worst
+        if response.demand == "settlement_m" and response.value > 0.0 and not _is_damped(response.case)
+    ]
+    if not undamped:
+        return ""
+    return (
+        f"{_named(undamped, settled)}: the settlement counts vertical vibration that nothing damps between landings (no zeta); "
+        "zeta = 0.05 may leave a fraction of it"
+    )
+
+
+def _borne_alone(case: Case) -> float:
+    """Return the yield force of a support over weight and prestress; infinite if it does not yield."""
+    eta = case["parameters"].get("eta")
+    return math.inf if eta is None else 0.5 * float(eta) / (1.0 + _prestress(case))
+
+
+def _prestress(case: Case) -> float:
+    """Return the prestress of all tendons over the weight."""
+    return sum(float(device.get("psi") or 0.0) for device in case["parameters"].get("restraints", ()))
+
+
+def _is_damped(case: Case) -> bool:
+    """Return whether dashpots of the supports, or dampers, damp the vertical vibration."""
+    parameters = case["parameters"]
+    return bool(parameters.get("zeta")) or any("kind" in device for device in parameters.get("restraints", ()))
+
+
+def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
+    """Return the names of ``cases``, with their varied values where other cases ``among`` all have the same name."""
+    names = []
+    every = grouped(among, lambda case: str(case["case"]))
+    for name, of_name in grouped(cases, lambda case: str(case["case"])).items():
+        for case in of_name if len(of_name) < len(every[name]) else of_name[:1]:
+            values = case["columns"].items() if len(of_name) < len(every[name]) else ()
+            names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values)]))
+    more = len(names) - MOST_NAMES
+    return "; ".join(names[:MOST_NAMES]) + (f"; and {more} more" if more > 0 else "")
+
+
+def _written(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"

@@ -1,0 +1,88 @@
+"""Remarks on supports: those that cannot carry the pier alone, and settlement that nothing damps; first, and once."""
+
+import re
+
+import pytest
+from check_samples import ELASTIC, PIER, RIGID, case, folder, runs
+from report_page import Page
+from studies import study_text, write_study
+
+import rockbatch as rb
+from rockbatch.checks.remarks import undamped_settlement, weak_supports
+from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
+from rockbatch.cli import main
+from rockbatch.pier import YieldingBase
+from rockbatch.report import write_report
+
+WEAK = YieldingBase(beta=50.0, eta=1.7, spring="epp", zeta=0.05)
+SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": 1e-3}
+
+
+@pytest.mark.parametrize("eta", [1.2, 1.95, 2.05, 3.0])
+@pytest.mark.parametrize("psi", [0.0, 0.3])
+def test_supports_are_weak_where_the_statics_never_lift_off(eta, psi):
+    tendon = (rb.Tendon(psi=psi),) if psi else ()
+    if eta <= 1.0 + psi:
+        return
+    base = YieldingBase(beta=50.0, eta=eta, spring="epp", restraints=tendon)
+    weak = weak_supports([case(base=base)])
+    assert bool(weak) == (rb.statics(PIER, base).lift_off_g is None)
+    if weak:
+        assert f"one alone bears {50.0 * eta / (1.0 + psi):.3g} % of the weight" in weak
+
+
+def test_weak_cases_are_named_once_with_their_values_where_others_of_the_name_are_strong():
+    pads = [case("pads", YieldingBase(beta=50.0, eta=eta), eta=eta) for eta in (1.5, 1.8, 2.5)]
+    sentence = weak_supports([RIGID, ELASTIC, *pads, case("weak", WEAK, eta=1.7)])
+    assert sentence.startswith("pads eta=1.5; pads eta=1.8; weak: the supports yield before the pier can step")
+    assert "bears 75 to 90 % of the weight" in sentence
+    assert "lift-off is not reached" in sentence
+    assert weak_supports([RIGID, ELASTIC, pads[-1]]) == ""
+    many = [case("pads", YieldingBase(beta=50.0, eta=1.5), k=k) for k in range(40)]
+    assert weak_supports(many).startswith("pads: ")
+    assert "pads k=2; and 37 more: the supports yield" in weak_supports([*many, case(eta=2.5)])
+
+
+def test_settlement_without_damping_is_qualified_and_only_that():
+    def of(base, **cells):
+        return undamped_settlement(worst_of_cases(runs(**cells), [case(base=base)]))
+
+    bare = YieldingBase(beta=50.0, eta=2.5)
+    assert of(bare, **SETTLED).startswith("pads: the settlement counts vertical vibration that nothing damps")
+    assert of(bare, settlement_m=1e-16) == ""
+    assert of(YieldingBase(beta=50.0, eta=2.5, zeta=0.05), **SETTLED) == ""
+    damped = YieldingBase(beta=50.0, eta=2.5, restraints=(rb.Damper("viscous", nu=0.1),))
+    assert of(damped, **SETTLED) == ""
+    assert of(YieldingBase(beta=50.0, eta=2.5, zeta=0.0), **SETTLED)
+
+
+def test_elastic_supports_have_no_settlement_and_those_that_did_not_yield_none_beyond_rounding():
+    rounding = {"settlement_m": 6.53e-16, "base_tilt_rad": 1e-17}
+    elastic = worst_of_all(worst_of_cases(runs(name="elastic", **rounding), [ELASTIC]))
+    assert list(elastic) == ["theta_max_over_alpha", "top_drift_m", "heel_uplift_m"]
+    pads = worst_of_all(worst_of_cases(runs(**rounding), [case()]))
+    assert in_words(pads["settlement_m"]) == "0 mm"
+    assert in_words(pads["base_tilt_rad"]) == "0 mrad (0°)"
+
+
+def test_the_page_says_so_first(tmp_path):
+    table = runs(name="weak", **SETTLED)
+    write = folder(tmp_path / "weak", table, [case("weak", YieldingBase(beta=50.0, eta=1.7))])
+    text = Page(write_report(write, []).read_text(encoding="utf-8")).text
+    weak, answer = text.index("weak: the supports yield"), text.index("No limits were set")
+    assert weak < answer < text.index("weak: the settlement counts")
+    elastic = folder(tmp_path / "elastic", runs(name="elastic", settlement_m=6.53e-16, base_tilt_rad=1e-17), [ELASTIC])
+    text = Page(write_report(elastic, []).read_text(encoding="utf-8")).text
+    assert "no settlement: they are elastic" in text
+    assert "mean settlement" not in text[: text.index("Peak rotations", text.index("of the supports"))]
+
+
+def test_the_terminal_says_so_first(tmp_path, capsys):
+    pads = {"name": "pads", "base": "yielding", "beta": 50, "eta": 1.7}
+    study = write_study(tmp_path, study_text(cases=(pads,)))
+    assert main(["statics", str(study)]) == 0
+    assert capsys.readouterr().out.startswith("pads: the supports yield before the pier can step")
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    printed = re.sub(r"\s+", " ", capsys.readouterr().out)
+    weak, answer = printed.index("pads: the supports yield"), printed.index("No limits were set")
+    assert weak < answer < printed.index("pads: the settlement counts vertical vibration")
