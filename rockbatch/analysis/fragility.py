@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analysis.cloud_tables import CLOUD, cloud_table
 from rockbatch.analysis.folder import Analysis, AnalysisFolder, analysed
-from rockbatch.analysis.fragility_curves import Curve, assess, level_plan, output
+from rockbatch.analysis.fragility_curves import Curve, assess, first_intensities, level_plan, output
 from rockbatch.analysis.fragility_tables import CAPACITIES, POINTS, RUNS, capacities, described, points
 from rockbatch.analysis.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
 from rockbatch.analysis.scale_factors import SCALES, described_scales, scales
@@ -170,8 +170,11 @@ def _carry_out(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
         fragility=spec.of_runs,
     )
     with results.journal(RUNS, columns(study), digest) as journal:
-        runs = count(sum(map(len, plan.used)) * len(study.cases), "run")
-        scaling = "as they are" if spec.method == "cloud" else f"at {len(spec.levels)} levels of {spec.label}"
+        first = (len(first_intensities(spec, plan, m, case)) for m in range(len(records)) for case in study.cases)
+        runs = count(sum(first), "run")
+        windowed = any(spec.window_on(case.base) is not None for case in study.cases)
+        scaling = f"at {len(spec.levels)} levels of {spec.label}{' and in windows about them' if windowed else ''}"
+        scaling = "as they are" if spec.method == "cloud" else scaling
         levels = f"{count(len(records), 'record')} {scaling}"
         search = (
             f"; then first exceedances are hunted for and bisected to {spec.tolerance:g}"

@@ -23,6 +23,7 @@ from rockbatch.analysis.limit_states import (
     threshold,
 )
 from rockbatch.analysis.lognormal import Capacities, Lognormal, Values, fit
+from rockbatch.analysis.windows import Windows, samples, windows
 from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.checks.demands import DEMANDS
@@ -101,14 +102,20 @@ def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> 
         for m, scale in scales.items():
             intensity = level if scale is None else scale * unscaled[m] / motions[m].factor
             factor = motions[m].factor * intensity / unscaled[m]
-            within = spec.least_scale <= factor * (1 + 1e-9) and factor <= spec.most_scale * (1 + 1e-9)
-            (plan.used if within else plan.not_used)[m][level] = intensity
+            (plan.used if spec.allows(factor) else plan.not_used)[m][level] = intensity
     if not any(plan.used):
         limits = f"least_scale = {spec.least_scale:g} and most_scale = {spec.most_scale:g}"
         raise InputError(
             f"{study.path}: [fragility]: {limits}: no record reaches a level with such a factor; widen them"
         )
     return plan
+
+
+def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
+    """Return the intensities of a motion's runs that depend on no others, by level; those in the windows by themselves."""
+    used, factor = plan.used[motion], plan.earlier[motion] / plan.unscaled[motion]
+    around = (x for level in used for x in samples(level, spec.window_on(case.base)))
+    return used | {x: x for x in around if spec.allows(factor * x)}
 
 
 Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
@@ -212,6 +219,9 @@ class Curve:
         The curves between which it lies, whatever undecided runs would have come to; None without any.
     capacities : tuple of (int, Capacity)
         Number of each motion that counts, and its capacity; of incremental dynamic analysis only.
+    windows : Windows or None
+        Shares of the scales about the levels that exceed the limit, and the curve through them; of incremental dynamic
+        analysis only, where the case has windows.
     cloud : tuple of CloudPoint
         What each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one.
     """
@@ -223,6 +233,7 @@ class Curve:
     undecided: Undecided
     readings: Readings | None = None
     capacities: tuple[tuple[int, Capacity], ...] = ()
+    windows: Windows | None = None
     cloud: tuple[CloudPoint, ...] = ()
 
     @property
@@ -281,16 +292,21 @@ def assess(
 ) -> list[Curve]:
     """Return the fragility curves of every case for every limit that applies to it.
 
-    Every record is run at the levels of ``plan``, at all of them if it is not given; with method "ida" the first exceedance
-    of every record is then sought below that on the levels, in one wave, and bisected, in more of them.
+    Every record is run at the levels of ``plan``, at all of them if it is not given, and with method "ida" in the windows about
+    them; the first exceedance of every record is then sought below that so far, in one wave, and bisected, in more of them.
 
-    ``simulate`` is called once for the levels and once for every wave, each depending on the rows before.
+    ``simulate`` is called once for the levels and windows and once for every wave, each depending on the rows before.
     """
     plan = plan or level_plan(study, spec, motions)
     runs = _Runs(study, motions, plan, simulate)
     cases = [describe_case(case) for case in study.cases]
     pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
-    runs.carry_out(Point(m, x, c) for m, used in enumerate(plan.used) for x in used.values() for c in range(len(cases)))
+    first = {
+        (c, m): first_intensities(spec, plan, m, case)
+        for c, case in enumerate(study.cases)
+        for m in range(len(motions))
+    }
+    runs.carry_out(Point(m, x, c) for (c, m), intensities in first.items() for x in intensities.values())
 
     def states_of(looked_for: Sequence[tuple[_Key, float]]) -> list[int]:
         points = [(rule, Point(m, x, c)) for (c, rule, m), x in looked_for]
@@ -298,8 +314,8 @@ def assess(
         return runs.states(points)
 
     keys = [(c, rule, m) for c, rule in pairs for m in range(len(motions))]
-    on_levels = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in plan.used[m].values()]))
-    looks = {key: {level: next(on_levels) for level in plan.used[key[2]]} for key in keys}
+    found = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in first[c, m].values()]))
+    looks = {(c, rule, m): {x: next(found) for x in first[c, m]} for c, rule, m in keys}
     if spec.method == "cloud":
         return [_of_cloud(runs, spec, c, rule) for c, rule in pairs]
     if spec.method == "ida":
@@ -363,8 +379,10 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
         fits = _through_brackets([found_capacity for _, found_capacity in capacities], spec)
     else:
         fits = _through_stripes(on_levels, spec)
-    stripes = _stripes(on_levels, spec.levels, runs, case)
-    return Curve(runs.study.cases[case], rule, stripes, fits[0], undecided, fits[1], capacities)
+    stripes, of_case, windowed = _stripes(on_levels, spec.levels, runs, case), runs.study.cases[case], None
+    if (width := spec.window_on(of_case.base)) is not None:
+        windowed = windows(looks, spec.levels, width, spec.confidence)
+    return Curve(of_case, rule, stripes, fits[0], undecided, fits[1], capacities, windowed)
 
 
 def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
@@ -389,7 +407,7 @@ def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
         within = [run._replace(demand=math.nan, state=WITHSTOOD) if _is_doubtful(run) else run for run in counting]
         readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
     stripes = tuple(_stripe_of_one(run, runs.plan) for run in cloud_points)
-    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, (), cloud_points)
+    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, cloud=cloud_points)
 
 
 def _is_doubtful(run: CloudPoint) -> bool:

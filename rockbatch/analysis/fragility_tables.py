@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.analysis.cloud_tables import described_cloud, note_on_cloud
 from rockbatch.analysis.fragility_curves import Curve
@@ -15,6 +16,7 @@ from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.lognormal import Values
 from rockbatch.analysis.risk import Risk, described_hazard
 from rockbatch.analysis.risk import described as described_risk
+from rockbatch.analysis.windows import Windows
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
 from rockbatch.study.fragility import FragilitySpec
@@ -28,7 +30,9 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
     """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
 
     ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
-    ``p_total`` is the curve with the dispersion that the study adds, if it does.
+    ``p_total`` is the curve with the dispersion that the study adds, if it does. Of incremental dynamic analysis
+    ``window_share`` is the share of the scales about the level that exceed the limit, the mean of ``window_n`` records, in which
+    ``window_undecided`` runs are not; ``window_p`` is the curve through these shares.
     """
     rows: list[dict[str, Any]] = []
     for curve in curves:
@@ -36,8 +40,10 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
         p = _probabilities(curve, np.array(spec.levels))
         if spec.added:
             p["p_total"] = _total(curve, spec, np.array(spec.levels))
+        if spec.method == "ida":
+            p |= _of_windows(curve.windows, spec)
         rows += [
-            curve.identity(varied) | units | stripe._asdict() | {name: float(values[i]) for name, values in p.items()}
+            curve.identity(varied) | units | stripe._asdict() | {name: values[i].item() for name, values in p.items()}
             for i, stripe in enumerate(curve.stripes)
         ]
     return pd.DataFrame(rows).rename(columns={"records": "n"})
@@ -56,6 +62,17 @@ def _total(curve: Curve, spec: FragilitySpec, x: Values) -> Values:
     return np.full(len(x), np.nan) if isinstance(fitted, str) else fitted.widened(spec.added).probability(x)
 
 
+def _of_windows(windows: Windows | None, spec: FragilitySpec) -> dict[str, npt.NDArray[Any]]:
+    """Return the columns of the windows of a curve, each with a value for every level; NaN where there are none."""
+    nothing = np.full(len(spec.levels), np.nan)
+    if windows is None:
+        return dict.fromkeys(("window_share", "window_n", "window_undecided", "window_p"), nothing)
+    fitted = windows.fitted
+    p = nothing if isinstance(fitted, str) else fitted.probability(np.array(spec.levels))
+    counts = {"window_n": np.array(windows.records), "window_undecided": np.array(windows.undecided)}
+    return {"window_share": np.array(windows.shares), **counts, "window_p": p}
+
+
 def capacities(
     curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str], names: Sequence[str], unscaled: Sequence[float]
 ) -> "pd.DataFrame":
@@ -63,8 +80,8 @@ def capacities(
 
     A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
     scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
-    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an exceedance
-    in a narrower window may have been missed.
+    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an island of
+    exceedance that is narrower may have been missed.
     ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
     """
     rows: list[dict[str, Any]] = []
@@ -111,6 +128,7 @@ def described(
         "records": records,
         "polarities": study.motions.polarity,
         "looked_at": looked_at(curves, spec),
+        "by_shares": by_shares(curves),
         "dispersions": [asdict(dispersion) for dispersion in spec.dispersions],
         "hazard": described_hazard(spec),
         "curves": [_described(curve, spec) | {"risk": of_curves.get(id(curve))} for curve in curves],
@@ -126,7 +144,10 @@ def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     parts = []
     if hunted:
         width = f"{100 * next(iter(hunted.values())):g} %"
-        parts.append(f"in steps of {width} from the lowest level up ({', '.join(hunted)}), which miss narrower windows")
+        parts.append(
+            f"in steps of {width} from the lowest level up ({', '.join(hunted)}): islands of exceedance narrower than that may "
+            "lie below a capacity, and the median may be too high"
+        )
     if not_hunted:
         apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
         parts.append(
@@ -137,9 +158,10 @@ def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
 
 
 def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
-    """Return the intervals in which all records were run up to their first exceedance; of no width at a level."""
+    """Return the intervals in which all records were run up to their first exceedance; a level alone has no width."""
     if spec.step_on(curve.case.base) is None:
-        return [(level, level) for level in spec.levels]
+        width = spec.window_on(curve.case.base) or 0.0
+        return [(level * (1.0 - width), level * (1.0 + width)) for level in spec.levels]
     return [(spec.levels[0], min(spec.levels[-1], max((cap.decided.high for _, cap in curve.capacities), default=0.0)))]
 
 
@@ -165,6 +187,8 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
     x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
     if curve.cloud:
         content["cloud"] = described_cloud(curve, spec)
+    if curve.windows:
+        content["windows"] = _described_windows(curve.windows, fitted, x)
     if readings:
         p = _probabilities(curve, x)
         content["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
@@ -182,6 +206,32 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
             content["dispersion_total"] = _or_none(total.dispersion)
             content["total"] = _rounded({"x": x, "p": total.probability(x)})
     return content
+
+
+def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, Any]:
+    """Return the shares of the windows and the curve through them, also how far its median is above that of the ``first``."""
+    shares = [_or_none(share) for share in windows.shares]
+    content: dict[str, Any] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
+    if not isinstance(fitted := windows.fitted, str):
+        content |= {
+            "median": _or_none(fitted.median),
+            "median_interval": _finite(fitted.median_interval),
+            "dispersion": _or_none(fitted.dispersion),
+            "above": windows.above(first),
+            "curve": _rounded({"x": x, "p": fitted.probability(x)}),
+        }
+    return content
+
+
+def by_shares(curves: Sequence[Curve]) -> str:
+    """Return what the median by shares is, in words; empty without windows."""
+    widths = [f"{100 * curve.windows.width:g} %" for curve in curves if curve.windows]
+    if not widths:
+        return ""
+    return (
+        f"by shares: the median of a curve through the share of the scales within ±{widths[0]} of each level that exceed the "
+        "limit; it does not depend on how finely first exceedances are hunted for"
+    )
 
 
 def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
@@ -210,6 +260,8 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
     if curve.cloud:
         notes += note_on_cloud(curve, spec)
+    if curve.windows and isinstance(curve.windows.fitted, str):
+        notes.append(f"no median by shares: {curve.windows.fitted}")
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
     return "; ".join(filter(None, notes))

@@ -2,9 +2,10 @@
 
 The hunt goes from the lowest level up: the capacity lies between the first intensity at which the limit is exceeded and the one
 before, and is bisected there, geometrically. A rocking pier may overturn at one level and stand at a higher one (Zhang & Makris
-2001), in windows of a percent and less. Where runs are cheap the hunt therefore goes on between the levels, in small steps;
-elsewhere it uses the levels alone, and a window between two of them is missed. ``widest_step`` is the greatest step between two
-neighbouring runs, ``returns`` the number of levels above the first exceedance that were withstood.
+2001): exceedance has islands, a percent wide and less. Where runs are cheap the hunt therefore goes on between the levels, in
+small steps; elsewhere it uses the levels alone, and an island between two of them is missed. ``widest_step`` is the greatest step
+between two neighbouring runs, the width below which an island may have been missed; ``returns`` is the number of levels above
+the first exceedance that were withstood.
 
 An undecided run ends no hunt: the capacity is the first exceedance of those that are decided. As it may be the first exceedance
 itself, or none, both are followed up too, each to its own bracket.
@@ -59,8 +60,9 @@ class Capacity:
 
 
 def capacity(looks: Looks, levels: Sequence[float]) -> Capacity | None:
-    """Return the first exceedance from below; None if every run is left out."""
-    states = sorted((x, state) for x, state in looks.items() if state != LEFT_OUT)
+    """Return the first exceedance from the lowest to the highest of the ``levels``; None if every run is left out."""
+    used = [x for x in levels if x in looks]
+    states = sorted((x, state) for x, state in looks.items() if used[0] <= x <= used[-1] and state != LEFT_OUT)
     if not states:
         return None
     high = min((x for x, state in states if state == EXCEEDED), default=math.inf)
@@ -83,7 +85,7 @@ Look = Callable[[list[tuple[K, float]]], Sequence[int]]
 def hunt(
     on_levels: Mapping[K, Looks], levels: Sequence[float], step_of: Callable[[K], float | None], states_of: Look[K]
 ) -> dict[K, dict[float, int]]:
-    """Run each record below its first exceedance on the levels, too, in relative steps of ``step_of`` at most.
+    """Run each record below its first exceedance so far between the levels, too, in relative steps of ``step_of`` at most.
 
     They come in one wave; records whose step is None keep the levels alone.
     """
@@ -92,8 +94,8 @@ def hunt(
     for key, looks in states.items():
         step, first = step_of(key), capacity(looks, levels)
         if step is not None and first is not None:
-            lowest, highest = min(looks), max(looks)
-            requested += [(key, x) for x in _between(levels, step) if lowest < x < min(highest, first.decided.high)]
+            used = [x for x in levels if x in looks]
+            requested += [(key, x) for x in _between(levels, step) if used[0] < x < min(used[-1], first.decided.high)]
     _add_states(states, requested, states_of)
     return states
 

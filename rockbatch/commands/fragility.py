@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rockbatch.analysis.fragility import fragility
 from rockbatch.analysis.fragility_curves import Curve
-from rockbatch.analysis.fragility_tables import RUNS, looked_at, note
+from rockbatch.analysis.fragility_tables import RUNS, by_shares, looked_at, note
 from rockbatch.analysis.limit_states import words
 from rockbatch.analysis.risk import Risk, percent, probability, risks
 from rockbatch.analysis.risk import note as note_on_risk
@@ -46,11 +46,14 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
             _interval(curve.readings.medians) if curve.readings else "",
             f"{fitted.dispersion:.2f}" if fitted else "",
             _interval(fitted.dispersion_interval) if fitted else "",
+            *_by_shares(curve),
         ])  # fmt: skip
         if remark := note(curve, spec):
             notes.append(f"{curve.limit.name}, {case}: {remark}")
     level = f"{100 * spec.confidence:g} %"
-    heads = ["limit", "case", f"median [{spec.unit}]", level, "undecided", "dispersion", level]
+    heads = ["limit", "case", f"median [{spec.unit}]", level, "undecided", "dispersion", level, "by shares", "apart"]
+    if not any(curve.windows for curve in curves):
+        heads, *rows = (line[:-2] for line in (heads, *rows))
     if not any(curve.readings for curve in curves):
         heads, *rows = ([*line[:4], *line[5:]] for line in (heads, *rows))
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
@@ -59,8 +62,24 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     if little := sum(curve.says_little for curve in curves):
         share = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {share}: too many runs are undecided"
-    lines = [title, in_width(heads, rows, names=2), *limits, looked_at(curves, spec), *notes, added(spec)]
+    lines = [
+        title,
+        in_width(heads, rows, names=2),
+        *limits,
+        looked_at(curves, spec),
+        by_shares(curves),
+        *notes,
+        added(spec),
+    ]
     return "\n".join(line for line in lines if line)
+
+
+def _by_shares(curve: Curve) -> list[str]:
+    """Return the median by shares, and how far it is above that of the first exceedances."""
+    if curve.windows is None or isinstance(curve.windows.fitted, str):
+        return ["", ""]
+    above = curve.windows.above(curve.fitted)
+    return [f"{curve.windows.fitted.median:.3g}", "" if above is None else f"{100 * above:+.1f} %"]
 
 
 def added(spec: FragilitySpec) -> str:

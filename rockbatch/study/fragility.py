@@ -23,8 +23,11 @@ OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a
 """The limit state that every study has."""
 
 
-HUNT_STEP = 0.01
+HUNT_STEP = 0.0025
 """Relative steps of the hunt on rigid ground, unless the study gives others."""
+
+WINDOW = 0.02
+"""Relative half-width of the windows about the levels on rigid ground, unless the study gives another."""
 
 
 LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
@@ -48,6 +51,7 @@ class FragilitySpec:
     tolerance: float = 0.01
     confidence: float = 0.95
     hunt_step: float | None = None
+    window: float | None = None
     hazard: Hazard | None = None
     dispersions: tuple[Dispersion, ...] = ()
     least_scale: float = 0.0
@@ -68,6 +72,16 @@ class FragilitySpec:
     def step_on(self, base: Base) -> float | None:
         """Return the relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
         return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
+
+    def window_on(self, base: Base) -> float | None:
+        """Return the relative half-width of the windows about the levels on ``base``; None where there are none."""
+        if self.method != "ida":
+            return None
+        return WINDOW if self.window is None and not base.on_springs else self.window
+
+    def allows(self, factor: float) -> bool:
+        """Return whether a factor on a record as it was recorded is within the limits of the study."""
+        return self.least_scale <= factor * (1 + 1e-9) and factor <= self.most_scale * (1 + 1e-9)
 
     @property
     def unit(self) -> str:
@@ -107,8 +121,11 @@ FRAGILITY = Section(("fragility",), (
     "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
         "Relative width to which the least intensity is narrowed down.", only=_IDA),
     "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
-        "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.01 "
+        "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.0025 "
         "on rigid ground and the levels alone elsewhere.", only=_IDA),
+    "window": Key(Number("a number from 0.001 to 0.2", low=1e-3, high=0.2), "0.05",
+        "Relative half-width of a window about each level, of which the share of the scales that exceed a limit gives a second "
+        "curve, on every base; if it is not given, 0.02 on rigid ground and none elsewhere.", only=_IDA),
     "censored_below": Key(Number("a number above 0 and below 1", low=0.0, high=1.0, above=True, below=True), "0.05",
         "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have logarithms "
         "that say nothing about the limit.", only=_CLOUD),

@@ -10,7 +10,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.report.drawing import cloud
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
-from rockbatch.report.finished_analysis import Contents, of_files
+from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, of_files
 from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, interval, join, tag
 from rockbatch.report.table import Head, listed, table
@@ -18,6 +18,7 @@ from rockbatch.report.templates import render
 
 WIDTH, HEIGHT = 300.0, 190.0
 STRIP = 4.0
+CAPACITIES = ("record", "case", "limit_state", "at_most", "scale_at_most", "widest_step")
 CASES_OF_A_PANEL = 4
 """Most curves of a panel, since more bands would hide each other."""
 
@@ -38,7 +39,7 @@ def section(contents: Contents) -> Markup:
         little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["says_little"]],
         open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
         clouds=_clouds(info), factors=_factors(info), own=any(None in row for row in info.get("scales", {}).get("factors", ())),
-        provenance=analysis.provenance(),
+        capacities=_capacities(analysis), provenance=analysis.provenance(),
     )  # fmt: skip
 
 
@@ -125,6 +126,8 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
     if "total" in entry:
         x, p = (np.array(entry["total"][name]) for name in ("x", "p"))
         yield curve(axes.across(x), axes.down(p), f"level total {class_}")
+    if "windows" in entry:
+        yield from _of_shares(axes, entry, shape, class_)
     if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
         yield curve(*_steps(axes, [high for _, high in entry["capacities"]]), f"level {class_} d2")
     for point in entry["points"]:
@@ -138,6 +141,21 @@ def _drawn(axes: Axes, entry: Curve, shape: str, colour: int) -> Iterator[Markup
         if records > undecided:
             share = float(axes.down(exceeded / (records - undecided)))
             yield marker(shape, across, share, colour=class_, title=_label_of_point(entry, point))
+
+
+def _of_shares(axes: Axes, entry: Curve, shape: str, class_: str) -> Iterator[Markup]:
+    """Yield the curve by shares, and the shares as open markers."""
+    windows = entry["windows"]
+    if "curve" in windows:
+        x, p = (np.array(windows["curve"][name]) for name in ("x", "p"))
+        yield curve(axes.across(x), axes.down(p), f"level {class_} d3")
+    for point, share in zip(entry["points"], windows["shares"], strict=True):
+        if share is not None:
+            across, down = float(axes.across(point["level"])), float(axes.down(share))
+            words = f"{share:.0%} of the scales within ±{100 * windows['width']:g} % exceed the limit"
+            yield marker(
+                shape, across, down, colour=f"{class_} open", title=f"{label(entry)}, {point['level']:g}: {words}"
+            )
 
 
 def _label_of_point(entry: Curve, point: Mapping[str, Any]) -> str:
@@ -171,6 +189,8 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
         Head(share, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
              value="dispersion_total"),
+        Head("by shares", ".3g", info.get("by_shares"), value=_of_windows("median")),
+        Head("apart", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
         Head("note", value="note"),
@@ -195,6 +215,34 @@ def _factors(info: Mapping[str, Any]) -> Markup:
     return tag("details", tag("summary", words), table(heads, rows, name="Factors on the records"))
 
 
+def _capacities(analysis: FinishedAnalysis) -> Markup:
+    """Return a folded table of the capacity of every record; empty for another method."""
+    capacities = analysis.table("fragility_capacities.csv", CAPACITIES)
+    if capacities is None:
+        return Markup("")
+    varied = {name for entry in analysis.info["curves"] for name in entry["columns"]}
+
+    def case(row: Mapping[str, Any]) -> str:
+        return label(
+            {**row, "columns": {name: value for name, value in row.items() if name in varied and value == value}}
+        )
+
+    heads = [
+        Head("record", value="record"),
+        Head("limit", value="limit_state"),
+        Head("case", value=case),
+        Head(f"exceeded from [{analysis.info['unit']}]", ".4g", "empty: not up to the highest level", value="at_most"),
+        Head("as scale", ".4g", value="scale_at_most"),
+        Head("widest step below [%]", ".2g", "an island of exceedance that is narrower may lie below", value=_step_below),
+    ]  # fmt: skip
+    rows = ({str(name): value for name, value in row.items()} for row in capacities.to_dict("records"))
+    return tag("details", tag("summary", "Capacities of the records"), listed(heads, rows, name="Capacities"))
+
+
+def _step_below(row: Mapping[str, Any]) -> float:
+    return 100.0 * float(row["widest_step"])
+
+
 def _factor(factor: float | None, used: bool) -> str:
     if factor is None:
         return ""
@@ -204,6 +252,15 @@ def _factor(factor: float | None, used: bool) -> str:
 def _greatest(name: str) -> Callable[[Curve], object]:
     """Return a function to the largest number of records at a level; of a cloud to their sum."""
     return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
+
+
+def _of_windows(name: str) -> Callable[[Curve], Any]:
+    return lambda entry: entry.get("windows", {}).get(name)
+
+
+def _apart(entry: Curve) -> float | None:
+    above = entry.get("windows", {}).get("above")
+    return None if above is None else 100.0 * above
 
 
 def _interval(name: str) -> Callable[[Curve], object]:
