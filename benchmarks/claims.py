@@ -8,8 +8,8 @@ Runs every case as `rockbatch run` does at its default tolerance of 10⁻⁴, an
   beyond    the result moves by more than the claimed error and the tolerance together, or the outcome changes
 
 θ_max and θ_res are held to the tolerance times α, settlements to that times the half-width. Rows that claim an error of
-residuals on yielding springs are run with a second of zeros behind the motion, too: what that changes is to be within the
-errors of both.
+residuals on yielding springs are run with zeros behind the motion, too, as long as the interval between two readings: what
+that changes is to be within the errors of both.
 
 With --repeats 3 the time of the whole pool with and without the error control's own changed motions is measured, in turn.
 The cases are those of rigid_survey.py, or the springs of outcomes.py, but for those that a reference scales to overturning.
@@ -31,13 +31,13 @@ from independent import pool
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, Pier
 from rockbatch.simulation import error_control, run_all_to_tolerance
+from rockbatch.simulation.models import readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed
 
 TOLERANCE = 1e-4
 CHANGES = (1e-8, -1e-8, 3e-9, -3e-9)
 QUIET_S = 2.0
-ZEROS_S = 1.0
 GROUP = 256
 RESULTS = ("theta_max", "theta_res", "settlement")
 
@@ -122,16 +122,17 @@ def survey(base: str, count: int, seed: int) -> Iterator[Row]:
         ]
         reads = [i for i in kept if runs[i].base.yields and outcomes[i].theta_res_error is not None]  # type: ignore[union-attr]
         longer = run_all_to_tolerance(
-            [replace(runs[i], motion=_with_zeros(runs[i].motion)) for i in reads], TOLERANCE, QUIET_S, Stop()
+            [replace(runs[i], motion=_with_zeros(runs[i])) for i in reads], TOLERANCE, QUIET_S, Stop()
         )
         padded = dict(zip(reads, longer, strict=True))
         for place, i in enumerate(kept):
             yield judge(group[i][0], group[i][1], outcomes[i], [of[place] for of in probes], padded.get(i))  # type: ignore[arg-type,misc]
 
 
-def _with_zeros(motion: Motion) -> Motion:
-    """Return a motion with zeros behind it."""
-    zeros = np.zeros(round(ZEROS_S / motion.dt))
+def _with_zeros(run: Run) -> Motion:
+    """Return the motion of a run with zeros behind it, as long as the interval between two readings of residuals."""
+    motion = run.motion
+    zeros = np.zeros(readings(run.pier, run.base, motion.dt)[1])
     vertical = None if motion.vertical is None else np.append(motion.vertical, zeros)
     return Motion(motion.name, motion.dt, np.append(motion.horizontal, zeros), vertical)
 

@@ -37,7 +37,7 @@ CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
 """Relative changes of a motion, less than a record resolves. A result that they change beyond the tolerance is chaotic."""
 
 MARGIN = 2.0
-"""Error that is claimed at least, over what one of :data:`CHANGES` moves: two of them do not show the greatest move."""
+"""Error that is claimed at least, over what one of :data:`CHANGES` or the drift between two readings moves: neither is the most."""
 
 SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
@@ -246,13 +246,13 @@ def _with_peak_in_motion(
 
 
 def _with_drift(run: Run, outcome: Outcome) -> Outcome:
-    """Return ``outcome`` with the drift of its residuals between their readings as a part of their errors.
+    """Return ``outcome`` with twice the drift of its residuals between their readings as a part of their errors.
 
-    The residuals depend by as much on when the record ends.
+    The residuals depend by as much on when the record ends: vibration that nothing damps comes and goes.
     """
     if outcome.theta_res_error is None or outcome.settlement_error is None or outcome.theta_res_drift is None:
         return outcome
-    seconds = readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
+    seconds = MARGIN * readings(run.pier, run.base, run.motion.dt)[1] * run.motion.dt
     return outcome.changed(
         theta_res_error=outcome.theta_res_error + abs(outcome.theta_res_drift) * seconds,
         settlement_error=outcome.settlement_error + abs(outcome.settlement_drift or 0.0) * seconds,

@@ -188,8 +188,8 @@ def test_the_error_of_a_settlement_is_what_halving_the_step_changes_and_its_drif
     drift = {"theta_res_drift": -1e-6, "settlement_drift": 3e-5}
     scripted(monkeypatch, *(result | drift for result in steady))
     outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
-    assert outcome.settlement_error == pytest.approx(2e-6 + 3e-5 * wait)
-    assert outcome.theta_res_error == pytest.approx(error_control.ROUNDING * FIG5.alpha + 1e-6 * wait)
+    assert outcome.settlement_error == pytest.approx(2e-6 + 2.0 * 3e-5 * wait)
+    assert outcome.theta_res_error == pytest.approx(error_control.ROUNDING * FIG5.alpha + 2.0 * 1e-6 * wait)
     scripted(monkeypatch, ok(0.1, theta_res=0.0, settlement=0.0))
     assert run_to_tolerance(FIG5, ElasticBase(50.0), SINE, 1e-4).settlement_error is None
 
