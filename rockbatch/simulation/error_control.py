@@ -37,7 +37,7 @@ CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
 """Relative changes of a motion, less than a record resolves. A result that they change beyond the tolerance is chaotic."""
 
 MARGIN = 2.0
-"""Error that is claimed at least, over what one of :data:`CHANGES` or the drift between two readings moves: neither is the most."""
+"""Error that is claimed at least, over what one of :data:`CHANGES` or the drift between readings moves: neither is the most."""
 
 SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
