@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from rockbatch.checks import wording
-from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations
+from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
@@ -101,7 +101,7 @@ def missing_stations(stations: Stations) -> Line | None:
     text = f"{_listed(names, ', ')} could not be used"
     if stations.known:
         text = f"{len(stations.used)} of {stations.total} stations; {text}"
-    reasons = grouped(stations.unusable, lambda name: str(stations.unusable[name][0]["reason"]).rstrip("."))
+    reasons = grouped(stations.unusable, lambda name: _why(stations.unusable[name][0]))
     details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
@@ -110,6 +110,12 @@ def missing_stations(stations: Stations) -> Line | None:
     if len(details) == 1:
         return Line(NOT_DECIDED, text, next(iter(reasons)), (remedy,))
     return Line(NOT_DECIDED, text, "", (*details[:MOST_CHECKS], *more, remedy))
+
+
+def _why(file: File) -> str:
+    """Return the name of a file, unless that is in the reason, and why it could not be used."""
+    source, reason = str(file["source"]).split(", ")[0].rpartition("/")[2], str(file["reason"]).rstrip(".")
+    return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
 
 
 def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:
@@ -182,7 +188,7 @@ class _Cases:
         """Return the names of cases, first those with runs that do not end standing, with the number of these."""
         ends = {name: self.runs[name].in_words if name in self.runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
-        words = [f"{name} ({ends[name]})" if ends[name] else name for name in order]
+        words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
         more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
         return _listed(words) + (f", {more} of them with runs that do not end standing" if more else "")
 

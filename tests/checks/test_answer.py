@@ -135,7 +135,7 @@ def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
 def test_a_case_that_no_check_chooses_is_counted_and_never_green():
     (line,) = lines([verdict("a", "pass")], runs=all_runs(a={}, b={}, c={"overturned": 4, "failed": 1}))
     assert (line.verdict, line.text, line.cases) == (NOT_DECIDED, "1 of 3 cases passes; 2 are not checked", "")
-    assert line.details[0] == "Not checked: c (4 of 10 runs overturned, 1 failed); b."
+    assert line.details[0] == "Not checked: c, 4 of 10 runs overturned, 1 failed; b."
     assert line.details[1] == "Passes: a."
     (line,) = lines([verdict("a", "pass")], runs=all_runs(a={}))
     assert (line.verdict, line.text) == (PASS, "Every check passes in the only case")
@@ -151,7 +151,7 @@ def test_a_case_that_is_not_checked_is_told_where_another_fails():
     first, last = lines([failed], runs=all_runs(a={}, b={"flight": 2}))
     assert (first.verdict, first.text) == (FAIL, "1 of 2 cases fails")
     assert first.details == ("margin: 0.6\u00a0>\u00a00.5, in a.",)
-    assert (last.text, last.cases) == ("1 of 2 cases is not checked", "b (2 of 10 runs ended by flight)")
+    assert (last.text, last.cases) == ("1 of 2 cases is not checked", "b, 2 of 10 runs ended by flight")
 
 
 def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted():
@@ -167,7 +167,7 @@ def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted(
 def test_overturning_that_checks_leave_out_is_told_beside_the_green_and_takes_it_if_nothing_stands():
     eta = verdict("a", "pass", check="capacity", demand="eta")
     (line,) = lines([eta], runs=all_runs(a={"overturned": 3}))
-    assert line.details[-1] == "Not every run ends standing: a (3 of 10 runs overturned)."
+    assert line.details[-1] == "Not every run ends standing: a, 3 of 10 runs overturned."
     (line,) = lines([eta], runs=all_runs(a={"overturned": 10}))
     assert (line.verdict, line.text) == (NOT_DECIDED, "The only case is not checked")
 
@@ -189,7 +189,7 @@ def test_missing_stations_come_first_and_take_the_green_from_what_passes():
     stations = Stations([f"s{i}" for i in range(6)], {"RSN1633": [LOST]})
     first, second = lines([verdict("a", "pass")], stations=stations)
     assert (first.verdict, first.text) == (NOT_DECIDED, "6 of 7 stations; RSN1633 could not be used")
-    assert first.cases == "the file is cut"
+    assert first.cases == "ABBAR--L.AT2: the file is cut"
     assert 'leave_out = ["RSN1633"]' in first.details[-1]
     assert (second.verdict, second.text) == (NOT_DECIDED, "Every check passes in the only case")
 
@@ -205,7 +205,7 @@ def test_a_component_of_a_station_that_is_used_is_told_by_its_files():
     other = LOST | {"name": "cut", "station": "s", "reason": "no numbers"}
     (line, _) = lines([verdict("a", "pass")], stations=Stations(["s"], {"RSN1633": [LOST], "s": [other]}))
     assert line.text == "1 of 2 stations; RSN1633, 1 file of s could not be used"
-    assert line.details[:2] == ("RSN1633: the file is cut.", "s: no numbers.")
+    assert line.details[:2] == ("RSN1633: ABBAR--L.AT2: the file is cut.", "s: ABBAR--L.AT2: no numbers.")
     assert 'leave_out = ["RSN1633", "cut"]' in line.details[2]
 
 

@@ -254,7 +254,7 @@ def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, cap
         unusable=[{"name": "notes", "source": "notes.txt", "reason": "no record"}],
     )
     assert main(["check", str(out)]) == 1
-    assert "? notes could not be used: no record." in capsys.readouterr().out
+    assert "? notes could not be used: notes.txt: no record." in capsys.readouterr().out
 
 
 def test_a_case_that_no_check_chooses_is_told_and_is_no_failed_check(tmp_path, capsys):
@@ -266,7 +266,7 @@ def test_a_case_that_no_check_chooses_is_told_and_is_no_failed_check(tmp_path, c
         assert main(["check", str(out), *arguments]) == 0
         printed = capsys.readouterr().out
         assert "? 1 of 2 cases passes; 1 is not checked." in printed
-        assert "Not checked: wide (1 of 2 runs overturned)." in printed
+        assert "Not checked: wide, 1 of 2 runs overturned." in printed
         assert "Worst of 3 of 4 runs that end standing" in printed
 
 

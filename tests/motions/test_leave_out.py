@@ -5,6 +5,8 @@ from motion_files import wiggle, write_at2
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
+from rockbatch.study import Study
+from rockbatch.study.suite import ground_motions
 
 UNITLESS = "# time acc\n" + "\n".join(f"{i / 100} {v}" for i, v in enumerate(wiggle(50)))
 
@@ -68,3 +70,28 @@ def test_a_name_that_matches_nothing_is_refused_with_the_one_that_was_meant(fold
     assert 'did you mean "RSN9_C_D0' in first
     assert '"nobody"' in second
     assert "`rockbatch motions FOLDER` lists them" in second
+
+
+def study(folder, **motions):
+    tables = {"pier": {"alpha": 0.2, "p": 1.0}, "case": [{"base": "rigid"}], "motions": {"path": ".", **motions}}
+    return Study.from_dict(tables, folder / "study.toml")
+
+
+def test_a_study_leaves_out_what_it_names_and_is_strict_about_the_rest(folder):
+    with pytest.raises(InputError, match="RSN9_C_D000"):
+        ground_motions(study(folder, strict=True))
+    found = ground_motions(study(folder, strict=True, leave_out=["RSN9", "RSN7_A_B090"]))
+    assert [motion.name for motion in found] == ["RSN7_A_B000"]
+
+
+def test_the_names_of_a_study_are_about_its_own_sources(folder):
+    """Other motions, as by --motions, need not have what it leaves out."""
+    changed = study(folder, leave_out=["RSN9"]).with_(motions=folder / "RSN7_A_B000.AT2")
+    assert [motion.name for motion in ground_motions(changed)] == ["RSN7_A_B000"]
+
+
+def test_a_record_that_is_not_selected_for_want_of_a_magnitude_keeps_its_station(folder):
+    (folder / "motions.toml").write_text('[[record]]\nfile = "RSN7_A_B000.AT2"\nmagnitude = 7\n')
+    write_at2(folder, "RSN8_A_B000.AT2", wiggle(50, 9), title="Made-up, 1/17/1994, C, 000")
+    found = ground_motions(study(folder, select={"magnitude": [6.0, 8.0]}))
+    assert ("RSN8_A_B000", "RSN8") in [(file.name, file.station) for file in found.unusable]

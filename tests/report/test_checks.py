@@ -59,7 +59,7 @@ def test_a_case_without_a_check_is_counted_and_its_overturning_told(tmp_path):
     fell = {(record, "rigid"): FELL for record, _ in FIG7[:2]}
     shown = page(tmp_path, *checked, cases=("rigid", "1", "2"), changes=fell)
     assert "? 1 of 3 cases passes; 2 are not checked." in shown.text
-    assert "Not checked: rigid (2 of 6 runs overturned); 2." in shown.text
+    assert "Not checked: rigid, 2 of 6 runs overturned; 2." in shown.text
     assert "✓ " not in shown.text[: shown.text.index("Peak rotations")]
 
 
@@ -67,7 +67,7 @@ def test_a_station_that_could_not_be_used_takes_the_green_from_what_passes(tmp_p
     checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
     lost = [{"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}]
     shown = page(tmp_path, *checked, unusable=lost)
-    assert "? 6 of 7 stations; RSN1633 could not be used: the file is cut." in shown.text
+    assert "? 6 of 7 stations; RSN1633 could not be used: ABBAR--L.AT2: the file is cut." in shown.text
     assert "? Every check passes in the only case." in shown.text
     assert 'leave_out = ["RSN1633"]' in shown.text
 

@@ -57,8 +57,8 @@ def test_a_case_without_a_check_and_a_missing_station_are_told_of_each_study(tmp
     text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
     of_both = text[text.index("Does it pass") :]
     assert of_both.count("? 1 of 5 cases passes; 4 are not checked.") == 2
-    assert "Not checked: rigid (1 of 6 runs overturned);" in of_both
-    assert "? 6 of 7 stations; RSN1633 could not be used: the file is cut." in of_both
+    assert "Not checked: rigid, 1 of 6 runs overturned;" in of_both
+    assert "? 6 of 7 stations; RSN1633 could not be used: ABBAR--L.AT2: the file is cut." in of_both
 
 
 def test_what_both_studies_lose_is_told_beside_the_better_one(tmp_path):

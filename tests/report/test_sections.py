@@ -151,6 +151,10 @@ def test_the_answer_says_what_has_converged_and_which_runs_have_notes(tmp_path):
     told = Page(section_of(tmp_path, answer)).text
     assert "30 runs: every peak converged, none overturned." in told
     assert "2 runs have notes." in told
+    write_results(tmp_path, changes={("SYL360", "1"): {"theta_max_error": ""}})
+    told = Page(section_of(tmp_path, answer)).text
+    assert "30 runs: 29 peaks converged, none overturned." in told
+    assert "(0.0001 α allowed); of one run it is not known." in told
     write_results(tmp_path, numerics={"tolerance": None, "substeps": 4, "quiet_s": 2.0})
     told = Page(section_of(tmp_path, answer)).text
     assert "30 runs: none failed, none overturned." in told

@@ -56,7 +56,7 @@ def worst(finished: Finished) -> Markup:
         lost=lost, standing=finished.of_all(int(stood.sum()), "end standing"), all_stand=stood.all() and not finished.not_run,
         reasons=reasons_of_failure(runs),
         responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
-        went="every peak converged" if finished.info["numerics"].get("tolerance") else "none failed",
+        went=_converged(finished),
         height=float(guided.max()), error=_error(finished), noted=int((runs.loc[stood, "note"] != "").sum()),
     )  # fmt: skip
 
@@ -121,6 +121,14 @@ def _by_case(finished: Finished) -> Facts:
         return []
     words = (f"{worst.value:.4f} α ({finished.case_of(worst.run)})" for worst in rotations)
     return [("rotation by case", join("; ".join(words)))]
+
+
+def _converged(finished: Finished) -> str:
+    """Report how many peaks converged; a chaotic one has no error."""
+    if not finished.info["numerics"].get("tolerance"):
+        return "none failed"
+    errors = finished.runs["theta_max_error"]
+    return "every peak converged" if errors.notna().all() else f"{counted(int(errors.notna().sum()), 'peak')} converged"
 
 
 def _error(finished: Finished) -> str:

@@ -1,0 +1,69 @@
+"""The headline of whole studies: cases that no check chooses, and stations that could not be used, on terminal and page."""
+
+from motion_files import wiggle, write_at2
+from report_page import Page
+from studies import RIGID, SINE, study_text, toml, write_study
+
+from rockbatch.cli import main
+
+LIMIT = {"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.9, "reason": "half"}
+TENDON = RIGID | {"name": "with tendon", "tendon": [{"psi": 0.5, "lambda": 3.0}]}
+
+
+def page_of(folder):
+    return Page((folder / "report.html").read_text(encoding="utf-8")).text
+
+
+def test_a_case_that_no_check_chooses_is_amber_and_exits_with_0(tmp_path, capsys):
+    """The wide pier overturns under the stronger of two pulses, and nobody asked."""
+    pulses = [SINE | {"name": name, "amplitude_g": a, "period_s": 1.5} for name, a in (("weak", 0.3), ("strong", 2.0))]
+    study = write_study(
+        tmp_path,
+        study_text(
+            pulses=pulses,
+            cases=[RIGID, TENDON],
+            check=[LIMIT | {"case": "with tendon", "at_most": 3.1, "confirm": ["at_most"]}],
+        ),
+    )
+    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
+    headline, detail = "? 1 of 2 cases passes; 1 is not checked.", "Not checked: rigid, 1 of 2 runs overturned."
+    told = capsys.readouterr().out
+    assert headline in told
+    assert detail in told
+    assert headline in page_of(tmp_path / "out")
+    assert detail in page_of(tmp_path / "out")
+
+
+def test_a_missing_station_is_amber_until_the_study_leaves_it_out(tmp_path, capsys):
+    for seed, name in enumerate(("RSN7_A_B000", "RSN8_A_C000", "RSN9_A_D000")):
+        write_at2(
+            tmp_path / "records", f"{name}.AT2", wiggle(400, seed, scale=0.3), title=f"Made-up, 1/17/1994, {name}, 000"
+        )
+    cut = tmp_path / "records/RSN9_A_D000.AT2"
+    cut.write_text("\n".join(cut.read_text().splitlines()[:-2]))
+
+    def run(out, **motions):
+        keys = {"path": "records", **motions}
+        study = write_study(
+            tmp_path, toml({"pier": {"alpha": 0.2, "p": 1.0}, "motions": keys, "case": [RIGID], "check": [LIMIT]})
+        )
+        code = main(["run", str(study), "--out", str(tmp_path / out), "--fresh"])
+        return code, capsys.readouterr().out, page_of(tmp_path / out)
+
+    code, told, page = run("all")
+    assert code == 1
+    for text in (told, page):
+        assert "? 2 of 3 stations; RSN9 could not be used: RSN9_A_D000.AT2: the header says NPTS = 400" in " ".join(
+            text.split()
+        )
+        assert "? Every check passes in the only case." in text
+        assert "✓ Every" not in text
+    assert main(["check", str(tmp_path / "all")]) == 1
+    assert "? 2 of 3 stations" in capsys.readouterr().out
+
+    code, told, page = run("named", leave_out=["RSN9"])
+    assert code == 0
+    for text in (told, page):
+        assert "✓ Every check passes in the only case." in text
+        assert "Left out by name: RSN9." in text
+    assert "Left out by name" in page
