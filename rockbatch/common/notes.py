@@ -3,5 +3,5 @@
 CHAOTIC = "chaotic"
 """Of a result that depends on digits that no record has: no error of it is claimed."""
 
-OVERTURNS = "the pier overturns"
+OVERTURNS = "overturns the pier"
 """Of a chaotic run that stands, and falls under a motion a hair stronger or weaker."""

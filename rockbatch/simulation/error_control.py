@@ -104,9 +104,13 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
                 outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerance * pier.alpha, until)
-                outcomes[i] = outcome = _with_drift(runs[i], outcome)
-                if _is_doubtful(runs[i], fine, coarse, outcome, len(agreements[i]), until):
+                outcome = _with_drift(runs[i], outcome)
+                magnifies = _magnifies(runs[i], fine, coarse, outcome, until)
+                if magnifies and agreements[i][-1] == Agreement.RESULTS:
+                    outcome = _without_error(outcome, "other peaks near it follow the step")
+                if magnifies or _may_be_chaotic(outcome, coarse.outcome, len(agreements[i])):
                     doubtful[i] = fine
+                outcomes[i] = outcome
                 del levels[i]
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
@@ -125,14 +129,11 @@ def _window_at(run: Run, t: float, quiet_s: float) -> int:
     return int(window_of(t / run.motion.dt, float(samples))[0])
 
 
-def _is_doubtful(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, halvings: int, until: int) -> bool:
-    """Return whether the results of a run that converged may be chaotic; its motion lasts ``until`` this window.
+def _magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int) -> bool:
+    """Return whether a run that claims the error of a peak magnifies the errors of steps; its motion lasts ``until`` this window.
 
-    A chaotic peak magnifies the errors of steps as it does changes of the motion (THEORY.md, The error that a row reports). A
-    residual is a sum over the motion, so that its chaos is not seen in rotations.
+    A chaotic peak does, as it magnifies changes of the motion (THEORY.md, The error that a row reports).
     """
-    if outcome.theta_res_error is not None and (halvings > 1 or not _same_counts(outcome, coarse.outcome)):
-        return True
     greatest, change = _windows(fine, coarse)
     peak, claimed = outcome.theta_max, outcome.theta_max_error
     if claimed is None:
@@ -141,6 +142,11 @@ def _is_doubtful(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, halving
     resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
     magnified = change * greatest > SENSITIVE * run.pier.alpha * peak * resolved**2
     return claimed is not None and bool(magnified.any())
+
+
+def _may_be_chaotic(outcome: Outcome, coarse: Outcome, halvings: int) -> bool:
+    """Return whether the residuals of a run may be chaotic: they are sums over the motion, so that rotations do not show it."""
+    return outcome.theta_res_error is not None and (halvings > 1 or not _same_counts(outcome, coarse))
 
 
 def _look_for_chaos(
@@ -172,17 +178,22 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
         outcome = outcome.changed(change_in_motion=known)
     if outcome.theta_max_error is None:
         return outcome
-    least = MARGIN * abs(probe.outcome.theta_max - outcome.theta_max)
-    if probe.outcome.status == outcome.status and least <= tolerance:
+    moved = abs(probe.outcome.theta_max - outcome.theta_max)
+    if probe.outcome.status == outcome.status and MARGIN * moved <= tolerance:
         greatest, change = _windows(probe, fine)
         if _far_below(greatest, change, change > tolerance, outcome.theta_max):
-            return outcome.changed(theta_max_error=max(outcome.theta_max_error, least))
-        becomes = "the pier comes as near to it at another time"
-    elif probe.outcome.status == "overturned":
-        becomes = OVERTURNS
+            return outcome.changed(theta_max_error=max(outcome.theta_max_error, MARGIN * moved))
+        does = "brings another one as near to it"
     else:
-        becomes = f"the pier comes to {probe.outcome.theta_max:.3g} rad"
-    chaos = f"the peak is {CHAOTIC}, under a motion {changed} {becomes}: no error of it is claimed"
+        does = OVERTURNS if probe.outcome.status == "overturned" else f"moves it by {moved:.1e} rad"
+    return _without_error(outcome, f"a motion {changed} {does}")
+
+
+def _without_error(outcome: Outcome, reason: str) -> Outcome:
+    """Return ``outcome`` with a chaotic peak, of which no error is claimed, and the ``reason``."""
+    if outcome.theta_max_error is None:
+        return outcome
+    chaos = f"the peak is {CHAOTIC}, {reason}: no error of it is claimed"
     return outcome.noted(chaos, theta_max_error=None, devices_error=None)
 
 

@@ -1,0 +1,60 @@
+"""Claimed errors hold under motions that differ by less than a record resolves (benchmarks/claims.py)."""
+
+import importlib
+import math
+from pathlib import Path
+
+import pytest
+
+from rockbatch.simulation import run_fixed, run_to_tolerance
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+
+
+@pytest.fixture
+def benchmark(monkeypatch):
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return importlib.import_module
+
+
+def moved(case, outcome, name):
+    """Return the greatest change of a result by four changes of the motion."""
+    values = [
+        getattr(run_fixed(case.pier, case.base, case.motion.times(1.0 + change), outcome.substeps), name)
+        for change in (1e-8, -1e-8, 3e-9, -3e-9)
+    ]
+    return max(abs(value - getattr(outcome, name)) for value in values)
+
+
+@pytest.mark.parametrize("number", [26, 79])
+def test_chaotic_peaks_on_the_rigid_base_have_no_error(benchmark, number):
+    """Of the first a motion 10⁻⁸ stronger moves 3·10⁻⁵ α and one 10⁻⁸ weaker 0.13 α; the second took two trials that agreed."""
+    cases = benchmark("rigid_survey").cases(3000, 101, "made noise")
+    (case,) = (case for case in cases if case.id == f"made-noise-{number}")
+    outcome = run_to_tolerance(case.pier, case.base, case.motion, 1e-4)
+    assert (outcome.status, outcome.theta_max_error) == ("ok", None)
+    assert "chaotic" in outcome.note
+    assert moved(case, outcome, "theta_max") > 1e-4 * case.pier.alpha
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("stratum", "number", "seed"), [("Bouc-Wen", 79, 11), ("epp", 26, 7)])
+def test_chaotic_residuals_have_no_error_beside_a_peak_that_has_one(benchmark, stratum, number, seed):
+    case = benchmark("independent.pool").cases(None, seed, stratum)[number]
+    outcome = run_to_tolerance(case.pier, case.base, case.motion, 1e-4)
+    assert outcome.status == "ok"
+    assert (outcome.theta_res_error, outcome.settlement_error) == (None, None)
+    assert moved(case, outcome, "theta_res") > 1e-4 * case.pier.alpha
+    assert moved(case, outcome, "theta_max") <= outcome.theta_max_error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("base", "count", "least"), [("rigid", 500, 300), ("springs", 250, 60)])
+def test_of_a_pool_no_claim_is_broken_by_more_than_the_tolerance(benchmark, base, count, least):
+    claims = benchmark("claims")
+    rows = list(claims.survey(base, count, seed=3))
+    claiming = [row for row in rows if not math.isnan(row.claimed[0])]
+    assert len(claiming) >= least
+    assert [row.id for row in claiming if row.overturns] == []
+    for result in range(len(claims.RESULTS)):
+        assert [row.id for row in rows if row.beyond(result)] == []
