@@ -99,14 +99,14 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             fine = Trial(_with_errors(runs[i], fine.outcome, coarse.outcome), fine.extremes)
             levels[i].append(fine)
             agreements[i].append(agreement(fine, coarse, tolerance * pier.alpha, pier))
-            if enough(agreements[i]):
+            if extent := settled(agreements[i]):
                 until = _window_at(runs[i], runs[i].motion.duration, quiet_s)
                 peak = _window_at(runs[i], fine.outcome.t_max, quiet_s)
                 outcome = _noted(fine, coarse, agreements[i][-1], tolerance * pier.alpha, peak)
                 outcome = _with_peak_in_motion(runs[i], fine, coarse, outcome, tolerance * pier.alpha, until)
                 outcome = _with_drift(runs[i], outcome)
                 magnifies = _magnifies(runs[i], fine, coarse, outcome, until)
-                if magnifies and agreements[i][-1] == Agreement.RESULTS:
+                if magnifies and extent == Agreement.RESULTS:
                     outcome = _without_error(outcome, "other peaks near it follow the step")
                 if magnifies or _may_be_chaotic(outcome, coarse.outcome, len(agreements[i])):
                     doubtful[i] = fine
@@ -315,13 +315,13 @@ def _flight(outcome: Outcome) -> float:
     return math.nan if outcome.t_flight is None else outcome.t_flight
 
 
-def enough(agreements: Sequence[Agreement]) -> bool:
-    """Return whether the last of ``agreements``, from one halving to the next, suffice."""
+def settled(agreements: Sequence[Agreement]) -> Agreement:
+    """Return the extent to which the last of ``agreements``, from one halving to the next, suffice; NONE if they do not."""
     for least, pairs in PAIRS.items():
         last = agreements[-pairs:]
         if len(last) == pairs and min(last) >= least:
-            return True
-    return False
+            return least
+    return Agreement.NONE
 
 
 def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak: int) -> Outcome:

@@ -640,3 +640,21 @@ def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
     assert rule.counting == "overturned: infinite; flight: unknown; failed: left out"
     assert Rule("a", "flight", 0, statistic="count").words == "number of records with flight"
     assert (Rule("a", "eta", at_least=2).words, Rule("a", "eta", at_least=2).counting) == ("eta", "")
+
+
+CHAOTIC = "the peak is chaotic, a motion 1e-08 weaker overturns the pier: no error of it is claimed"
+
+
+@pytest.mark.parametrize(("theta", "verdict"), [(0.2, "pass"), (0.3, "not decided")])
+def test_a_chaotic_peak_counts_twice_and_is_said(theta, verdict):
+    """0.3 α may be 0.6 α under a motion that no record tells from this one; the limit is 0.5 α."""
+    found = judged(runs([0.1, theta], theta_max_error=[1e-6, None], note=["", CHAOTIC]))
+    assert (found.verdict, found.high) == (verdict, pytest.approx(2.0 * theta))
+    assert "1 of the runs are chaotic: twice their value counts" in found.note
+    assert judged(runs([0.1, theta], theta_max_error=[1e-6, 1e-6])).verdict == "pass"
+
+
+def test_a_pier_that_overturns_under_a_motion_a_hair_weaker_is_not_held_to_stand():
+    found = judged(runs([0.1, 0.3], theta_max_error=[1e-6, None], note=["", CHAOTIC]), demand="overturned", at_most=0.0)
+    assert (found.verdict, found.high) == ("not decided", 1.0)
+    assert judged(runs([0.1, 0.3]), demand="overturned", at_most=0.0).verdict == "pass"
