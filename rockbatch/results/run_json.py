@@ -125,7 +125,8 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     """Return the entries of a study and its motions in run.json."""
     gravity = study.cases[0].pier.gravity
     target = study.motions.target if isinstance(study.motions.target, SpectrumTarget) else None
-    fitted = [motion for motion in motions.motions if not _is_pulse(motion, study)]
+    compared = target is not None and target.factors == "none"
+    fitted = [motion for motion in motions.motions if compared or not _is_pulse(motion, study)]
     with_pulses = target is not None or study.output.intensity
     return {
         "study": {
