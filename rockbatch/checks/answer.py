@@ -56,8 +56,8 @@ def answer(
     below = [verdict for verdict in verdicts if not verdict.case and verdict.verdict == FAIL]
     of_cases = [verdict for verdict in verdicts if verdict.case]
     cases = grouped(of_cases, case_of)
-    names_of = {(*_key(verdict.case, verdict.columns), verdict.scale): case_of(verdict) for verdict in of_cases}
-    by_name = {names_of.get((*_key(case.case, case.columns), case.scale)) or case_of(case): case for case in runs}
+    names_of = {_key(verdict.case, verdict.columns | {"": verdict.scale}): case_of(verdict) for verdict in of_cases}
+    by_name = {names_of.get(_key(case.case, {**case.columns, "": case.scale})) or case_of(case): case for case in runs}
     every = _Cases(cases, by_name, case_of, record_of, stations)
     kinds = {name: {verdict.verdict for verdict in of_case} for name, of_case in cases.items()}
     failing = [name for name, of_case in kinds.items() if FAIL in of_case]
