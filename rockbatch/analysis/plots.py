@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from rockbatch.analysis.fragility_curves import Curve
 from rockbatch.common.figures import COLOURS, figure, line, marks, styled
 from rockbatch.common.lazy import pd
+from rockbatch.report.drawing import overturning_map
 from rockbatch.study.spectrum import INTENSITY, SELF_SIMILAR
 
-_OUTCOMES = {"safe": "0.93", "overturned with impact": "#E69F00", "overturned without impact": "#D55E00"}
-_OTHER = "#999999"  # "undecided" and what a map may have besides
+_PLACES = {"overturned without impact": 0, "overturned with impact": 1, "flight": 2, "undecided": 3}
+"""Places of the colours of regions of a map, as in the report."""
 
 
 @styled
@@ -56,14 +59,16 @@ def spectrum(
     if spectra is not None and suite is not None:
         lines = dict(list(spectra.groupby(["case", apart], sort=False)))
         of_spectra = [(key, lines[key], median) for key, median in suite.groupby(["case", apart], sort=False)]
-    of_maps: list[Any] = [] if maps is None else list(maps.groupby(["map", "case"], sort=False))
+    apart_maps = [] if maps is None else list(maps.columns[: list(maps.columns).index("omega_p_over_p")])
+    of_maps: list[Any] = [] if maps is None else list(maps.groupby(apart_maps, sort=False, dropna=False))
     drawn, grid = _panels(len(of_spectra) + len(of_maps), width_mm)
     for axes, ((case, value), lines_of_case, median) in zip(grid, of_spectra, strict=False):
         _spectrum(axes, lines_of_case, median, axis)
         axes.set_title(rf"{case}, {SYMBOLS[apart]} = {value:g}")
-    for axes, ((name, case), regions) in zip(grid[len(of_spectra) :], of_maps, strict=True):
+    for axes, (names, regions) in zip(grid[len(of_spectra) :], of_maps, strict=True):
         _map(axes, regions)
-        axes.set_title(f"{name}, {case}")
+        varied = (f"{key} = {value}" for key, value in zip(apart_maps[2:], names[2:], strict=True) if value == value)
+        axes.set_title(", ".join([*names[:2], *varied]))
     return _with_legend(drawn, grid)
 
 
@@ -75,7 +80,7 @@ SYMBOLS = {
 
 
 def _spectrum(axes: Axes, spectra: "pd.DataFrame", suite: "pd.DataFrame", axis: str) -> None:
-    """Draw a line for each record, which ends where the pier overturns, and the median, one for each slenderness."""
+    """Draw a line for each record, which ends where the pier overturns, and the median for each slenderness, × where infinite."""
     several = suite["alpha"].nunique() > 1
     for place, (alpha, median) in enumerate(suite.groupby("alpha", sort=False)):
         of_alpha = spectra[spectra["alpha"] == alpha]
@@ -83,6 +88,13 @@ def _spectrum(axes: Axes, spectra: "pd.DataFrame", suite: "pd.DataFrame", axis: 
             stood = of_record["theta_max_over_alpha"].where(of_record["status"] == "ok")
             axes.plot(of_record[axis], stood, color="0.65", linewidth=0.6, label="each record")
         name = rf"median, $\alpha$ = {alpha:g}" if several else "median"
+        fell = median.loc[np.isinf(median["median"]), axis]
+        if len(fell):
+            height = np.full(len(fell), 0.96 - 0.05 * place)  # of the panel: one row for each slenderness
+            axes.plot(
+                fell, height, transform=axes.get_xaxis_transform(), color=COLOURS[place % len(COLOURS)],
+                marker="x", linestyle="", label="overturned or ended by flight",
+            )  # fmt: skip
         axes.plot(median[axis], median["median"].replace(math.inf, math.nan), **line(place), label=name)
     axes.set(xlabel=SYMBOLS[axis], ylabel=r"$\theta_{\max}/\alpha$", ylim=(0, 1.1))
 
@@ -93,18 +105,21 @@ def _scale(axis: str) -> list[str]:
 
 
 def _map(axes: Axes, regions: "pd.DataFrame") -> None:
-    """Draw regions of one outcome over the pulse's frequency, each to the middle between two frequencies."""
-    frequencies = np.sort(regions["omega_p_over_p"].unique())
-    edges = np.concatenate([frequencies[:1], (frequencies[1:] + frequencies[:-1]) / 2, frequencies[-1:]])
-    for outcome, rows in regions.groupby("outcome", sort=False):
-        place = np.searchsorted(frequencies, rows["omega_p_over_p"])
-        colour = _OUTCOMES.get(str(outcome), _OTHER)
-        axes.bar(
-            edges[place], rows["high"] - rows["low"], edges[place + 1] - edges[place], bottom=rows["low"], align="edge",
-            color=colour, edgecolor=colour, linewidth=0.2, label=str(outcome),
-        )  # fmt: skip
+    """Draw the regions of a map with their boundaries, as the report does; none where the pier stands."""
+    strips = overturning_map.strips(regions)
+    for outcome, place in _PLACES.items():
+        outlines = [
+            Path(np.transpose((np.append(x, x[0]), np.append(y, y[0]))), closed=True)
+            for x, y in overturning_map.areas(strips, outcome)
+        ]
+        if outlines:  # as one path, or a hair of background would show where two strips meet
+            together = Path.make_compound_path(*outlines)
+            axes.add_patch(PathPatch(together, color=COLOURS[place], alpha=0.35, linewidth=0.0, label=outcome))
+    for x, y in (*overturning_map.inside(strips), *overturning_map.between(strips)):
+        axes.plot(x, y, color="black", linewidth=0.8)
     low, high = regions["low"].min(), regions["high"].max()
-    axes.set(xlabel=r"$\omega_p/p$", ylabel=r"$a_p/(g\,\tan\alpha)$", xlim=(edges[0], edges[-1]), ylim=(low, high))
+    edges = strips[0].frequencies[0], strips[-1].frequencies[-1]
+    axes.set(xlabel=r"$\omega_p/p$", ylabel=r"$a_p/(g\,\tan\alpha)$", xlim=edges, ylim=(low, high))
     axes.grid(False)
 
 

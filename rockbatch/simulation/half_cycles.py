@@ -1,4 +1,7 @@
-"""Half cycles of rocking: when the pier passes through upright, how fast, and how far it turns in between."""
+"""Half cycles of rocking: when the pier passes through upright, how fast, and how far it turns in between.
+
+The first is the way from the start of the run, such as a release, to the first impact.
+"""
 
 import math
 from typing import NamedTuple
@@ -24,9 +27,9 @@ HALF_CYCLE_COLUMNS = (
 
 
 class HalfCycles(NamedTuple):
-    """Half cycles of a run, each from an impact to the next; the first begins with the run. Shape (n,) each.
+    """Half cycles of a run, each from an impact to the next; that of row 0 begins with the run, no impact. Shape (n,) each.
 
-    ``t`` [s] is when they begin, with the angular velocities before and after that [rad/s], NaN of the first; ``amplitude`` [rad]
+    ``t`` [s] is when they begin, with the angular velocities before and after that [rad/s], NaN in row 0; ``amplitude`` [rad]
     the greatest |θ| of each, at ``t_amplitude`` [s], NaN where the run ended on the way there.
     """
 

@@ -189,12 +189,13 @@ class Response(Shown):
 
     @property
     def half_cycles(self) -> "pd.DataFrame":
-        """Half cycles of rocking, a row each from an impact to the next, the first from the start of the run.
+        """Half cycles of rocking: row 0 from the start of the run, such as a release, and one for each impact, to the next.
 
-        ``t`` [s], of the impact with which it begins; ``omega_before``, ``omega_after`` [rad/s], the angular velocity on both
-        sides of it; ``amplitude`` [rad], the greatest |θ| until the next impact, and ``t_amplitude`` [s], NaN where the run ends
-        before; ``apparent_restitution``, by which a block on rigid ground that does not move would come from the amplitude before
-        to this one. On springs a half cycle begins as the pier passes through θ = 0, where its velocity does not jump.
+        ``t`` [s], of its beginning; ``omega_before``, ``omega_after`` [rad/s], the angular velocity on both sides of the impact
+        there, NaN in row 0, which begins with none; ``amplitude`` [rad], the greatest |θ| until the next impact, and
+        ``t_amplitude`` [s], NaN where the run ends before; ``apparent_restitution``, by which a block on rigid ground that does
+        not move would come from the amplitude before to this one. On springs a half cycle begins as the pier passes through
+        θ = 0, where its velocity does not jump.
 
         Examples
         --------

@@ -78,7 +78,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
         "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
-        "amplitudes in between."),
+        "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
 }, homes=(Output,))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""

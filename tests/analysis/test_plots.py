@@ -7,6 +7,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analysis import plots
+from rockbatch.report.drawing import overturning_map
 
 FRAGILITY = """
 [[check]]
@@ -80,8 +81,29 @@ def test_a_spectrum_has_a_panel_for_each_slenderness_and_case_and_each_map(tmp_p
     ]
     median = figure.axes[titles.index(r"rigid, $\alpha$ = 0.2")].lines[-1].get_ydata()
     np.testing.assert_array_equal(median, of_case["median"].replace(np.inf, np.nan))
+    axes, colours = figure.axes[titles.index("sine, rigid")], {}
     regions = result.overturning_map[result.overturning_map["case"] == "rigid"]
-    assert len(figure.axes[titles.index("sine, rigid")].patches) == len(regions)
+    low, high = axes.get_xlim()
+    for row in regions.to_dict("records"):  # as the report draws them: no colour where the pier stands
+        inside = min(max(row["omega_p_over_p"], low + 1e-6), high - 1e-6), 0.5 * (row["low"] + row["high"])
+        of_point = {patch.get_facecolor() for patch in axes.patches if patch.get_path().contains_point(inside)}
+        colours.setdefault(row["outcome"], set()).update(of_point)
+    assert colours.pop("safe") == set()
+    assert [len(of_outcome) for of_outcome in colours.values()] == [1] * len(colours)
+    assert len(set.union(*colours.values())) == len(colours) > 0
+    strips = overturning_map.strips(regions)
+    boundaries = [*overturning_map.inside(strips), *overturning_map.between(strips)]
+    assert [line.get_xydata().tolist() for line in axes.lines] == [np.transpose(xy).tolist() for xy in boundaries]
+
+
+def test_a_spectrum_marks_the_sizes_that_overturn():
+    """As the report does; a panel in which all do was empty."""
+    pulse = SINE | {"amplitude_g": 3.0, "period_s": 2.0}
+    text = study_text(pulses=(pulse,), cases=(RIGID,), spectrum={"alpha": [0.15], "p": [1.5, 2.5], "points": 3})
+    result = rb.spectrum(rb.Study.from_toml(text), jobs=1)
+    assert np.isinf(result.spectrum_suite["median"]).all()
+    (marks,) = (line for line in result.plot(axis="p").axes[0].lines if line.get_marker() == "x")
+    assert marks.get_xdata() == pytest.approx([1.5, 2.0, 2.5])
 
 
 def test_a_sensitivity_has_the_swings_of_its_table(tmp_path):

@@ -7,6 +7,7 @@ import rockbatch as rb
 from rockbatch.batch.half_cycles import HALF_CYCLES
 from rockbatch.common.files import read_table
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS
+from rockbatch.study.load import OUTPUT
 
 PIER = {"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": [0.05, 0.1]}
 
@@ -24,6 +25,11 @@ def test_a_study_that_asks_has_the_half_cycles_of_every_run(tmp_path):
         expected = response.half_cycles.set_axis(list(HALF_CYCLE_COLUMNS), axis=1)
         pd.testing.assert_frame_equal(own[list(HALF_CYCLE_COLUMNS)], expected, rtol=1e-8, atol=1e-12)
         assert own["half_cycle"].tolist() == list(range(len(own)))
-        assert own["amplitude_rad"].iloc[0] == start
+        release, impacts = own.iloc[0], own.iloc[1:]
+        assert (release["t_s"], release["amplitude_rad"]) == (0.0, start)
+        assert release[["omega_before_rad_s", "omega_after_rad_s", "apparent_restitution"]].isna().all()
+        assert len(impacts) == row["impacts"]
+        assert impacts[["omega_before_rad_s", "omega_after_rad_s"]].notna().all(axis=None)
+    assert "half_cycle 0 begins with the run" in OUTPUT["half_cycles"].words
     rb.run(study.with_(output=None), tmp_path / "out", fresh=True)
     assert not (tmp_path / "out" / HALF_CYCLES).exists()

@@ -132,6 +132,25 @@ def test_flight_ends_the_run_where_a_base_says_stop(name):
     assert stopped.t_end == stopped.t_flight == guided.t_flight
 
 
+@pytest.mark.parametrize("flight", ["guided", "stop"])
+@pytest.mark.parametrize("substeps", [1, 3, 8])
+def test_a_pier_that_the_ground_does_not_bear_and_that_gains_no_height_has_not_flown(flight, substeps):
+    """N = 0 while v̈_g = −g: it stands where it stood, and flies once the ground falls faster."""
+    base = RigidBase(flight=flight)
+    for vertical in ([0, -1, -1, -1, -1, 0], [0, -1, 0]):
+        held = run_fixed(PIER, base, given([0], vertical), substeps)
+        assert (held.status, held.flights, held.t_flight, held.flight_height) == ("ok", 0, None, 0.0)
+        assert (held.impacts, held.separations) == (0, 0)
+    rocks = run_fixed(PIER, base, given([0, 0, 0.1, 0, 0], [0, -1, -1, -1, 0]), substeps)
+    assert rocks.separations == 1
+    assert rocks.t_flight is None or rocks.t_flight > 0.1  # it is turned by the ground, and does not leave it at first
+    flown = run_fixed(PIER, base, given([0], [0, -1, -1, -1.2, -1, 0]), substeps)
+    assert flown.flights == 1
+    assert flown.t_flight == pytest.approx(0.1, abs=1e-9)
+    assert flown.status == {"guided": "ok", "stop": "flight"}[flight]
+    assert (flown.flight_height > 1e-3) == (flight == "guided")
+
+
 # Landings
 
 

@@ -86,6 +86,12 @@ def _at_once(value, slope, rounding):
     return value, (slope if value > 0.0 else min(-abs(slope), value))
 
 
+@inlined
+def _weightless(m, ground):
+    """Return whether the ground falls as fast as the block: it leaves the ground only once that falls faster."""
+    return abs(m.gravity + ground.vertical) <= NO_ACCELERATION * m.gravity
+
+
 @system.event_functions.of(Block)
 def event_functions(m, devices, y, k, contact, supports, rest, ground):
     """Return Signals, and slopes: at rest what keeps each pivot down; rocking the tilt and the normal force; else heights."""
@@ -107,8 +113,9 @@ def event_functions(m, devices, y, k, contact, supports, rest, ground):
     if contact.left != 0.0:
         about_right, right_rate = _lift(m, devices, y, RIGHT, ground)
         about_left, left_rate = _lift(m, devices, y, LEFT, ground)
-        left, left_slope = _at_once(-about_right, -right_rate, 0.0)
-        right, right_slope = _at_once(-about_left, -left_rate, 0.0)
+        rounding = NO_ACCELERATION * m.p * m.p if _weightless(m, ground) else 0.0
+        left, left_slope = _at_once(-about_right, -right_rate, rounding)
+        right, right_slope = _at_once(-about_left, -left_rate, rounding)
         return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
     left, right, left_velocity, right_velocity = clearances(m, y, supports)
     arm_left, arm_right = arms(m, y.theta)
@@ -164,7 +171,8 @@ def _lift_off(m, devices, y, side, ground):
     other, _ = _lift(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, side, OPENS)
     k = rates(under, y, on_side(side), ground.horizontal, ground.vertical)
-    lifts_both = normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
+    falls_away = ground.vertical_slope < 0.0 or not _weightless(m, ground)
+    lifts_both = falls_away and normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
     if lifts_both or other >= -NO_ACCELERATION * m.p * m.p * m.alpha:
         leave_rest(m, devices, y, 0.0)
         return y, Stance(0.0, 0.0, 0.0), TAKE_OFF

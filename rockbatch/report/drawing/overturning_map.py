@@ -121,9 +121,9 @@ def draw(table: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
     present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
     picture = [
         # One path for each outcome, or a hair of background would show where two strips meet
-        *(_path(axes, _areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
+        *(_path(axes, areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
         axes.frame(axes.x.ticks(8), axes.y.ticks(8)),
-        _path(axes, [*_inside(drawn), *_between(drawn)], "level"),
+        _path(axes, [*inside(drawn), *between(drawn)], "level"),
         text(axes.left + axes.width / 2, HEIGHT - 4, lowered("ω", "p", "/p"), class_="m q"),
         text(axes.left - 28, 12, lowered("a", "p", "/(g tan α)"), class_="q"),
     ]
@@ -146,7 +146,7 @@ def _path(axes: Axes, lines: Iterable[Line], class_: str) -> Markup:
     return curve(x, y, class_)
 
 
-def _areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
+def areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
     """Yield the outlines of all regions with an outcome."""
     for strip in drawn:
         x = np.concatenate((strip.frequencies, strip.frequencies[::-1]))
@@ -155,12 +155,12 @@ def _areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
                 yield x, np.concatenate((strip.edges[:, place], strip.edges[::-1, place + 1]))
 
 
-def _inside(drawn: Sequence[Strip]) -> Iterator[Line]:
+def inside(drawn: Sequence[Strip]) -> Iterator[Line]:
     """Return the boundaries along each strip."""
     return ((strip.frequencies, edge) for strip in drawn for edge in strip.edges.T[1:-1])
 
 
-def _between(drawn: Sequence[Strip]) -> Iterator[Line]:
+def between(drawn: Sequence[Strip]) -> Iterator[Line]:
     """Yield the lines at which the outcome changes from a strip to the next."""
     for left, right in pairwise(drawn):
         x = left.frequencies[-1]

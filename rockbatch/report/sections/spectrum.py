@@ -85,7 +85,7 @@ def _curves(points: "pd.DataFrame", axis: str, many: bool) -> tuple[Markup, list
     """Draw the rocking spectra of a case; return the picture and its legend."""
     names = list(QUANTILES) if many else ["median"]
     finite = points[names].to_numpy(float)
-    top = 1.08 * max(float(finite[np.isfinite(finite)].max(initial=0.0)), 1e-6)
+    top = 1.08 * (float(finite[np.isfinite(finite)].max(initial=0.0)) or 1.0)
     x = points[axis].to_numpy(float)
     height_above = ROW * points["alpha"].nunique() + 4.0
     axes = Axes(36, 20 + height_above, WIDTH - 48, HEIGHT - 58, Scale(x.min(), x.max()), Scale(0.0, top))
