@@ -124,18 +124,19 @@ def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
 @pytest.mark.parametrize(
     ("text", "line", "advice"),
     [
-        ("a = 1\nbase = rigid\n", 2, "text needs quotes"),
-        ("alpha = 0,13\n", 1, "decimals take a point"),
-        ("alpha = .13\n", 1, "a digit before the point"),
-        ("eta = [5., 3.0]\n", 1, "a digit after the point"),
-        ("vertical = True\n", 1, "true or false"),
-        ('path = "C:\\data"\n', 1, "backslash"),
+        ("a = 1\nbase = rigid\n", 2, 'write base = "rigid"'),
+        ("alpha = 0,13\n", 1, "write alpha = 0.13"),
+        ("alpha = .13\n", 1, "write alpha = 0.13"),
+        ("eta = [5., 3.0]\n", 1, "write eta = [5.0, 3.0]"),
+        ("vertical = True\n", 1, "write vertical = true"),
+        ('path = "C:\\data"\n', 1, 'write path = "C:/data"'),
         ("alpha =\n", 1, "the value is missing"),
-        ("[pier\nalpha = 1\n", 1, "brackets"),
-        ("alpha: 0.13\n", 1, "equals sign"),
+        ("[pier\nalpha = 1\n", 1, "write [pier]"),
+        ("alpha: 0.13\n", 1, "write alpha = 0.13"),
         ("p = 1\np = 2\n", 2, "a second time"),
-        ("[pier]\n[pier]\n", 2, "a second time"),
+        ("[pier]\n[pier]\n", 2, "write [[pier]] above each if it is one of several; else join both"),
         ("beta = [1,\n2\n", 2, "not valid TOML"),
+        ("beta = [1,\neta = 2\n", 1, "the bracket that opens here does not close"),
     ],
 )
 def test_what_is_not_toml_is_told_with_its_line_and_what_to_write(tmp_path, text, line, advice):

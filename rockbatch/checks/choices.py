@@ -9,6 +9,9 @@ from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.toml.kinds import shown
 
+LEAST_MM = 1.0
+"""Limit of a length [mm] below which metres are likelier meant."""
+
 
 def is_about(rule: Rule, case: str) -> bool:
     """Return whether the rule is about the case of this name."""
@@ -73,11 +76,14 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
             f"{key} = {value:g}: {rule.demand} is counted without its sign, so that {'nothing' if key == 'at_most' else 'all'} "
             f'passes; check the sign; if it is right, write confirm = ["{key}"] in this table'
         )
-    if demand.most is None:
-        return
     mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]))]
-    most = max((demand.most.value(case) for case in mine), default=math.inf)
-    if value > most:
+    most = max((demand.most.value(case) for case in mine if demand.most), default=math.inf)
+    if demand.unit == "mm" and 0 < value < max(LEAST_MM, 1e-3 * most if math.isfinite(most) else 0.0):
+        yield (
+            f"{key} = {value:g}: in mm, as {rule.demand} is, less than any pier shows that rocks; {value:g} m are "
+            f'{1000 * value:g} mm; check the unit; if it is right, write confirm = ["{key}"] in this table'
+        )
+    if demand.most is not None and value > most:
         yield (
             f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.most.beyond}, so the limit decides nothing; check the "
             f'unit; if it is right, write confirm = ["{key}"] in this table'

@@ -289,6 +289,7 @@ def _holds_a_tilt(case: Case) -> bool:
 
 
 _WIDER = Most(_width, "is more than the pier is wide")
+_WIDER_MM = Most(lambda case: 1000.0 * _width(case), _WIDER.beyond)
 _SLIDES = Most(_always(MOST_FRICTION), "is more than any interface has")
 _GAP, _GAPS = "greatest height of a pivot above its support", ("heel_gap_left_m", "heel_gap_right_m")
 _DECK = "greatest absolute horizontal acceleration of the deck"
@@ -312,7 +313,7 @@ _OF_FORCES: dict[str, str | Demand] = {
     "pivot_force_kN": _forces("greatest force of a support [kN]", "pivot_force_left_kN", "pivot_force_right_kN"),
     "heel_gap_m": _forces(f"{_GAP} [m]", *_GAPS, most=_WIDER),
     "heel_gap_mm": _forces(
-        f"{_GAP} [mm]", *_GAPS, times=_always(1000.0), most=Most(lambda case: 1000.0 * _width(case), _WIDER.beyond)
+        f"{_GAP} [mm]", *_GAPS, times=_always(1000.0), most=_WIDER_MM
     ),
     "heel_speed_m_s": _forces(
         "greatest speed of a pivot from or to its support [m/s]", "heel_speed_left_m_s", "heel_speed_right_m_s"
@@ -331,31 +332,33 @@ _OF_FORCES: dict[str, str | Demand] = {
 }  # fmt: skip
 """Demands that need the forces: in words alone if it is the column of that name."""
 
+
+def _lengths(name: str, words: str) -> dict[str, Demand]:
+    """Return the demands of a column NAME_m, in m and in mm."""
+    return {
+        f"{name}_m": _of_device(f"{words} [m]", f"{name}_m", most=_WIDER),
+        f"{name}_mm": _of_device(f"{words} [mm]", f"{name}_m", _always(1000.0), most=_WIDER_MM),
+    }
+
+
 _OF_DEVICES: dict[str, str | Demand] = {
     "damper_force_over_weight": "greatest force of a damper over the pier's weight",
     "damper_force_kN": _in_kilonewtons("damper"),
-    "damper_stroke_m": "greatest elongation of a damper [m]",
-    "damper_stroke_mm": _of_device("greatest elongation of a damper [mm]", "damper_stroke_m", _always(1000.0)),
+    **_lengths("damper_stroke", "greatest elongation of a damper"),
     "damper_speed_m_s": "greatest speed of a damper [m/s]",
     "damper_energy_J_kg": "energy that all dampers take, over the pier's mass [J/kg]",
     "tendon_force_over_weight": "greatest force of a tendon over the pier's weight",
     "tendon_force_kN": _in_kilonewtons("tendon"),
-    "tendon_yield_m": "by how much a tendon is longer for good [m]",
+    "tendon_yield_m": _of_device("by how much a tendon is longer for good [m]", "tendon_yield_m", most=_WIDER),
     "tendon_slack": Demand("how often tendons go slack", _largest("tendon_slack")),
     "stop_force_over_weight": "greatest force of a stop over the pier's weight",
     "stop_force_kN": _in_kilonewtons("stop"),
-    "stop_deflection_m": "greatest deflection of a stop beyond its gap [m]",
-    "stop_deflection_mm": _of_device(
-        "greatest deflection of a stop beyond its gap [mm]", "stop_deflection_m", _always(1000.0)
-    ),
+    **_lengths("stop_deflection", "greatest deflection of a stop beyond its gap"),
     "stop_blows": Demand("how often stops are met", _largest("stop_blows")),
     "stop_energy_J_kg": "energy that all stops take, over the pier's mass [J/kg]",
     "deck_spring_force_over_weight": "greatest force of a deck spring over the pier's weight",
     "deck_spring_force_kN": _in_kilonewtons("deck_spring"),
-    "deck_spring_deflection_m": "greatest deflection of a deck spring beyond its gap [m]",
-    "deck_spring_deflection_mm": _of_device(
-        "greatest deflection of a deck spring beyond its gap [mm]", "deck_spring_deflection_m", _always(1000.0)
-    ),
+    **_lengths("deck_spring_deflection", "greatest deflection of a deck spring beyond its gap"),
     "deck_spring_blows": Demand("how often gaps beside the deck close", _largest("deck_spring_blows")),
     "deck_spring_energy_J_kg": "energy that all deck springs take, over the pier's mass [J/kg]",
 }
@@ -402,7 +405,7 @@ DEMANDS = {
     "separations": Demand("number of separations", _largest("separations")),
     "flights": Demand("number of flights", _in_flight("flights")),
     "flight_duration_s": Demand("time with both pivots in the air [s]", _in_flight("flight_duration_s")),
-    "flight_height_m": Demand("height of the lower pivot in flight [m]", _in_flight("flight_height_m")),
+    "flight_height_m": Demand("height of the lower pivot in flight [m]", _in_flight("flight_height_m"), most=_WIDER),
     "flight": _event("both pivots off the ground", lambda runs: runs["flight_s"].notna(), "makes the pier fly"),
     "overturned": _event("overturned", lambda runs: runs["status"] == "overturned", "overturns the pier"),
     "failed": _event(

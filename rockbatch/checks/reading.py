@@ -9,6 +9,7 @@ from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import choice, shown, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
@@ -16,7 +17,7 @@ SUITE = Section(("suite",), "What holds for every check that does not say otherw
     "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
     "checks": Key(text, '"checks.toml"',
         "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
-})  # fmt: skip
+}, also=names({"checks": "file rules"}))  # fmt: skip
 
 TOP = Section((), "", {
     "title": Key(text, '"Checks of a stepping pier"', "Heading of the report and its tables; the file's name if there is none."),
@@ -24,12 +25,20 @@ TOP = Section((), "", {
 })  # fmt: skip
 
 
+SECTIONS = (TOP, SUITE, CHECK)
+"""Tables of a file of checks."""
+
+
+def _read(path: Path) -> TomlFile:
+    return TomlFile.read(path, SECTIONS)
+
+
 def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
     """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are ignored.
 
     Raises ``InputError`` with every mistake and its line.
     """
-    file = TomlFile.read(Path(path))
+    file = _read(Path(path))
     if "pier" not in file.data:
         Table(file, (), "", file.data).read(TOP, other=("check", "suite"))
     checks = read_checks(file)
@@ -50,7 +59,7 @@ class Checks(NamedTuple):
 def read_checks(
     file: TomlFile,
     unmet: Callable[[Rule], Iterable[str]] | None = None,
-    opened: Callable[[Path], TomlFile] = TomlFile.read,
+    opened: Callable[[Path], TomlFile] = _read,
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 

@@ -7,7 +7,19 @@ from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
-from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, shown, text
+from rockbatch.toml.kinds import (
+    Choice,
+    KindError,
+    boolean,
+    choice,
+    count,
+    not_negative,
+    number,
+    positive,
+    shown,
+    text,
+)
+from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section
 
 BASES = ("code", "literature", "judgement")
@@ -166,12 +178,29 @@ COUNT = (
     'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
     'or each "component"'
 )
+_CALLED = {
+    "demand": names({
+        ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
+        ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
+        ("top_drift_m", "top_drift_mm"): "displacement topdisplacement", "friction_demand": "sliding slip",
+        "overturned": "overturning overturn collapse toppling",
+    }),
+    "statistic": names({
+        "mean": "average avg", "max": "maximum envelope worst largest peak", "median": "p50", "count": "number",
+        "p84": "84th 84 84percentile percentile84 84thpercentile", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
+        "asce7-16": "asce7", "aashto": "aashtolrfd lrfd", "nzs1170.5": "nzs",
+    }),
+    "basis": names({
+        "code": "standard norm", "literature": "paper book", "judgement": "judgment engineeringjudgement expert",
+    }),
+}  # fmt: skip
 CHECK = Section(("check",), (
     "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
 ), {
     "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
-    "demand": Key(choice(*DEMANDS), '"theta_max_over_alpha"', "What is looked at.", required=True),
-    "statistic": Key(choice(*STATISTICS), '"mean"', 'How the records are summed up; "max" if it is not given.'),
+    "demand": Key(choice(*DEMANDS, called=_CALLED["demand"]), '"theta_max_over_alpha"', "What is looked at.", required=True),
+    "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
+        'How the records are summed up; "max" if it is not given.'),
     "above": Key(not_negative, "0.5",
         'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
     "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
@@ -179,7 +208,7 @@ CHECK = Section(("check",), (
         f"{COUNT}; what `[suite]` says if it is not given."),
     "at_most": Key(number, "0.5", "The limit."),
     "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
-    "basis": Key(choice(*BASES), '"code"', "Where the limit comes from."),
+    "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
     "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
     "case": Key(text, '["soft", "stiff*"]',
         "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
@@ -196,7 +225,11 @@ CHECK = Section(("check",), (
         "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
     "confirm": Key(choice(*CONFIRMED), '["at_most"]',
         "Keys of this check that are right though nothing could exceed such a limit.", many=True),
-}, many=True, homes=(Rule,))  # fmt: skip
+}, many=True, homes=(Rule,), also=names({
+    "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
+    "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",
+    "reason": "source reference clause comment note notes description why", "name": "id label title",
+}), instead=names({"the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units"}))  # fmt: skip
 """A [[check]]; :class:`Rule` says what its keys mean."""
 
 
@@ -209,8 +242,7 @@ def _unknown_words(rule: Rule) -> list[str]:
         try:
             key.kind(value)
         except KindError as error:
-            hint = f"; did you mean {error.meant}?" if error.meant else ""
-            wrong.append(f"{name} = {shown(value)}: expected {error}{hint}")
+            wrong.append(f"{name} = {shown(value)}: {error.advice()}")
     return wrong
 
 

@@ -36,8 +36,8 @@ def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[s
     return names
 
 
-def closest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that ``word`` was probably meant to be, whatever its case."""
+def closest(word: str, known: Iterable[str], alike: float = 0.6) -> str | None:
+    """Return the known word that ``word`` was probably meant to be, whatever its case, from a similarity of ``alike`` up to 1."""
     by_lower = {name.lower(): name for name in known}
-    matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1)
+    matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1, cutoff=alike)
     return by_lower[matches[0]] if matches else None

@@ -11,6 +11,11 @@ LEAST, MOST = 1e-15, 1e15
 """Bounds of any number that a user states, but for 0, whatever its unit: products and powers of some stay finite."""
 
 
+def of_percent(value: float, low: float, high: float) -> float | None:
+    """Return the share that a value above it probably is in percent, if the bounds are those of a share."""
+    return value / 100.0 if low == 0.0 and high == 1.0 < value <= 100.0 else None
+
+
 @dataclass(frozen=True)
 class Bounds:
     """Values that a quantity can have, from ``low`` to ``high``; ``above`` and ``below`` exclude these ends.
@@ -37,7 +42,9 @@ class Bounds:
             return f"must be a number above 0{self.unit}"
         if callable(self.why):
             return self.why(value)
-        return self.why or f"must be within {self.low:g} and {self.high:g}"
+        share = of_percent(value, self.low, self.high)
+        percent = "" if share is None else f"; if it is in percent, write {share:g}"
+        return (self.why or f"must be within {self.low:g} and {self.high:g}") + percent
 
     def problems(self, name: str, value: float | None) -> list[str]:
         """Return the message about a value, after its name, if it is given and out of bounds."""

@@ -13,7 +13,7 @@ def _is_unit(value: str) -> None:
     try:
         acceleration_factor(value)
     except ValueError as error:
-        raise KindError(str(error).rpartition("; write ")[2]) from None
+        raise KindError(f"expected {str(error).rpartition('; write ')[2]}", whole=True) from None
 
 
 def _is_file_name(value: str) -> None:

@@ -23,8 +23,9 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.formats import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
-from rockbatch.motions.sequences import ShockSequence, read_sequences
+from rockbatch.motions.sequences import SEQUENCE, ShockSequence, read_sequences
 from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
 
@@ -49,7 +50,16 @@ RECORD = Section(("record",), (
     "magnitude": Key(number, "6.7", "Magnitude of the earthquake."),
     "confirm": Key(boolean, "true", "Whether the record is right though something about it is grossly odd."),
     "confirm_pga": Key(boolean, "true", "Whether its peak acceleration is right though it is far from usual."),
-}, many=True)  # fmt: skip
+}, many=True, also=names({
+    "file": "filename path record", "station": "site stationname", "azimuth": "angle direction orientation bearing heading",
+    "scale": "factor multiplier", "magnitude": "mw mag m", "distance_km": "rrup rjb distance", "component": "channel",
+    "role": "type", "polarity": "sign", "dt": "timestep samplinginterval",
+}), instead=names({
+    "write use = false": "skip ignore exclude omit leaveout", 'write role = "vertical"': "vertical",
+    'write polarity = "-"': "flip reverse invert",
+}))  # fmt: skip
+SECTIONS = (RECORD, replace(SEQUENCE, at=("sequence",)))
+"""Tables of a ``motions.toml``."""
 _MOST_HINTS = 10  # for files that are not there: each is compared with all that are
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
 _CONFIRM = ("confirm", "confirm_pga")
@@ -101,7 +111,7 @@ class Manifest:
         manifest = cls({}, [], [])
         for path in paths:
             try:
-                file = TomlFile.read(path) if path.suffix == ".toml" else _from_csv(path)
+                file = TomlFile.read(path, SECTIONS) if path.suffix == ".toml" else _from_csv(path)
             except InputError as error:
                 manifest.refused += error.problems
             else:

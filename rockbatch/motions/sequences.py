@@ -22,6 +22,7 @@ from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, U
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.origin import UNKNOWN_ORIGIN
 from rockbatch.toml.kinds import boolean, choice, positive, shown, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual
 
@@ -83,7 +84,9 @@ _SEQUENCE = {
 SEQUENCE = Section(("motions", "sequence"), (
     "Shocks as one motion: a main shock and its aftershocks, one after the other on the same pier. A sequence is selected and "
     "scaled as one record; what each shock does stands in `shocks.csv` and in the report."
-), _SEQUENCE, many=True, homes=(ShockSequence,))  # fmt: skip
+), _SEQUENCE, many=True, homes=(ShockSequence,), also=names({
+    "records": "motions shocks", "pause_s": "gap interval rest", "factors": "scale scales",
+}))  # fmt: skip
 """Of a study."""
 
 

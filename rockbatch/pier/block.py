@@ -42,6 +42,9 @@ BOUNDS = {
 LOWEST, HIGHEST = 0.25, 2.5
 """Bounds of the heights of deck and drift, over the pier's height."""
 
+LIGHTEST, HEAVIEST = 0.005, 100.0
+"""Bounds of the mass of a deck over that of what carries it."""
+
 
 def out_of_bounds(**values: float | None) -> list[str]:
     """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
@@ -76,6 +79,16 @@ def _unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], *
         if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
             doubts[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
     return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+
+
+def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
+    """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
+    ratio = deck_mass_t / mass_t
+    if LIGHTEST <= ratio <= HEAVIEST or "deck_mass_t" in confirm:
+        return []
+    return [
+        f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
+    ]
 
 
 class Part(NamedTuple):
@@ -170,7 +183,7 @@ class Pier:
         """Return a pier of the size R0 [m], the distance from a pivot to the centre of mass.
 
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
-        "top_m", "deck_height_m". Raises ``InputError`` for what is impossible or not confirmed.
+        "top_m", "deck_height_m", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
         """
         _refuse(
             out_of_bounds(size_m=size_m, mu=mu)
@@ -278,7 +291,11 @@ class Pier:
         higher of shaft and deck. See :meth:`of_parts`, and :meth:`from_size` for ``confirm``.
         """
         wrong = out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
-        _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m))
+        _refuse(
+            wrong
+            or _unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
+            + unlikely_deck(mass_t, deck_mass_t, confirm)
+        )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
@@ -287,7 +304,7 @@ class Pier:
 
     @classmethod
     @checked
-    def frame(cls, column: "Pier", columns: int, deck_mass_t: float) -> "Pier":
+    def frame(cls, column: "Pier", columns: int, deck_mass_t: float, *, confirm: Collection[str] = ()) -> "Pier":
         """Return a rocking frame: equal columns, and a deck that rests on their tops and keeps level (Makris & Vassiliou 2013).
 
         Parameters
@@ -298,6 +315,8 @@ class Pier:
             N, 2 or more.
         deck_mass_t : float
             m_d [t], of the deck on all of them; with γ = m_d/(N m_c).
+        confirm : collection of str
+            See :meth:`from_size`.
 
         Returns
         -------
@@ -320,6 +339,7 @@ class Pier:
             wrong.append(f"mu = {column.mu:g}: the columns of a frame are solid rectangles, mu = 3")
         if wrong or column.mass_t is None:
             raise InputError(*wrong)
+        _refuse(unlikely_deck(columns * column.mass_t, deck_mass_t, confirm))
         ratio = deck_mass_t / (columns * column.mass_t)
         return cls(
             column.alpha,

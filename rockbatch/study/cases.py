@@ -27,10 +27,24 @@ from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import choice, positive, shown, text, within
+from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 _BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
+_CALLED = {
+    "base": names({
+        "rigid": "fixed rigidbase rigidground housner rock", "elastic": "spring springs winkler flexible linear compliant",
+        "yielding": "inelastic nonlinear plastic elastoplastic elasticplastic epp boucwen bilinear",
+    }),
+    "spring": names({
+        "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic", "bouc-wen": "smooth",
+    }),
+    "kinematics": names({
+        "first-order": "small smallrotations linear linearised linearized 1storder",
+        "finite": "large largerotations nonlinear exact full",
+    }),
+}  # fmt: skip
 _ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
 _YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
 BASE_KEYS = {
@@ -49,13 +63,13 @@ BASE_KEYS = {
     "zeta": Key(within(BOUNDS["zeta"]), "0.05",
         "Dashpot beside each spring, as a share ζ of the critical damping of the vertical vibration; instead of `epsilon`.",
         many=True, only=_ON_SPRINGS),
-    "kinematics": Key(choice(*WORDS["kinematics"]), '"first-order"',
+    "kinematics": Key(choice(*WORDS["kinematics"], called=_CALLED["kinematics"]), '"first-order"',
         "The paper's equations, \"first-order\", or those that hold for rotations of any size.", many=True, only=_ON_SPRINGS),
     "eta": Key(within(BOUNDS["eta"]), "2.5",
         "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS),
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.", many=True, only=_YIELDS),
-    "spring": Key(choice(*WORDS["spring"]), '"bouc-wen"',
+    "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
         'Law of the supports: "bouc-wen", smooth, as in the paper; "epp", elastic and then perfectly plastic; or '
         '"hardening", loaded at first as "bouc-wen", and elastic below the greatest force borne so far.', many=True,
         only=_YIELDS),
@@ -80,12 +94,18 @@ CASE = Section(("case",), (
     "lists: every combination is a case."
 ), {
     "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
-    "base": Key(choice(*_BASES), '"yielding"',
+    "base": Key(choice(*_BASES, called=_CALLED["base"]), '"yielding"',
         '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
         '"yielding": the same, and the springs yield.', required=True),
     **BASE_KEYS,
     **CONFIRM,
-}, many=True, required=True, homes=(YieldingBase, ElasticBase), clashes=(
+}, many=True, required=True, homes=(YieldingBase, ElasticBase), also=names({
+    "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",
+    "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity", "zeta": "damping dampingratio xi",
+    ("restitution", "epsilon"): "cor e r coefficientofrestitution", "friction": "mu mus coefficientoffriction",
+    "spring": "law hysteresis material springs springlaw springtype", "eta": "fs factorofsafety safetyfactor",
+    "n": "exponent boucwenn", Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight w", "name": "id label title",
+}), clashes=(
     Clash(("beta", "stiffness_kN_m"), "beta and stiffness_kN_m are given, which fix the same; keep one", at="stiffness_kN_m"),
     Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
     Clash(("epsilon", "zeta"), f"epsilon = {{value}}: {EPSILON_AND_ZETA}"),

@@ -15,6 +15,7 @@ from rockbatch.study.hazard import Dispersion, Hazard, read_dispersions, read_ha
 from rockbatch.study.load import Study
 from rockbatch.study.stripes import StripeRecords, read_stripes
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Key, Section
 
@@ -133,7 +134,10 @@ FRAGILITY = Section(("fragility",), (
         "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
         "given.", many=True),
     "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
-}, homes=(FragilitySpec,))  # fmt: skip
+}, homes=(FragilitySpec,), also=names({
+    "measure": "im intensity intensitymeasure", ("levels_g", "levels_m_s"): "levels", "checks": "limits limitstates",
+    "method": "type analysis",
+}))  # fmt: skip
 
 
 def read_fragility(study: Study) -> FragilitySpec:

@@ -29,13 +29,19 @@ from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Ou
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual, homes
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 TOP = Section((), "", {
     "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; the file's name if there is none."),
     "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
-})  # fmt: skip
+}, also=names({
+    "pier": "geometry structure column body", "motions": "groundmotion groundmotions records earthquakes accelerograms input",
+    "case": "foundation foundations base bases support supports loadcase",
+    "numerics": "analysis solver settings options integration numerical", "output": "results",
+    "check": "limit limits criteria acceptance rule rules verification",
+}))  # fmt: skip
 _ROUNDING = f"must be {LEAST_TOLERANCE:g} or above, because rounding alone makes as much"
 NUMERICS = Section(("numerics",), "How exact the results are.", {
     "tolerance": Key(within(Bounds(LEAST_TOLERANCE, MOST, why=_ROUNDING)), "1e-4",
@@ -46,7 +52,14 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
     "quiet_s": Key(not_negative, "2.0",
         "Time at rest after the record, at least; a run continues as long as anything larger may follow."),
     **CONFIRM,
-}, homes=(Numerics,), clashes=(
+}, homes=(Numerics,), also=names({
+    "tolerance": "tol rtol atol error accuracy precision maxerror", "quiet_s": "freevibration timeafter after tail rest padding",
+    "substeps": "stepspersample subdivisions",
+}), instead=names({
+    "the step follows from tolerance; leave it out, or write substeps, the number of steps per sample": "dt timestep step deltat",
+    "there is one method; leave it out": "integrator method solver scheme",
+    "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
+}), clashes=(
     Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
 ))  # fmt: skip
 OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
@@ -79,7 +92,9 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
-}, homes=(Output,))  # fmt: skip
+}, homes=(Output,), also=names({
+    "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
+}), instead=names({"write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file"}))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
@@ -159,7 +174,7 @@ class Study(Shown):
         ``path`` is what messages and results call it; paths in the study are relative to its folder. No such file is needed.
         ``motions`` as for :func:`load_study`.
         """
-        return _checked(TomlFile.parse(Path(path), text), motions)
+        return _checked(TomlFile.parse(Path(path), text, SECTIONS), motions)
 
     @classmethod
     @checked
@@ -170,7 +185,7 @@ class Study(Shown):
 
         Mistakes are reported as those of a file, by table and key. ``path`` and ``motions`` as for :meth:`from_toml`.
         """
-        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), lined=False), motions)
+        return _checked(TomlFile.parse(Path(path), as_toml(plain(tables)), SECTIONS, lined=False), motions)
 
     @checked
     def with_(self, *, motions: Motions | Mapping[str, Any] = None, **tables: Any) -> "Study":
@@ -197,7 +212,7 @@ class Study(Shown):
             return _checked(self.file(), instead)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after), lined=False), instead)
+        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), instead)
 
     @property
     def in_file(self) -> bool:
@@ -209,7 +224,7 @@ class Study(Shown):
 
     def file(self) -> TomlFile:
         """Return the text, parsed again, for the tables of analyses."""
-        return TomlFile.parse(self.path, self.text, lined=self.lined)
+        return TomlFile.parse(self.path, self.text, SECTIONS, lined=self.lined)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""
@@ -259,11 +274,10 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
     >>> study.title, [case.name for case in study.cases]
     ('Pier 4', ['rigid', 'pads'])
     """
-    return _checked(TomlFile.read(Path(path)), motions)
+    return _checked(TomlFile.read(Path(path), SECTIONS), motions)
 
 
 def _checked(file: TomlFile, motions: Motions) -> Study:
-    file.homes = homes(SECTIONS)
     top = Table(file, (), "", file.data).read(
         TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *ANALYSES))
     )

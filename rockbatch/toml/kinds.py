@@ -2,14 +2,16 @@
 
 import json
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import Any, Protocol
 
 from rockbatch.common.files import legible
-from rockbatch.common.grouping import closest
-from rockbatch.common.units import LEAST, MOST, Bounds
+from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
+from rockbatch.toml.meant import plain, words_meant
+
+_SHORT = 100  # characters of what is expected beside a suggestion
 
 Schema = dict[str, Any]
 """A JSON schema, draft 7."""
@@ -24,6 +26,13 @@ class KindError(ValueError):
     def __init__(self, expected: str, meant: str | None = None, *, whole: bool = False) -> None:
         super().__init__(expected)
         self.meant, self.whole = meant, whole
+
+    def advice(self, meant: str = "") -> str:
+        """Return what was probably meant, by itself or by ``meant``, and what was expected if that is short."""
+        meant = self.meant or meant
+        if not meant or self.whole:
+            return str(self) if self.whole else f"expected {self}"
+        return f"did you mean {meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
 
 
 class Kind(Protocol):
@@ -72,7 +81,8 @@ class Number:
             return value
         converted = _finite(value)
         if converted not in Bounds(self.low, self.high, above=self.above, below=self.below) or converted == self.but:
-            raise KindError(self.text)
+            share = of_percent(converted, self.low, self.high)
+            raise KindError(self.text, None if share is None else f"{share:g}")
         if converted != 0 and not LEAST <= abs(converted) <= MOST:
             raise KindError(f"a number of the size {LEAST:g} to {MOST:g}")
         if self.bounds is not None and converted not in self.bounds:
@@ -125,13 +135,21 @@ class Text:
         return {"type": "string", "pattern": r"\S"}
 
 
+_YES, _NO = frozenset(("true", "yes", "on", "1", "y")), frozenset(("false", "no", "off", "0", "n"))
+
+
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them."""
+    """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them.
+
+    ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.words_meant`
+    takes them.
+    """
 
     options: tuple[Any, ...]
     own_words: str = ""
     also: Number | None = None
+    called: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def words(self) -> str:
@@ -143,9 +161,16 @@ class Choice:
                 return option
         if self.also is not None and not isinstance(value, str):
             return self.also(value)
+        raise KindError(self.words, " or ".join(map(shown, self._meant(value))))
+
+    def _meant(self, value: Any) -> list[Any]:
         words = [option for option in self.options if isinstance(option, str)]
-        meant = closest(value, words) if isinstance(value, str) else None
-        raise KindError(self.words, meant and shown(meant))
+        meant: list[Any] = words_meant(value, words, self.called) if isinstance(value, str) else []
+        meant = meant or [option for option in self.options if str(option) == value]
+        word = "" if isinstance(value, float | list | dict) else plain(str(value))
+        if not meant and any(option is True for option in self.options) and word in _YES | _NO:
+            return [word in _YES]
+        return meant
 
     def schema(self) -> Schema:
         if self.options == (True, False):
@@ -183,9 +208,9 @@ def _finite(value: Any) -> float:
     return converted
 
 
-def choice(*options: str) -> Choice:
-    """Return the kind of one of ``options``."""
-    return Choice(options)
+def choice(*options: str, called: Mapping[str, Any] | None = None) -> Choice:
+    """Return the kind of one of ``options``, which have other names in ``called``."""
+    return Choice(options, called=called or {})
 
 
 def within(bounds: Bounds) -> Number:

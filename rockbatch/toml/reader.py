@@ -4,21 +4,25 @@ import io
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.common.files import legible, opened_input
+from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.errors import InputError, remedy
-from rockbatch.toml.kinds import KindError, shown
+from rockbatch.toml.kinds import KindError, Number, Other, Whole, shown
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
-from rockbatch.toml.section import CONFIRM, Key, Section, options
+from rockbatch.toml.meant import Meant, number_meant, similar
+from rockbatch.toml.section import CONFIRM, Key, Section, elsewhere, home, options
+from rockbatch.toml.slips import syntax_error
 
 LARGEST = 4 * 2**20
 """Bytes of a study, a manifest or a table of a spectrum: ten thousand records with all that can be said of them."""
+
+_LONGEST = 200  # characters of a name that is shown as it is
 
 MOST_TOLD = 100
 """Mistakes of a file that are reported at once."""
@@ -39,17 +43,17 @@ class TomlFile:
     text: str
     data: dict[str, Any]
     lines: dict[KeyPath, int]
-    homes: Mapping[str, str] = field(default_factory=dict)
-    """Places of keys and tables, in words, for those that stand elsewhere."""
+    sections: Sequence[Section] = ()
+    """Tables that the file may have, outer ones before inner, for what is said of keys that stand elsewhere."""
     misspelt: set[KeyPath] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, str]] = field(default_factory=list)
     """The first ones, ``MOST_TOLD`` at most: line and message."""
 
     @classmethod
-    def read(cls, path: Path) -> "TomlFile":
+    def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
         """Read and parse. Raises :class:`InputError` with the line where this is not TOML."""
-        return cls.parse(path, cls.text_of(path))
+        return cls.parse(path, cls.text_of(path), sections)
 
     @staticmethod
     def text_of(path: Path) -> str:
@@ -70,7 +74,7 @@ class TomlFile:
             raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
 
     @classmethod
-    def parse(cls, path: Path, text: str, *, lined: bool = True) -> "TomlFile":
+    def parse(cls, path: Path, text: str, sections: Sequence[Section] = (), *, lined: bool = True) -> "TomlFile":
         """Parse the text of a file, which need not be there any more. Raises :class:`InputError` as :meth:`read` does.
 
         A text that is not ``lined`` was not written by its user: messages do not give its lines.
@@ -83,9 +87,9 @@ class TomlFile:
         except ValueError:
             pass  # the parser tells better what is wrong, and gets no further
         try:
-            return cls(path, text, tomllib.loads(text), lines)
+            return cls(path, text, tomllib.loads(text), lines, sections)
         except (ValueError, RecursionError) as error:
-            raise InputError(_syntax_error(path, text, str(error))) from None
+            raise InputError(syntax_error(path, text, str(error), sections)) from None
 
     def complain(self, key_path: KeyPath, message: str) -> None:
         """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts."""
@@ -227,7 +231,7 @@ class Table:
                 if name in unfit:
                     self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
                 elif name not in other:
-                    self._unknown(name, [*keys, *other])
+                    self._unknown(name, keys, other)
             elif reason := self._not_applying(keys, name):
                 self.complain(f"{name} = {shown(value)}: {reason}", name)
             elif settings := self._checked(name, keys[name], value):
@@ -297,7 +301,7 @@ class Table:
         if isinstance(value, list):
             items = [Setting(item, (*whole.key_path, n)) for n, item in enumerate(value)]
             if not (key.many or key.pair):
-                self._wrong(name, key, whole, KindError("one value, not a list"))
+                self._not_one(name, key, whole)
                 return []
             if key.many and not items:
                 self._wrong(name, key, whole, KindError("at least one value"))
@@ -329,30 +333,75 @@ class Table:
             self._wrong(name, key, setting, wrong)
             return None
 
-    def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
-        if wrong.whole:
-            self.complain_about(setting, f"{name} = {shown(setting.value)}: {wrong}")
-            return
-        instead = f"write for example {name} = {key.example}"
-        if wrong.meant:
-            instead = f"did you mean {wrong.meant}?"
-        self.complain_about(setting, f"{name} = {shown(setting.value)}: expected {wrong}; {instead}")
+    def _not_one(self, name: str, key: Key, whole: Setting) -> None:
+        """Note a list in the place of one value, or several tables in that of one."""
+        if isinstance(key.kind, Other) and all(isinstance(item, dict) for item in whole.value):
+            header = ".".join(part for part in whole.key_path if isinstance(part, str))
+            self.complain(f"{name}: expected one table; write [{header}] on a line of its own, once", name)
+        else:
+            self._wrong(name, key, whole, KindError("one value, not a list"))
 
-    def _unknown(self, name: str, known: list[str]) -> None:
+    def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
+        meant = wrong.meant or " or ".join(_values_meant(name, key, setting.value))
+        example = "" if meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
+        self.complain_about(setting, f"{name} = {shown(setting.value)}: {wrong.advice(meant)}{example}")
+
+    def _unknown(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> None:
         section = not self.key_path and isinstance(self.data[name], dict | list)
         complaint = "unknown section" if section else "unknown key"
-        home = self.file.homes.get(name)
-        nearest = closest(name, known)
-        if home is not None:
-            instead = f"it belongs under {home}"
-        elif nearest is not None:
-            instead = f"did you mean {nearest}?"
-            if nearest not in self.data:
-                self.file.misspelt.add((*self.key_path, nearest))
-        else:
-            instead = "write one of " + ", ".join(known)
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
-        self.complain(f"{written}: {complaint}; {instead}", name)
+        self.complain(f"{written}: {complaint}; {self._instead(name, keys, other)}", name)
+
+    def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
+        """Return what to write instead of an unknown key: another of this table first, then the table where it belongs."""
+        place = tuple(part for part in self.key_path if isinstance(part, str))
+        own = next((section for section in self.file.sections if section.at == place), Section(place, "", keys))
+        own = keys if isinstance(keys, Section) else own
+        known = [key for key in keys if not self._not_applying(keys, key)]
+        if place or not isinstance(self.data[name], dict | list):
+            known += other if place else ()
+        else:
+            known = list(other)
+        if advice := own.advice(name):
+            self._mark_misspelt([word for word in re.findall(r"\w+", advice) if word in known][:1])
+            return advice
+        absent = [key for key in known if key not in self.data]
+        if meant := own.known_as(name, absent) or own.known_as(name, known):
+            self._mark_misspelt([meant.key])
+            return _renamed(meant, self.data[name])
+        if belongs := home(self.file.sections, name, self.data[name], place):
+            return f"it belongs under {belongs}"
+        if not isinstance(self.data[name], dict | list) and (
+            there := elsewhere(self.file.sections, name, self.data[name], place)
+        ):
+            return f"did you mean {there}?"
+        near = similar(name, {key: keys[key].unit if key in keys else "" for key in known})
+        self._mark_misspelt(near)
+        return f"did you mean {' or '.join(near)}?" if near else "write one of " + ", ".join(known)
+
+    def _mark_misspelt(self, names: Iterable[str]) -> None:
+        self.file.misspelt.update((*self.key_path, name) for name in names if name not in self.data)
+
+
+def _renamed(meant: Meant, value: Any) -> str:
+    """Return the advice to write another key, with the value in its unit."""
+    values = value if isinstance(value, list) else [value]
+    why = f" ({meant.words})" if meant.words else ""
+    if meant.factor == 1.0 or not all(type(number) in (int, float) for number in values):
+        return f"did you mean {meant.key}?{why}"
+    converted = [f"{number * meant.factor:.6g}" for number in values]
+    written = f"[{', '.join(converted)}]" if isinstance(value, list) else converted[0]
+    return f"write {meant.key} = {written}{why}"
+
+
+def _values_meant(name: str, key: Key, value: Any) -> list[str]:
+    """Return the values that a number in quotes, or in a list of its own, means for a key, as TOML writes them."""
+    if isinstance(value, list) and len(value) == 1 and not key.pair and key.accepts(value[0]):
+        return [shown(value[0])]
+    if not (isinstance(value, str) and isinstance(key.kind, Number | Whole)):
+        return []
+    meant = number_meant(name, key.unit, value)
+    return [number for number in meant if key.accepts(tomllib.loads(f"x = {number}")["x"])]
 
 
 def _unreadable(path: Path, error: OSError) -> str:
@@ -369,45 +418,3 @@ def nearby(path: Path, written: str) -> str:
         return ""
     nearest = closest(path.name, sorted(names))
     return f"; did you mean {(Path(written).parent / nearest).as_posix()}?" if nearest else ""
-
-
-_LONGEST = 200  # characters of a line that are looked at: the patterns below take the square of their number
-
-_SLIPS = (  # what people write, and what TOML wants
-    ("[“”„‟‘’‚«»]", 'quotes must be straight: "rigid"'),
-    ("[−–—]", "a minus must be the plain one of the keyboard: -"),
-    (r"=\s*[+-]?\d+,\d+\s*$", "decimals take a point: 0.13"),
-    (r"=\s*\[?.*(?<![\w.])\.\d", "a decimal needs a digit before the point: 0.5"),
-    (r"=\s*\[?.*\d\.(?![\d])", "a decimal needs a digit after the point: 5.0"),
-    (r'=\s*\[?.*"[^"]*\\[^"]*"', "a backslash in double quotes is an escape: write / or single quotes"),
-    (r"=\s*(True|False|TRUE|FALSE|yes|no|on|off)\s*$", "write true or false"),
-    (r"=\s*\[?\s*[A-Za-z][\w+-]*", 'text needs quotes: "rigid"'),
-    (r"=\s*$", "the value is missing behind the equals sign"),
-    (r"^\s*\[[^]]*$|^\s*\[\[[^]]*\]?$", "the brackets of a section must close: [pier], [[case]]"),
-    (r"^[^=\[]*:", "write an equals sign, not a colon: key = value"),
-)
-
-
-def _syntax_error(path: Path, text: str, error: str) -> str:
-    place = re.search(r"\(at (?:line (\d+), column \d+|end of document)\)", error)
-    reason = (error[: place.start()] if place else error)[:_LONGEST].strip()
-    all_lines = text.split("\n")
-    number = int(place.group(1)) if place and place.group(1) else max(1, len(text.rstrip().split("\n")))
-    line = all_lines[number - 1].strip()[:_LONGEST]
-    bare = re.sub(r"\s#.*", "", line)
-    hint = next((f"; {advice}" for pattern, advice in _SLIPS if re.search(pattern, bare)), "")
-    if "overwrite" in reason or "declare" in reason or "twice" in reason or "mutate" in reason:
-        hint = _second_time(all_lines, number)
-    return f"{path}:{number}: not valid TOML: {reason[:1].lower()}{reason[1:]}: {legible(line[:80])}{legible(hint)}"
-
-
-def _second_time(lines: list[str], number: int) -> str:
-    """Return what is wrong about a table that is there already: perhaps one within it stands before it."""
-    header = re.match(r"\s*\[\[\s*([\w-]+)\s*\]\]", lines[number - 1][:_LONGEST])
-    if header:
-        inner = re.compile(rf"\s*\[+\s*{header[1]}\s*\.")
-        first = next((n for n, line in enumerate(lines[: number - 1], 1) if inner.match(line[:_LONGEST])), 0)
-        if first:
-            above = lines[first - 1].strip()[:_LONGEST]
-            return f"; {above} in line {first} stands before it: write it below the [[{header[1]}]] that it belongs to"
-    return "; it is given a second time, keep one"

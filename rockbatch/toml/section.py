@@ -3,11 +3,13 @@
 From them follow the reader (:mod:`reader`), the JSON schemas, the reference in the documentation and the messages.
 """
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, NamedTuple
 
-from rockbatch.toml.kinds import Choice, Kind, text
+from rockbatch.toml.kinds import Choice, Kind, KindError, Number, text
+from rockbatch.toml.meant import Also, Meant, known_as, plain, quantity_of
 
 
 class Usual(NamedTuple):
@@ -60,6 +62,21 @@ class Key:
         """Return whether it has to be written whatever the other keys are."""
         return self.required and not self.only
 
+    @property
+    def unit(self) -> str:
+        """Return the unit of its value as names of keys have it, "rad_s", if its kind says it; else empty."""
+        bounds = self.kind.bounds if isinstance(self.kind, Number) else None
+        written = re.match(r" \[(.+?)\]", bounds.unit) if bounds else None
+        return written[1].replace("/", "_").replace("²", "2") if written else ""
+
+    def accepts(self, value: Any) -> bool:
+        """Return whether it takes the value, or one of a list."""
+        try:
+            self.kind(value[0] if isinstance(value, list) and value and (self.many or self.pair) else value)
+        except KindError:
+            return False
+        return True
+
 
 def options(key: Key) -> tuple[Any, ...]:
     """Return the values that a key may have, if they are a few."""
@@ -107,6 +124,10 @@ class Section(Mapping[str, Key]):
         Pattern of further keys, numbers that the section cannot list because a study makes their names.
     numbered : bool
         Whether the same table may go with a number, too: damper_2.
+    also : mapping of str to Also
+        Other names of its keys, letters and digits in lower case; a unit may follow them in a file.
+    instead : mapping of str to str
+        Names in the same form for which there is no key, or for which the value has to change, and what to write.
     """
 
     at: tuple[str, ...]
@@ -119,6 +140,8 @@ class Section(Mapping[str, Key]):
     clashes: tuple[Clash, ...] = ()
     free: str = ""
     numbered: bool = False
+    also: Mapping[str, Also] = field(default_factory=dict)
+    instead: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Key:
         return self.keys_read[name]
@@ -135,6 +158,15 @@ class Section(Mapping[str, Key]):
         name = ".".join(self.at)
         return (f"[[{name}]]" if self.many else f"[{name}]") if name else ""
 
+    def known_as(self, name: str, names: Iterable[str]) -> Meant | None:
+        """Return which of ``names``, keys of it or of other tables, a name means; see :func:`rockbatch.toml.meant.known_as`."""
+        return known_as(name, {key: self[key].unit if key in self else "" for key in names}, self.also)
+
+    def advice(self, name: str) -> str:
+        """Return what to write instead of a name for which there is no key; empty if nothing is known about it."""
+        stem, _, _ = quantity_of(name)
+        return self.instead.get(plain(name)) or self.instead.get(plain(stem), "")
+
     def default(self, name: str) -> Any:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""
         for home in self.homes:
@@ -144,17 +176,34 @@ class Section(Mapping[str, Key]):
         return self[name].default
 
 
-def homes(sections: Iterable[Section]) -> dict[str, str]:
-    """Return by the name of a key or of an inner table, where it belongs."""
-    headers: dict[str, dict[str, None]] = {}
+_GENERAL = {
+    "at", "columns", "count", "damping", "dt", "f", "file", "gamma", "kind", "n", "nu", "offset", "path", "period_s", "polarity",
+    "records", "reason", "scale", "side", "source", "type", "unit",
+}  # fmt: skip
+"""Names that mean something else in tables that do not belong together."""
+
+
+def home(sections: Iterable[Section], name: str, value: Any, place: tuple[str, ...]) -> str:
+    """Return where a key or an inner table of this name belongs that takes the value, for one at ``place``; else empty."""
+    headers: dict[str, None] = {}
     outer: dict[tuple[str, ...], Section] = {}
     for section in sections:
         outer[section.at] = section
-        if len(section.at) > 1:
+        if len(section.at) > 1 and section.at[-1] == name and isinstance(value, dict | list):
             above = outer[section.at[:-1]]
-            headers[section.at[-1]] = {f"{'its ' if above.many else ''}{above.header}: write {section.header}": None}
-        for name in section if section.at else ():
-            if not (section.free and name in headers):  # a reference repeats the keys of cases
-                headers.setdefault(name, {})[section.header] = None
-    tables = {section.at[0] for section in outer.values() if section.at}
-    return {name: " or ".join(places) for name, places in headers.items() if name not in ("name", "confirm", *tables)}
+            return f"{'its ' if above.many else ''}{above.header}: write {section.header}"
+        related = section.at[: len(place)] == place[: len(section.at)]
+        repeated = section.free and headers  # a reference repeats the keys of cases
+        known = section.at and name in section and not repeated and name not in ("name", "confirm")
+        if known and (related or name not in _GENERAL) and section[name].accepts(value):
+            headers[section.header] = None
+    return " or ".join(headers)
+
+
+def elsewhere(sections: Iterable[Section], name: str, value: Any, place: tuple[str, ...]) -> str:
+    """Return the key, and its table, that is also called ``name`` and takes the value, for one at ``place``; else empty."""
+    for section in sections:
+        key = section.known_as(name, section) if section.at and section.at != place else None
+        if key and plain(key.key) != plain(name) and section[key.key].accepts(value):
+            return f"{key.key}, under {section.header}"
+    return ""

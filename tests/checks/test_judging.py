@@ -611,9 +611,9 @@ def test_a_table_without_runs_is_refused():
 @pytest.mark.parametrize(
     ("asked", "problem"),
     [
-        ({"demand": "theta_max"}, 'demand = "theta_max": expected one of'),
-        ({"demand": "theta_max"}, 'did you mean "theta_max_rad"?'),
-        ({"statistic": "average"}, 'statistic = "average": expected one of "max"'),
+        ({"demand": "theta_max"}, 'demand = "theta_max": did you mean "theta_max_rad" or "theta_max_over_alpha"?'),
+        ({"demand": "curvature"}, 'demand = "curvature": expected one of'),
+        ({"statistic": "average"}, 'statistic = "average": did you mean "mean"?'),
         ({"flight": "ignore"}, 'flight = "ignore": expected one of "infinite"'),
         ({"at_most": None}, "at_most is missing"),
         ({"at_least": 0.1}, "at_least: given beside at_most"),

@@ -187,7 +187,7 @@ def test_any_statistic_can_ask_for_more_records():
     ("asked", "problem"),
     [
         ({"statistic": "en1998-2", "least": 2}, "least = 2: EN 1998-2 asks for 3; leave it out"),
-        ({"count": "stations"}, 'count = "stations": expected one of "station"'),
+        ({"count": "stations"}, 'count = "stations": did you mean "station"? expected one of "station"'),
         ({"demand": "eta", "at_most": None, "at_least": 2, "least": 3}, "least: eta is the same for all records"),
         ({"demand": "flight", "statistic": "aashto"}, "flight is yes or no"),
     ],

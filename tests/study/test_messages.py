@@ -111,9 +111,9 @@ def test_another_name_of_a_code_is_told_alone_and_its_keys_are_not(tmp_path, spe
 @pytest.mark.parametrize(
     ("old", "new", "advice"),
     [
-        ('"rigid"', "“rigid”", 'quotes must be straight: "rigid"'),
-        ('"rigid"', "«rigid»", "quotes must be straight"),
-        ("alpha = 0.2", "alpha = −0.2", "a minus must be the plain one of the keyboard: -"),
+        ('"rigid"', "“rigid”", 'write name = "rigid"'),
+        ('"rigid"', "«rigid»", 'write name = "rigid"'),
+        ("alpha = 0.2", "alpha = −0.2", "write alpha = -0.2"),
     ],
 )
 def test_marks_of_a_word_processor_are_told(tmp_path, old, new, advice):

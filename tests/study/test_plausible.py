@@ -57,6 +57,19 @@ FOUND = [  # part, what stands there, what shall, its key, and what is said
      "[pier]: deck_height_m = 310: 10 times the height of the pier"),
     ("check", "at_most = 0.1", 'statistic = "count"\nabove = 100\nat_most = 2', "above",
      '[[check]] "uplift": above = 100: heel_uplift_m above 0.5302 is past the edge'),
+    ("pier", "mass_t = 3000", "mass_t = 3\ndeck_mass_t = 900", "deck_mass_t",
+     "[pier]: deck_mass_t = 900: 300 times the mass of the pier, mass_t = 3"),
+    ("pier", "mass_t = 3000", "mass_t = 2e3\ndeck_mass_t = 1.2", "deck_mass_t",
+     "[pier]: deck_mass_t = 1.2: 0.0006 times the mass of the pier, mass_t = 2000"),
+    ("pier", "mass_t = 3000", "mass_t = 3\ncolumns = 2\ndeck_mass_t = 900", "deck_mass_t",
+     "[pier]: deck_mass_t = 900: 150 times the mass of the pier, mass_t = 6"),
+    ("pier", "mass_t = 3000", "deck_mass_t = 900\n[[pier.part]]\nmass_t = 1.8\nheight_m = 15", "deck_mass_t",
+     "[pier]: deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8"),
+    ("check", THETA[0], 'demand = "heel_uplift_mm"\nat_most = 0.15', "at_most",
+     '[[check]] "uplift": at_most = 0.15: in mm, as heel_uplift_mm is, less than any pier shows that rocks; 0.15 m are 150 mm'),
+    ("check", THETA[0], 'demand = "top_drift_mm"\nat_most = 1.2', "at_most", '[[check]] "uplift": at_most = 1.2: in mm, as'),
+    ("check", THETA[0], 'demand = "damper_stroke_m"\nat_most = 60', "at_most",
+     '[[check]] "uplift": at_most = 60: damper_stroke_m above 4 is more than the pier is wide'),
 ]  # fmt: skip
 
 
@@ -77,7 +90,9 @@ def problems_of(path):
 
 def at_the_key(text, new, key):
     """``text`` with a line that confirms ``key`` below the last of ``new``, which is of the same table."""
-    return text.replace(new, f'{new}\nconfirm = ["{key}"]')
+    own, part, inner = new.partition("\n[[pier.part]]")
+    own, inner = (own, part + inner) if key in own else (new, "")
+    return text.replace(new, f'{own}\nconfirm = ["{key}"]{inner}')
 
 
 @pytest.mark.parametrize(("part", "old", "new", "key", "said"), FOUND)

@@ -279,9 +279,9 @@ theta_max_over_alpha = 0.1
         6: "[pier]: p = -0.38: expected a number above 0",
         7: "[pier]: mu = nan: expected a finite number",
         10: '[motions]: polarity = "x": expected one of "+", "-"',
-        12: '[motions]: vertical = "yes": expected true, false or "required"',
+        12: '[motions]: vertical = "yes": did you mean true? expected true, false or "required"',
         13: '[motions]: unit = "furlong": expected one of g, ',
-        16: '[[motions.pulse]] "a": shape = "sinus": expected one of "sine", "cosine", ',
+        16: '[[motions.pulse]] "a": shape = "sinus": did you mean "sine"? expected one of "sine", "cosine", ',
         17: '[[motions.pulse]] "a": amplitude_g = 0: expected a number other than 0',
         20: '[[motions.pulse]] "a": duration_s = inf: expected a finite number',
         22: "[numerics]: tolerance = 0: expected a number above 0",
@@ -290,13 +290,13 @@ theta_max_over_alpha = 0.1
         25: "[[case]] no. 1: name is missing",
         27: "[[case]] no. 1: restitution = 2: must be within 0..1",
         28: '[[case]] "1": eta is missing',
-        33: '[[case]] "1": beta = "80": expected a number (without quotes)',
+        33: '[[case]] "1": beta = "80": did you mean 80? expected a number (without quotes)',
         34: '[[case]] "1": epsilon = 1.5: ',
-        35: '[[case]] "1": kinematics = "finit": expected one of "first-order", "finite"; did you mean "finite"?',
+        35: '[[case]] "1": kinematics = "finit": did you mean "finite"? expected one of "first-order", "finite"',
         37: '[[case]] "1": name = "1": given twice',
-        38: '[[case]] "1": base = "yeilding": expected one of "rigid", "elastic", "yielding"; did you mean "yiel',
+        38: '[[case]] "1": base = "yeilding": did you mean "yielding"? expected one of "rigid", "elastic", "yielding"',
         39: '[[reference]] "*": source is missing',
-        41: '[[reference]] "*": case = "ridgid": expected one of "rigid", "1"; did you mean "rigid"?',
+        41: '[[reference]] "*": case = "ridgid": did you mean "rigid"? expected one of "rigid", "1"',
         43: "sloppy: unknown section",
     }
     for line, beginning in expected.items():
@@ -379,7 +379,11 @@ def test_a_pier_is_given_in_one_way_that_can_be(tmp_path, keys, said):
         (case("beta = 40", "eta = 2", "n = 0.5"), 5, "n = 0.5: the Bouc–Wen exponent must be at least 1"),
         (case("beta = 40", "eta = 2", "bta = 3"), 5, "bta: unknown key; did you mean beta?"),
         (case("beta = 40", "eta = 2", "quiet_s = 3"), 5, "quiet_s: unknown key; it belongs under [numerics]"),
-        (case("beta = 40", "eta = 2", 'name = ["a"]'), 5, 'name = ["a"]: expected one value, not a list'),
+        (
+            case("beta = 40", "eta = 2", 'name = ["a"]'),
+            5,
+            'name = ["a"]: did you mean "a"? expected one value, not a list',
+        ),
         ('[case]\nbase = "rigid"\n', 1, "case: expected a list of tables; write [[case]] above each one"),
     ],
 )
@@ -463,7 +467,7 @@ def test_tolerance_and_substeps_exclude_each_other(tmp_path):
             'offset = "pre-event"',
             '5: [motions]: offset = "pre-event": over which time? write for example offset_window',
         ),
-        ('offset = "preevent"', '5: [motions]: offset = "preevent": expected one of "keep", "mean", "pre-event"; did'),
+        ('offset = "preevent"', '5: [motions]: offset = "preevent": did you mean "pre-event"? expected one of'),
         ("offset_window_s = [0, 5]", '5: [motions]: offset_window_s = [0, 5]: is for offset = "pre-event"'),
         (
             'offset = "mean"\noffset_window_s = [0, 5]',
@@ -487,9 +491,9 @@ def test_tolerance_and_substeps_exclude_each_other(tmp_path):
         ("target = { pga_g = 1, period_s = 1 }", "5: [motions.target]: period_s: is for sa_g only"),
         ("[motions.target]\npga_g = -1", "6: [motions.target]: pga_g = -1: expected a number above 0"),
         ('vertical = "always"', '5: [motions]: vertical = "always": expected true, false or "required"'),
-        ("vertical = 1", '5: [motions]: vertical = 1: expected true, false or "required"'),
+        ("vertical = 1", '5: [motions]: vertical = 1: did you mean true? expected true, false or "required"'),
         ("confirm = [1]", "5: [motions]: confirm = 1: expected text in quotes"),
-        ('strict = "yes"', '5: [motions]: strict = "yes": expected true or false'),
+        ('strict = "yes"', '5: [motions]: strict = "yes": did you mean true? expected true or false'),
     ],
 )
 def test_what_makes_a_suite_is_checked_with_its_line(tmp_path, keys, said):

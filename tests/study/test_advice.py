@@ -1,0 +1,431 @@
+"""Mistakes as engineers make them: an answer that is followed to the letter leads to the study that was meant."""
+
+import re
+import tomllib
+
+import pytest
+from studies import write_study
+
+from rockbatch.checks.reading import load_rules
+from rockbatch.errors import InputError
+from rockbatch.motions.manifest import Manifest
+from rockbatch.study import Study, load_study
+
+STUDY = """\
+title = "Pier 4"
+
+[pier]
+width_m = 4.0
+height_m = 30.0
+mass_t = 1800.0
+deck_mass_t = 900.0
+flexural_period_s = 0.6
+
+[motions]
+path = "records"
+vertical = true
+polarity = ["+", "-"]
+scale = 1.5
+unit = "cm/s2"
+dt = 0.01
+axis_deg = 35
+
+[motions.target]
+pga_g = 0.4
+
+[[motions.pulse]]
+name = "pulse"
+shape = "sine"
+amplitude_g = 0.3
+period_s = 1.25
+dt_s = 0.004
+duration_s = 8.0
+
+[numerics]
+tolerance = 1e-3
+quiet_s = 4.0
+
+[output]
+forces = true
+
+[[case]]
+name = "rock"
+base = "rigid"
+restitution = 0.85
+friction = 0.4
+
+[[case]]
+name = "pads"
+base = "yielding"
+stiffness_kN_m = 1.5e6
+yield_kN = [3.0e4, 5.0e4]
+spring = "epp"
+zeta = 0.07
+
+[[case.damper]]
+kind = "viscous"
+coefficient_kN_s_m = 800.0
+exponent = 0.35
+
+[[case.damper]]
+kind = "hysteretic"
+force_kN = 350.0
+yield_mm = 8.0
+
+[[case.tendon]]
+prestress_kN = 4000.0
+stiffness_kN_m = 30000.0
+
+[[case.stop]]
+gap_mm = 120.0
+stiffness_kN_m = 4.0e5
+
+[[check]]
+name = "rotation"
+demand = "theta_max_rad"
+statistic = "mean"
+at_most = 0.05
+basis = "code"
+reason = "bearing rotation"
+
+[[check]]
+name = "uplift"
+demand = "heel_uplift_mm"
+at_most = 150
+reason = "shear keys"
+"""
+REPLACED = [  # what is meant, and what is written instead
+    # the pier
+    ("mass_t = 1800.0", "mass_t = 1,800"),
+    ("mass_t = 1800.0", "mass_t = 1'800"),
+    ("mass_t = 1800.0", "mass_t = 1.800,0"),
+    ("mass_t = 1800.0", "mass_t = 1800 t"),
+    ("mass_t = 1800.0", 'mass_t = "1,800"'),
+    ("mass_t = 1800.0", "mass_t = 1.8e6 kg"),
+    ("mass_t = 1800.0", "mass = 1800.0"),
+    ("mass_t = 1800.0", "pier_mass_t = 1800.0"),
+    ("mass_t = 1800.0", "mass_kg = 1800000"),
+    ("mass_t = 1800.0", "weight_kN = 17658"),
+    ("mass_t = 1800.0", "weight_t = 1800"),
+    ("deck_mass_t = 900.0", "deck_weight_kN = 8829"),
+    ("deck_mass_t = 900.0", "superstructure_mass_t = 900.0"),
+    ("height_m = 30.0", "height_ft = 98.42520"),
+    ("height_m = 30.0", "height [m] = 30.0"),
+    ("height_m = 30.0", "half_height_m = 15.0"),
+    ("width_m = 4.0", "width_mm = 4000"),
+    ("width_m = 4.0", "diameter_m = 4.0"),
+    ("width_m = 4.0", "width_m: 4.0"),
+    ("width_m = 4.0", "width_m 4.0"),
+    ("width_m = 4.0", "width_m = 4.0;"),
+    ("width_m = 4.0", "width_m = 4.0 // m"),
+    ("width_m = 4.0", "width_m\u00a0＝ ４．０"),
+    ("width_m = 4.0", "width_m = 4,0 # larghezza"),
+    ("flexural_period_s = 0.6", "period_s = 0.6"),
+    ("flexural_period_s = 0.6", "T1 = .6"),
+    ("[pier]", "[Pier]"),
+    ("[pier]", "[geometry]"),
+    ("[pier]", "[pier"),
+    # the ground
+    ("[motions]\n", "[ground_motions]\n"),
+    ('path = "records"', 'folder = "records"'),
+    ('path = "records"', 'file = "records"'),
+    ('path = "records"', 'records = "records"'),
+    ('path = "records"', "path = records"),
+    ('path = "records"', "path = .\\records"),
+    ('path = "records"', 'path = "record"'),
+    ('path = "records"', 'path = "records'),
+    ("vertical = true", "vertical = yes"),
+    ("vertical = true", "vertical = 1"),
+    ('polarity = ["+", "-"]', 'polarity = "both"'),
+    ('polarity = ["+", "-"]', "polarity = [+, -]"),
+    ('polarity = ["+", "-"]', 'polarity = ["+", "−"]'),
+    ("scale = 1.5", "scale = 150%"),
+    ("scale = 1.5", 'scale = "1,5"'),
+    ("scale = 1.5", "scale_factor = 1.5"),
+    ('unit = "cm/s2"', 'units = "cm/s2"'),
+    ('unit = "cm/s2"', "unit = cm/s2"),
+    ("dt = 0.01", "dt_s = 0.01"),
+    ("dt = 0.01", "time_step = 0.01"),
+    ("dt = 0.01", "dt = 0.01 s"),
+    ("axis_deg = 35", "azimuth = 35"),
+    ("axis_deg = 35", "axis_deg = 35°"),
+    ("axis_deg = 35", 'axis_deg = "N35E"'),
+    ("pga_g = 0.4", "pga = 0.4"),
+    ("pga_g = 0.4", "pga_m_s2 = 3.924"),
+    ("[[motions.pulse]]", "[motions.pulse]"),
+    ('shape = "sine"', 'type = "sine"'),
+    ('shape = "sine"', 'shape = "sinusoidal"'),
+    ("amplitude_g = 0.3", "pga_g = 0.3"),
+    ("period_s = 1.25", "Tp = 1.25"),
+    ("dt_s = 0.004", "dt = 0.004"),
+    ("dt_s = 0.004", "dt_ms = 4"),
+    ("duration_s = 8.0", "duration_s = 8,0"),
+    # numerics and output
+    ("[numerics]", "[analysis]"),
+    ("tolerance = 1e-3", "tolerance_percent = 0.1"),
+    ("tolerance = 1e-3", "rtol = 1e-3"),
+    ("tolerance = 1e-3", "tolerance = 1×10^-3"),
+    ("quiet_s = 4.0", "free_vibration_s = 4.0"),
+    ("forces = true", 'forces = "true"'),
+    ("forces = true", "forces = True"),
+    # the cases
+    ("[[case]]", "[case]"),
+    ("[[case]]", "[[cases]]"),
+    ("[[case]]", "[foundation]"),
+    ('base = "rigid"', 'base = "fixed"'),
+    ('base = "rigid"', 'foundation = "rigid"'),
+    ('base = "rigid"', "base = „rigid“"),
+    ('base = "rigid"', "base = 「rigid」"),
+    ('base = "rigid"', "base = « rigid »"),
+    ('base = "yielding"', 'base = "inelastic"'),
+    ("restitution = 0.85", "coefficient_of_restitution = 0.85"),
+    ("restitution = 0.85", "cor = 0.85"),
+    ("restitution = 0.85", "restitution = 85"),
+    ("friction = 0.4", "friction_coefficient = 0.4"),
+    ("friction = 0.4", "mu = 0.4"),
+    ("stiffness_kN_m = 1.5e6", "k = 1.5e6"),
+    ("stiffness_kN_m = 1.5e6", "stiffness_MN_m = 1500"),
+    ("stiffness_kN_m = 1.5e6", "stiffness_kN_m = 1.500.000"),
+    ("yield_kN = [3.0e4, 5.0e4]", "Fy_kN = [3.0e4, 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_MN = [30, 50]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = (3.0e4, 5.0e4)"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = [3.0e4; 5.0e4]"),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = [3.0e4, 5.0e4"),
+    ('spring = "epp"', 'spring = "bilinear"'),
+    ('spring = "epp"', 'spring = "elastoplastic"'),
+    ('spring = "epp"', 'spring = "EPP"'),
+    ('spring = "epp"', 'law = "epp"'),
+    ("zeta = 0.07", "damping = 0.07"),
+    ("zeta = 0.07", "damping_percent = 7"),
+    ("zeta = 0.07", "zeta = 7"),
+    ("zeta = 0.07", "ζ = 0,07"),
+    # devices
+    ("[[case.damper]]", "[case.damper]"),
+    ('kind = "viscous"', 'kind = "dashpot"'),
+    ('kind = "viscous"', 'kind = "fluid viscous"'),
+    ('kind = "viscous"', 'type = "viscous"'),
+    ('kind = "hysteretic"', 'kind = "steel"'),
+    ("coefficient_kN_s_m = 800.0", "C = 800.0"),
+    ("coefficient_kN_s_m = 800.0", "c_N_s_m = 800000"),
+    ("exponent = 0.35", "alpha = 0.35"),
+    ("force_kN = 350.0", "yield_kN = 350.0"),
+    ("force_kN = 350.0", "force_N = 350000"),
+    ("yield_mm = 8.0", "yield_m = 0.008"),
+    ("yield_mm = 8.0", "yield_displacement_mm = 8.0"),
+    ("prestress_kN = 4000.0", "pretension_kN = 4000.0"),
+    ("gap_mm = 120.0", "gap_m = 0.12"),
+    # checks
+    ("[[check]]", "[[checks]]"),
+    ("[[check]]", "[check]"),
+    ('demand = "theta_max_rad"', 'demand = "rotation"'),
+    ('demand = "theta_max_rad"', 'demand = "max_rotation_rad"'),
+    ('demand = "theta_max_rad"', 'edp = "theta_max_rad"'),
+    ('statistic = "mean"', 'statistic = "average"'),
+    ('statistic = "mean"', 'statistic = ["mean"]'),
+    ("at_most = 0.05", "limit = 0.05"),
+    ("at_most = 0.05", "max = 0.05"),
+    ("at_most = 0.05", 'at_most = "0,05"'),
+    ('basis = "code"', 'basis = "standard"'),
+    ('reason = "bearing rotation"', 'source = "bearing rotation"'),
+    ('reason = "bearing rotation"', "reason = 'bearing rotation\""),
+]
+TARGET = STUDY.replace(
+    "pga_g = 0.4\n",
+    """\
+spectrum = "EN 1998-1"
+type = 1
+ground = "B"
+ag_g = 0.25
+period_range_s = [0.4, 4.0]
+damping = 0.02
+""",
+)
+OF_TARGET = [
+    ('spectrum = "EN 1998-1"', 'spectrum = "EC8"'),
+    ('spectrum = "EN 1998-1"', 'spectrum = "EN1998-1:2004"'),
+    ('spectrum = "EN 1998-1"', 'code = "EN 1998-1"'),
+    ("type = 1", 'type = "1"'),
+    ('ground = "B"', 'soil_class = "B"'),
+    ('ground = "B"', 'ground = "b"'),
+    ("ag_g = 0.25", "ag_m_s2 = 2.4525"),
+    ("period_range_s = [0.4, 4.0]", "period_range_s = [0,4; 4,0]"),
+    ("period_range_s = [0.4, 4.0]", "periods_s = [0.4, 4.0]"),
+    ("damping = 0.02", "damping = 2"),
+    ("damping = 0.02", "xi = 0.02"),
+]
+MANIFEST = """\
+[[record]]
+file = "a.txt"
+azimuth = 228
+unit = "cm/s2"
+dt = 0.01
+scale = 2.0
+polarity = "-"
+station = "Rinaldi"
+distance_km = 6.5
+magnitude = 6.7
+
+[[record]]
+file = "b.txt"
+role = "vertical"
+use = false
+"""
+OF_MANIFEST = [
+    ("[[record]]", "[record]"),
+    ("[[record]]", "[[records]]"),
+    ('file = "a.txt"', 'filename = "a.txt"'),
+    ('file = "a.txt"', "file = a.txt"),
+    ("azimuth = 228", "direction = 228"),
+    ("azimuth = 228", "azimuth = 228°"),
+    ("azimuth = 228", 'azimuth = "S48W"'),
+    ('unit = "cm/s2"', 'units = "cm/s2"'),
+    ("dt = 0.01", "dt = 0,01"),
+    ("scale = 2.0", "scale_factor = 2.0"),
+    ('polarity = "-"', "polarity = -"),
+    ('polarity = "-"', "flip = true"),
+    ('station = "Rinaldi"', "site = Rinaldi"),
+    ("distance_km = 6.5", "Rrup_km = 6.5"),
+    ("magnitude = 6.7", "Mw = 6.7"),
+    ('role = "vertical"', "vertical = true"),
+    ("use = false", "skip = true"),
+    ("use = false", 'use = "no"'),
+]
+RULES = "[[check]]" + STUDY.partition("[[check]]")[2]
+OF_RULES = [
+    ("[[check]]", "[check]"),
+    ('statistic = "mean"', 'stat = "mean"'),
+    ("at_most = 150", "allowable = 150"),
+    ('reason = "shear keys"', "reason = shear keys"),
+]
+TOLD = [  # what stands in the study, what is written instead or too, what the answer says, and what it must not say
+    ("mass_t = 1800.0", "mass_t = 1,800", "or mass_t = 1.8 if the comma parts decimals", "confirm"),
+    ("mass_t = 1800.0", "mass_t = 1.800", 'deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8; check the', "?"),
+    ("mass_t = 1800.0", "weight = 17658", "write mass_t = 1800 (the weight in kN over 9.81)", "height_m"),
+    ("width_m = 4.0", "slenderness = 7.5", "write alpha = atan(width/height), in radians", "degrees"),
+    ("width_m = 4.0", "depth_m = 4.0", "write one of", "did you mean"),
+    ("width_m = 4.0", "width_m = 4.0\ndamping = 0.05", "did you mean zeta, under [[case]]?", "write"),
+    ("width_m = 4.0", 'width_m = 4.0\nunit = "m"', "units stand in the names of keys; leave it out", "[motions]"),
+    ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "[["),
+    ("tolerance = 1e-3", "dt = 0.001", "write substeps, the number of steps per sample", "[motions]"),
+    ("forces = true", 'path = "out"', "write --out FOLDER behind rockbatch run", "[motions]"),
+    ('kind = "viscous"', 'kind = "friction pendulum"', 'expected one of "friction", "hysteretic", "viscous"', "did you mean"),
+    ("exponent = 0.35", "zeta = 0.35", "write coefficient_kN_s_m, or nu = C/(M p)", "belongs"),
+    ("yield_mm = 8.0", "stiffness_kN_m = 43750", "write yield_mm, the force over the stiffness", "belongs"),
+    ("prestress_kN = 4000.0", "prestress_MPa = 1200", "write prestress_kN, the stress times the area", "did you mean"),
+    ('base = "yielding"', 'base = "yielding"\nname = "stiff"', "keep one, or write [[case]] above if another one begins", "?"),
+    ("at_most = 150", "at_most = 0.15", 'at_most = 0.15: in mm, as heel_uplift_mm is, less than any pier', "?"),
+    ("at_most = 150", 'at_most = 150\nunit = "mm"', "the unit stands in the name of the demand", "[motions]"),
+    ('demand = "heel_uplift_mm"', 'demand = "uplift"', 'did you mean "heel_uplift_m" or "heel_uplift_mm"?', "expected"),
+    ('unit = "cm/s2"', 'unit = "%g"', "expected one of g, g/10, m/s2", "write for example"),
+    ("gap_mm = 120.0", "gap_mm = ", "the value is missing behind the equals sign", "write"),
+    ("at_most = 150", "at_most = 150 mm", "write the number alone, in the unit of the key", '"150'),
+    ("yield_kN = [3.0e4, 5.0e4]", "yield_kN = [\n3.0e4,", "the bracket that opens here does not close", "write"),
+    ("[motions.target]", "[pier]", "write its keys under the [pier] in line 3", "keep one"),
+]  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "records").mkdir()
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).touch()
+    return tmp_path
+
+
+def problems(folder, text, load=load_study):
+    try:
+        load(write_study(folder, text))
+    except InputError as error:
+        return error.problems
+    return ()
+
+
+def followed(text, problem):
+    """Return the text with the advice of a message taken literally, the first where it gives several."""
+    number = int(re.search(r"\.toml:(\d+): ", problem)[1])
+    lines = text.split("\n")
+    line = lines[number - 1]
+    header = re.search(r"write \[\[([\w.]+)\]\](?: in line (\d+), too)?", problem)
+    written = re.search(r"(?:write(?: for example)? |it belongs under )(.+)", problem)
+    meant = re.search(r"did you mean (.+?)(?: or .+)?\?", problem)
+    percent = re.search(r"(\S+) = .*; if it is in percent, write (\S+)$", problem)
+    if percent:
+        lines[number - 1] = f"{percent[1]} = {percent[2]}"
+    elif meant and "unknown" in problem:
+        name = re.search(r"(\S+): unknown", problem)[1].strip('"')
+        lines[number - 1] = line.replace(name, meant[1], 1)
+    elif meant:
+        value = re.search(r" = (.+?): (?:did you mean|expected|no such)", problem)[1]
+        lines[number - 1] = line.replace(value, meant[1], 1)
+    elif header:
+        name, place = header.groups()
+        places = [int(place) - 1] if place else range(len(lines))
+        for n in places:
+            lines[n] = f"[[{name}]]" if lines[n].strip() == f"[{name}]" else lines[n]
+    else:
+        lines[number - 1] = _longest_toml(written[1])
+    return "\n".join(lines)
+
+
+def _longest_toml(advice):
+    ends = [len(advice), *(match.start() for match in re.finditer(r", |; | \(|$", advice))]
+    for end in sorted(ends, reverse=True):
+        try:
+            tomllib.loads(advice[:end])
+        except ValueError:
+            continue
+        return advice[:end]
+    raise AssertionError(f"no TOML in {advice!r}")
+
+
+def told_until_right(folder, text, load=load_study):
+    """Return what is said while the advice is followed, a few times at most, and the text that is right in the end."""
+    messages = []
+    for _ in range(4):
+        wrong = problems(folder, text, load)
+        if not wrong:
+            return messages, text
+        messages.append(wrong[0])
+        text = followed(text, wrong[0])
+    raise AssertionError("\n".join(messages))
+
+
+NUMBER = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]?\d+)?(?![\w.])")
+
+
+def meaning(loaded):
+    """Return all that a study, manifest or file of rules says, its numbers to the six digits of converted ones."""
+    if isinstance(loaded, Study):
+        loaded = (loaded.cases, loaded.motions, loaded.numerics, loaded.output, loaded.checks, loaded.varied)
+    return NUMBER.sub(lambda number: f"{float(number[0]):.5g}", repr(loaded))
+
+
+def manifest(path):
+    read = Manifest.read([path])
+    read.finish()
+    return [sorted(entry.values.items()) for entries in read.entries.values() for entry in entries]
+
+
+@pytest.mark.parametrize(
+    ("whole", "load", "meant", "written"),
+    [
+        *((STUDY, load_study, *row) for row in REPLACED),
+        *((TARGET, load_study, *row) for row in OF_TARGET),
+        *((MANIFEST, manifest, *row) for row in OF_MANIFEST),
+        *((RULES, load_rules, *row) for row in OF_RULES),
+    ],
+)
+def test_advice_followed_to_the_letter_leads_to_what_was_meant(folder, whole, load, meant, written):
+    wrong = whole.replace(meant, written, -1 if written.startswith("[") else 1)
+    assert wrong != whole
+    messages, text = told_until_right(folder, wrong, load)
+    assert messages
+    assert meaning(load(write_study(folder, text))) == meaning(load(write_study(folder, whole)))
+    assert all(len(message.removeprefix(str(folder))) < 250 for message in messages)
+
+
+@pytest.mark.parametrize(("meant", "written", "says", "never"), TOLD)
+def test_what_has_no_equal_is_told_and_nothing_else_suggested(folder, meant, written, says, never):
+    messages = problems(folder, STUDY.replace(meant, written, 1))
+    (message,) = (each.removeprefix(str(folder)) for each in messages if says in each)
+    assert never not in message
