@@ -190,7 +190,7 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
              value="dispersion_total"),
         Head("by shares", ".3g", info.get("by_shares"), value=_of_windows("median")),
-        Head("apart", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
+        Head("apart [%]", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
         Head("note", value="note"),
