@@ -481,13 +481,22 @@ def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_
     assert page.mismatched == []
     assert page.headings == ["Fragility", "The study file"]
     assert len(told["curves"]) == 5
-    medians, factors = page.tables["fragility"][1:6], page.tables["fragility"][6:]
+    rows = page.tables["fragility"]
+    medians, capacities, factors = rows[1:6], rows[7:32], rows[32:]
+    of_csv = read(out / "fragility_capacities.csv")
+    assert [cells[0] for cells in capacities] == [row["record"] for row in of_csv]
+    assert [float(cells[-1]) for cells in capacities] == pytest.approx(
+        [100 * float(row["widest_step"]) for row in of_csv], rel=0.05
+    )
     assert [cells[0] for cells in factors[2:]] == told["scales"]["records"]
     for cells, one in zip(medians, told["curves"], strict=True):
         assert one["limit_state"] in cells[0]
         assert one["note"] == cells[-1] or one["note"] == ""
         if one["median"] is not None:
             assert f"{one['median']:.3g}" in cells
+        if one.get("windows", {}).get("median") is not None:
+            assert f"{one['windows']['median']:.3g}" in cells
+            assert f"{100 * (one['windows']['median'] / one['median'] - 1):+.1f}" in cells
     fitted = [one for one in told["curves"] if one["median"] is not None]
     classes = [value or "" for name, value in page.attributes if name == "class"]
     assert sum(value.startswith("area ") for value in classes) == len(fitted) >= 3

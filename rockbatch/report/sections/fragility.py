@@ -233,7 +233,7 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("case", value=case),
         Head(f"exceeded from [{analysis.info['unit']}]", ".4g", "empty: not up to the highest level", value="at_most"),
         Head("as scale", ".4g", value="scale_at_most"),
-        Head("widest step below [%]", ".2g", "an island of exceedance that is narrower may lie below", value=_step_below),
+        Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below", value=_step_below),
     ]  # fmt: skip
     rows = ({str(name): value for name, value in row.items()} for row in capacities.to_dict("records"))
     return tag("details", tag("summary", "Capacities of the records"), listed(heads, rows, name="Capacities"))
