@@ -38,10 +38,12 @@ class Fragility(Analysis):
     ----------
     fragility : DataFrame
         A row for each limit, case and level of the intensity measure: how many records count, exceed the limit, or are
-        undecided; P(limit | level) by the curve, and what it lies between.
+        undecided; P(limit | level) by the curve, and what it lies between; of incremental dynamic analysis also the share of
+        the scales about the level that exceed the limit, and P by these shares.
     fragility_capacities : DataFrame or None
         Of incremental dynamic analysis: a row for each limit, case and record, with the least intensity that exceeds
-        the limit, in the unit of the levels and as a scale of the record.
+        the limit, in the unit of the levels and as a scale of the record, and the relative width below which nothing was
+        looked at.
     fragility_runs : DataFrame
         All runs, as rows of peaks.csv.
     fragility_scales : DataFrame

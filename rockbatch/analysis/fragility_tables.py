@@ -145,8 +145,7 @@ def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     if hunted:
         width = f"{100 * next(iter(hunted.values())):g} %"
         parts.append(
-            f"in steps of {width} from the lowest level up ({', '.join(hunted)}): islands of exceedance narrower than that may "
-            "lie below a capacity, and the median may be too high"
+            f"in steps of {width} from the lowest level up ({', '.join(hunted)}): narrower islands of exceedance may lie below"
         )
     if not_hunted:
         apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
@@ -230,7 +229,7 @@ def by_shares(curves: Sequence[Curve]) -> str:
         return ""
     return (
         f"by shares: the median of a curve through the share of the scales within ±{widths[0]} of each level that exceed the "
-        "limit; it does not depend on how finely first exceedances are hunted for"
+        "limit, which no hunt changes"
     )
 
 

@@ -35,6 +35,9 @@ def fragility(table: "pd.DataFrame", curves: Sequence[Curve], width_mm: float) -
         axes.plot(rows["level"], share, **marks(place), label=f"{names[place]}, records")
         if not isinstance(curve.fitted, str):
             axes.plot(levels, curve.fitted.probability(levels), label=names[place], **line(place))
+        if curve.windows and not isinstance(curve.windows.fitted, str):
+            by_shares = line(place) | {"linestyle": "-."}
+            axes.plot(levels, curve.windows.fitted.probability(levels), label=f"{names[place]}, by shares", **by_shares)
     for axes, limit in zip(grid, limits, strict=True):
         axes.set(xlabel=f"{table['measure'].iloc[0]} [{table['unit'].iloc[0]}]", ylim=(0, 1.01), title=limit)
     grid[0].set_ylabel("probability that it is exceeded")

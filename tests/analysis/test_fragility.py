@@ -435,6 +435,8 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
         (f"{STRIPES}\ntolerance = 0.1", ['tolerance = 0.1: is for method = "ida"; write that too']),
         (f"{STRIPES}\nhunt_step = 0.1", ['hunt_step = 0.1: is for method = "ida"']),
         (f"{IDA}\nhunt_step = 1e-4", ["hunt_step = 0.0001: expected a number from 0.001 to 1"]),
+        (f"{STRIPES}\nwindow = 0.02", ['window = 0.02: is for method = "ida"']),
+        (f"{IDA}\nwindow = 2", ["window = 2: expected a number from 0.001 to 0.2"]),
         (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
         (
             f'{STRIPES}\nchecks = ["half-way"]',
@@ -479,13 +481,22 @@ def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_
     assert page.mismatched == []
     assert page.headings == ["Fragility", "The study file"]
     assert len(told["curves"]) == 5
-    medians, factors = page.tables["fragility"][1:6], page.tables["fragility"][6:]
+    rows = page.tables["fragility"]
+    medians, capacities, factors = rows[1:6], rows[7:32], rows[32:]
+    of_csv = read(out / "fragility_capacities.csv")
+    assert [cells[0] for cells in capacities] == [row["record"] for row in of_csv]
+    assert [float(cells[-1]) for cells in capacities] == pytest.approx(
+        [100 * float(row["widest_step"]) for row in of_csv], rel=0.05
+    )
     assert [cells[0] for cells in factors[2:]] == told["scales"]["records"]
     for cells, one in zip(medians, told["curves"], strict=True):
         assert one["limit_state"] in cells[0]
         assert one["note"] == cells[-1] or one["note"] == ""
         if one["median"] is not None:
             assert f"{one['median']:.3g}" in cells
+        if one.get("windows", {}).get("median") is not None:
+            assert f"{one['windows']['median']:.3g}" in cells
+            assert f"{100 * (one['windows']['median'] / one['median'] - 1):+.1f}" in cells
     fitted = [one for one in told["curves"] if one["median"] is not None]
     classes = [value or "" for name, value in page.attributes if name == "class"]
     assert sum(value.startswith("area ") for value in classes) == len(fitted) >= 3
@@ -503,10 +514,10 @@ def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_p
 
 
 def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(tmp_path, capsys):
-    """On rigid ground in steps of 1 % up to the greatest capacity, a single dash; on pads at the four levels, a dash each."""
+    """On rigid ground in steps of 0.25 % up to the greatest capacity, a single dash; on pads at the four levels, a dash each."""
     page, out = page_of(tmp_path, IDA)
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
-    words = "in steps of 1 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
+    words = "in steps of 0.25 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
     for text in (page.text, capsys.readouterr().out):
         assert [text.count(each) for each in words] == [1, 1]
     by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}
@@ -516,7 +527,7 @@ def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(tmp_path
     bounds = [float(row["at_most"] or "inf") for row in capacities if row["case"] == "rigid"]
     assert (low, high) == (0.2, pytest.approx(min(max(bounds), 0.8)))
     steps = {case: [float(row["widest_step"]) for row in capacities if row["case"] == case] for case in by_case}
-    assert max(steps["rigid"]) <= 0.01 + 1e-9
+    assert max(steps["rigid"]) <= 0.0025 + 1e-9
     assert max(steps["pads"]) >= 0.3
 
 
@@ -524,7 +535,7 @@ def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
     spec = read_fragility(load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.05")))
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.05, 0.05]
     spec = read_fragility(load_study(written(tmp_path, IDA)))
-    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.01, None]
+    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
 
 
 def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):

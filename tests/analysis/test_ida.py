@@ -14,6 +14,12 @@ def capacity_of(states):
     return capacity(dict(zip(LEVELS, states, strict=True)), LEVELS)
 
 
+def test_runs_beyond_the_levels_are_no_part_of_the_hunt():
+    """A window about the highest level ends above it, where a capacity that the levels do not reach stays open."""
+    looks = {0.39: EXCEEDED, 0.4: WITHSTOOD, 0.8: WITHSTOOD, 0.81: EXCEEDED}
+    assert capacity(looks, [0.4, 0.8]).decided == (0.8, math.inf)
+
+
 def decided(low, high, returns=0, widest_step=1.0):
     return Capacity(*3 * (Bracket(low, high),), undecided=0, returns=returns, widest_step=widest_step)
 

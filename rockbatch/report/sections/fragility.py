@@ -190,7 +190,7 @@ def _table(info: Mapping[str, Any], share: str) -> Markup:
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
              value="dispersion_total"),
         Head("by shares", ".3g", info.get("by_shares"), value=_of_windows("median")),
-        Head("apart", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
+        Head("apart [%]", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
         Head("note", value="note"),
@@ -233,7 +233,7 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("case", value=case),
         Head(f"exceeded from [{analysis.info['unit']}]", ".4g", "empty: not up to the highest level", value="at_most"),
         Head("as scale", ".4g", value="scale_at_most"),
-        Head("widest step below [%]", ".2g", "an island of exceedance that is narrower may lie below", value=_step_below),
+        Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below", value=_step_below),
     ]  # fmt: skip
     rows = ({str(name): value for name, value in row.items()} for row in capacities.to_dict("records"))
     return tag("details", tag("summary", "Capacities of the records"), listed(heads, rows, name="Capacities"))
