@@ -85,7 +85,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = f'; {share} the springs ratchet on undamped vibration: add zeta, or take spring = "epp" or "hardening"'
+        advice = f'; {share} the springs ratchet on free vibration: take spring = "epp" or "hardening", or zeta of 0.2 or more'
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 

@@ -45,7 +45,7 @@ def greatest_change(quantities: Mapping[str, Sized], fine: Any, coarse: Any, pie
     return worst, changes[worst]
 
 
-_OF_DEVICES = {
+OF_DEVICES = {
     field.replace("_", " "): Sized((field,), scale)
     for field, scale in {
         "damper_force": "share",
@@ -68,4 +68,4 @@ def change_of_devices(fine: Outcome, coarse: Outcome, pier: Pier) -> float | Non
     """Return the error of the demands on devices; None without any."""
     if fine.damper_force is fine.tendon_force is fine.stop_force is fine.deck_spring_force is None:
         return None
-    return greatest_change(_OF_DEVICES, fine, coarse, pier)[1]
+    return greatest_change(OF_DEVICES, fine, coarse, pier)[1]

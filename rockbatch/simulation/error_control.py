@@ -39,6 +39,9 @@ CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
 MARGIN = 2.0
 """Error that is claimed at least, over what one of :data:`CHANGES` or the drift between readings moves: neither is the most."""
 
+CHANCE = 4.0
+"""Error of the peak within a motion that is claimed, over what halving the step still changed: no third trial confirms it."""
+
 SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
 
@@ -247,11 +250,12 @@ def _with_peak_in_motion(
 ) -> Outcome:
     """Return ``outcome``, that of ``fine``, with the error of the peak within the motion, whose last window is ``until``.
 
-    It has none if ``coarse``, with twice the step, does not agree to the ``tolerance`` [rad] until then.
+    It is :data:`CHANCE` times the greatest change of any extreme until then from ``coarse``, of twice the step. It has none if
+    that is above the ``tolerance`` [rad].
     """
-    change = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
-    before = _windows(fine, coarse)[1][:until]
-    if outcome.theta_max_in_motion == ON_ITS_SIDE or not change <= tolerance or (before > tolerance).any():
+    peaks = abs(fine.outcome.theta_max_in_motion - coarse.outcome.theta_max_in_motion)
+    change = CHANCE * max(peaks, float(_windows(fine, coarse)[1][:until].max(initial=0.0)))
+    if outcome.theta_max_in_motion == ON_ITS_SIDE or not change <= tolerance:
         return outcome
     return outcome.changed(change_in_motion=max(change, _least_error(run.base) * run.pier.alpha))
 

@@ -58,8 +58,8 @@ _STATUS = {
     types.UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
     types.GROWING: (
         "failed",
-        f"left alone after the record, {RATCHETS}: yielding springs ratchet on vibration that nothing damps; zeta damps it, and "
-        'spring = "epp" and "hardening" ratchet least',
+        f"left alone after the record, {RATCHETS}: yielding springs ratchet on free vibration; "
+        'spring = "epp" and "hardening" do so least',
     ),
 }
 

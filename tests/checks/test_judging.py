@@ -414,6 +414,30 @@ def test_the_error_of_forces_is_a_share_of_each_and_leaves_a_limit_within_it_und
 
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.device])
+def test_the_error_of_devices_is_a_share_of_each_demand_but_counts_and_leaves_a_limit_within_it_undecided(demand):
+    value, _ = BY_HAND[demand]
+    found = judged(runs([0.3], **ROW, devices_error=0.02), one=TIED, demand=demand, at_most=1.01 * value)
+    share = 0.0 if demand in ("tendon_slack", "stop_blows", "deck_spring_blows") else 0.02
+    assert (found.low, found.high) == (pytest.approx((1 - share) * value), pytest.approx((1 + share) * value))
+    assert found.verdict == ("not decided" if share else "pass")
+
+
+@pytest.mark.parametrize(
+    ("reached", "error", "verdict"),
+    [(0.6, 0.01, "fail"), (0.505, 0.01, "not decided"), (0.6, math.nan, "not decided"), (0.4, 0.01, "not decided")],
+)
+def test_a_run_that_failed_after_its_motion_breaks_a_limit_that_it_passed_before(reached, error, verdict):
+    failed = runs([0.9], status="failed", reason="left alone")
+    failed[["theta_max_in_motion_over_alpha", "theta_max_in_motion_error"]] = reached, error
+    found = judged(pd.concat([failed, runs([0.1], record="other", station="other")]))
+    assert (found.verdict, found.high) == (verdict, INF)
+    assert found.low == pytest.approx(0.1 if math.isnan(error) else reached - error)
+    radians = judged(failed, demand="theta_max_rad", at_most=0.5 * 0.2)
+    assert radians.verdict == verdict
+    assert judged(failed, demand="settlement_m", at_most=0.0).verdict == "not decided"
+
+
+@pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.device])
 def test_a_demand_on_a_device_does_not_apply_to_a_pier_without(demand):
     others = {
         "damper": Tendon(psi=0.1),
