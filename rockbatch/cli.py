@@ -17,7 +17,7 @@ from rockbatch.errors import AboutResults, InputError
 
 EXIT_CODES = """exit codes:
   0    all is fine
-  1    a record could not be used, a run failed, or a check did not pass; a case without a check is none of these
+  1    a record could not be used, a run failed, or a check did not pass
   2    the input is wrong, and nothing was run
   130  interrupted; what is finished is kept"""
 
