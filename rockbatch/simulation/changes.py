@@ -11,6 +11,10 @@ FLOOR = 0.01
 """Share of a quantity's scale below which it governs no design: an error is a share of no less than that."""
 
 
+LEAST = 1e-8
+"""Least error of demands on devices that is claimed, as a share: two runs may agree by chance better than either is right."""
+
+
 class Sized(NamedTuple):
     """Fields that make one quantity, such as those of both pivots, and its scale, one of :func:`scales_of`."""
 
@@ -68,4 +72,4 @@ def change_of_devices(fine: Outcome, coarse: Outcome, pier: Pier) -> float | Non
     """Return the error of the demands on devices; None without any."""
     if fine.damper_force is fine.tendon_force is fine.stop_force is fine.deck_spring_force is None:
         return None
-    return greatest_change(OF_DEVICES, fine, coarse, pier)[1]
+    return max(greatest_change(OF_DEVICES, fine, coarse, pier)[1], LEAST)
