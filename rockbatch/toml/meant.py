@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rockbatch.common.grouping import closest
@@ -101,19 +101,25 @@ def words_meant(word: str, options: Iterable[str], called: Mapping[str, Any]) ->
     A tuple in ``called`` has several; anything else is the value itself.
     """
     options = list(options)
+    if meant := _same_words(word, options, called):
+        return meant
+    if nearest := closest(word, options, _ALIKE):
+        return [nearest]
+    less = "_".join(token for token in re.split(r"[\s_-]+", word) if token.lower() not in _FILLING | _GREATEST)
+    return _same_words(less, options, called)
+
+
+def _same_words(word: str, options: Sequence[str], called: Mapping[str, Any]) -> list[Any]:
+    """Return the options that a word is but for case and signs, that are ``called`` so, hold all of it, or begin with it."""
     same = [option for option in options if (plain(option) or option) == (plain(word) or ascii_marks(word))]
     if same or not plain(word):
         return same
-    less = "_".join(token for token in re.split(r"[\s_-]+", word) if token.lower() not in _FILLING | _GREATEST)
-    if plain(less) != plain(word) and (meant := words_meant(less, options, called)):
-        return meant
     stem, quantity, _ = quantity_of(word)
     meant = called.get(plain(word), called.get(plain(stem)))
     if meant is not None:
         several = list(meant) if isinstance(meant, tuple) else [meant]
         return [option for option in several if quantity and quantity_of(str(option))[1] == quantity] or several
-    tokens = _tokens(stem)
-    unit = word[len(stem) :] if quantity else ""
+    tokens, unit = _tokens(stem), word[len(stem) :] if quantity else ""
     lengths = {
         option: len(its)
         for option in options
@@ -121,11 +127,7 @@ def words_meant(word: str, options: Iterable[str], called: Mapping[str, Any]) ->
     }
     if lengths and any(len(token) > 2 for token in tokens):
         return [option for option, length in lengths.items() if length == min(lengths.values())]
-    beginning = [option for option in options if len(plain(word)) > 2 and plain(option).startswith(plain(word))]
-    if beginning:
-        return beginning
-    nearest = closest(word, options, _ALIKE)
-    return [nearest] if nearest else []
+    return [option for option in options if len(plain(word)) > 2 and plain(option).startswith(plain(word))]
 
 
 def known_as(name: str, keys: Mapping[str, str], also: Mapping[str, Also]) -> Meant | None:

@@ -417,7 +417,7 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
     ("fragility", "words"),
     [
         ("", ["measure is missing"]),
-        ('measure = "PGD"', ['expected one of "PGA", "PGV", "Sa"; did you mean']),
+        ('measure = "PGD"', ['measure = "PGD": expected one of "PGA", "PGV", "Sa"']),
         ('measure = "PGA"', ["levels_g is missing"]),
         (
             'measure = "PGA"\nlevels_m_s = [0.2, 0.4]',
