@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from enum import IntEnum
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +47,9 @@ SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
 
 COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
+
+RISES = 300.0
+"""An extreme behind the peak is no rival of it if it is below it by so many times its change by halving the step."""
 
 FAR_BELOW = 3.0
 """An extreme that has not converged is harmless if it is below the peak by so many times its change."""
@@ -111,7 +115,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 magnifies = _magnifies(runs[i], fine, coarse, outcome, until)
                 if magnifies and extent == Agreement.RESULTS:
                     outcome = _without_error(outcome, "other peaks near it follow the step")
-                if magnifies or _may_be_chaotic(outcome, coarse.outcome, len(agreements[i])):
+                if magnifies or _residuals_wander(levels[i], tolerance * pier.alpha, pier):
                     doubtful[i] = fine
                 outcomes[i] = outcome
                 del levels[i]
@@ -142,14 +146,24 @@ def _magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: in
     if claimed is None:
         peak, claimed = outcome.theta_max_in_motion, outcome.change_in_motion
         greatest, change = greatest[: until + 1], change[: until + 1]
+    later = np.arange(len(greatest)) > greatest.argmax()
+    change[later & (greatest + RISES * change < peak)] = 0.0
     resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
     magnified = change * greatest > SENSITIVE * run.pier.alpha * peak * resolved**2
     return claimed is not None and bool(magnified.any())
 
 
-def _may_be_chaotic(outcome: Outcome, coarse: Outcome, halvings: int) -> bool:
-    """Return whether the residuals of a run may be chaotic: they are sums over the motion, so that rotations do not show it."""
-    return outcome.theta_res_error is not None and (halvings > 1 or not _same_counts(outcome, coarse))
+def _residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:
+    """Return whether the residuals of a run that converged may be chaotic; as sums over the motion they do not show in rotations.
+
+    Counts of events then differ between the last two ``levels``, or residuals between earlier ones.
+    """
+    outcomes = [trial.outcome for trial in levels]
+    if outcomes[-1].theta_res_error is None:
+        return False
+    return not _same_counts(outcomes[-1], outcomes[-2]) or any(
+        _residuals_apart(coarse, fine, pier) > tolerance for coarse, fine in pairwise(outcomes[:-1])
+    )
 
 
 def _look_for_chaos(
@@ -204,22 +218,27 @@ def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier:
     """Return ``outcome`` with errors of its residuals of at least what ``probe`` tells; none if they are chaotic."""
     if outcome.theta_res_error is None:
         return outcome
-    tilted = MARGIN * _apart(probe.theta_res, outcome.theta_res)
-    sunk = MARGIN * _apart(probe.settlement, outcome.settlement)
-    if max(tilted, sunk / pier.half_width) > tolerance * pier.alpha:
+    if MARGIN * _residuals_apart(probe, outcome, pier) > tolerance * pier.alpha:
         chaos = (
             f"the residuals are {CHAOTIC}, a motion {CHANGES['stronger']:g} off moves them: no error of them is claimed"
         )
         return outcome.noted(chaos, theta_res_error=None, settlement_error=None)
+    tilted, sunk = (MARGIN * _apart(probe, outcome, name) for name in ("theta_res", "settlement"))
     settlement_error = None if outcome.settlement_error is None else max(outcome.settlement_error, sunk)
     return outcome.changed(theta_res_error=max(outcome.theta_res_error, tilted), settlement_error=settlement_error)
 
 
-def _apart(probed: float | None, kept: float | None) -> float:
-    """Return how far two results lie apart: 0 where a run has none, infinite where the other alone has it."""
-    if kept is None:
-        return 0.0
-    return math.inf if probed is None else abs(probed - kept)
+def _residuals_apart(one: Outcome, other: Outcome, pier: Pier) -> float:
+    """Return how far the residuals of two outcomes lie apart, the settlements over half the width [rad]."""
+    return max(_apart(one, other, "theta_res"), _apart(one, other, "settlement") / pier.half_width)
+
+
+def _apart(one: Outcome, other: Outcome, name: str) -> float:
+    """Return how far a result of two outcomes lies apart: 0 where neither has one, infinite where one alone has it."""
+    first, second = getattr(one, name), getattr(other, name)
+    if first is None or second is None:
+        return 0.0 if first is second else math.inf
+    return float(abs(first - second))
 
 
 def _steps_of_next(run: Run, levels: Sequence[Trial], quiet_s: float) -> float:
