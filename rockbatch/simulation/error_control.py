@@ -48,8 +48,9 @@ SENSITIVE = 0.05
 
 COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
 
-RISES = 300.0
-"""An extreme behind the peak is no rival of it if it is below it by so many times its change by halving the step."""
+RISES, FALLS = 300.0, 0.5
+"""An extreme behind the peak is harmless if so many times its change by halving the step bring it neither to the peak nor to
+this rotation over α, from which a pier may fall."""
 
 FAR_BELOW = 3.0
 """An extreme that has not converged is harmless if it is below the peak by so many times its change."""
@@ -147,7 +148,7 @@ def _magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: in
         peak, claimed = outcome.theta_max_in_motion, outcome.change_in_motion
         greatest, change = greatest[: until + 1], change[: until + 1]
     later = np.arange(len(greatest)) > greatest.argmax()
-    change[later & (greatest + RISES * change < peak)] = 0.0
+    change[later & (greatest + RISES * change < min(peak, FALLS * run.pier.alpha))] = 0.0
     resolved = max(fastest_rate(run.pier, run.base), run.pier.p) * run.motion.dt / outcome.substeps
     magnified = change * greatest > SENSITIVE * run.pier.alpha * peak * resolved**2
     return claimed is not None and bool(magnified.any())
