@@ -14,7 +14,8 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, V
 from rockbatch.common.grouping import grouped
 from rockbatch.toml.kinds import shown
 
-MOST_NAMES = 6
+MOST_NAMES, MOST_ENDS = 6, 3
+"""Names of cases that are listed, and of those with how many of their runs do not end standing."""
 MOST_CHECKS = 3
 """Greatest number of checks that fail or are not decided with a line each in the answer."""
 
@@ -189,8 +190,9 @@ class _Cases:
         ends = {name: self.runs[name].in_words if name in self.runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
         words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
-        more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
-        return _listed(words) + (f", {more} of them with runs that do not end standing" if more else "")
+        most = MOST_ENDS if any(ends.values()) else MOST_NAMES
+        more = sum(bool(ends[name]) for name in order[most:])
+        return _listed(words, most=most) + (f", {more} of them with runs that do not end standing" if more else "")
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return which of these cases have runs that do not end standing, in a sentence."""
@@ -293,6 +295,6 @@ def _capital(words: str) -> str:
     return words[0].upper() + words[1:]
 
 
-def _listed(names: Sequence[str], comma: str = "; ") -> str:
-    more = len(names) - MOST_NAMES
-    return comma.join(names[:MOST_NAMES]) + (f"{comma}and {more} more" if more > 0 else "")
+def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_NAMES) -> str:
+    more = len(names) - most
+    return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")

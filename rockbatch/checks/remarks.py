@@ -19,10 +19,8 @@ def weak_supports(cases: Sequence[Case]) -> str:
     borne = most if least == most else f"{least} to {most}"
     weak = [cases[i] for i in shares]
     load = "weight and prestress" if any(map(_prestress, weak)) else "weight"
-    return (
-        f"{_named(weak, cases)}: the supports yield before the pier can step; one alone bears {borne} % of the {load}, and "
-        "lift-off is not reached under any steady acceleration"
-    )
+    named = _named(weak, cases)
+    return f"{named}: the supports yield before the pier can step, lift-off is not reached: one bears {borne} % of the {load}"
 
 
 def undamped_settlement(worst: Sequence[Worst]) -> str:
@@ -39,8 +37,7 @@ def undamped_settlement(worst: Sequence[Worst]) -> str:
     if not undamped:
         return ""
     return (
-        f"{_named(undamped, settled)}: the settlement counts vertical vibration that nothing damps between landings (no zeta); "
-        "zeta = 0.05 may leave a fraction of it"
+        f"{_named(undamped, settled)}: without zeta nothing damps the vertical vibration, which adds to the settlement"
     )
 
 
@@ -69,8 +66,7 @@ def _named(cases: Iterable[Case], among: Sequence[Case]) -> str:
         for case in of_name if len(of_name) < len(every[name]) else of_name[:1]:
             values = case["columns"].items() if len(of_name) < len(every[name]) else ()
             names.append(" ".join([name, *(f"{key}={_written(value)}" for key, value in values)]))
-    more = len(names) - MOST_NAMES
-    return "; ".join(names[:MOST_NAMES]) + (f"; and {more} more" if more > 0 else "")
+    return "; ".join(names) if len(names) <= MOST_NAMES else f"{len(names)} of {len(among)} cases"
 
 
 def _written(value: float | str) -> str:

@@ -13,7 +13,7 @@ LEAST, MOST = 1e-15, 1e15
 
 def of_percent(value: float, low: float, high: float) -> float | None:
     """Return the share that a value above it probably is in percent, if the bounds are those of a share."""
-    return value / 100.0 if low == 0.0 and high == 1.0 < value <= 100.0 else None
+    return value / 100.0 if low == 0.0 and high == 1.0 and 2.0 <= value <= 100.0 else None
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import MOST_NAMES, answer
+from rockbatch.checks.answer import MOST_ENDS, answer
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
@@ -159,9 +159,9 @@ def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted(
     fallen = {f"c{i}": {"overturned": 1 + i % 2} for i in range(90, 100)}
     (line,) = lines([verdict("c0", "pass")], runs=all_runs(**{f"c{i}": {} for i in range(90)}, **fallen))
     assert line.text == "1 of 100 cases passes; 99 are not checked"
-    assert line.details[0].count("2 of 10 runs overturned") == 5
-    rest = len(fallen) - MOST_NAMES
-    assert line.details[0].endswith(f"and {99 - MOST_NAMES} more, {rest} of them with runs that do not end standing.")
+    assert line.details[0].count("2 of 10 runs overturned") == MOST_ENDS
+    rest = len(fallen) - MOST_ENDS
+    assert line.details[0].endswith(f"and {99 - MOST_ENDS} more, {rest} of them with runs that do not end standing.")
 
 
 def test_overturning_that_checks_leave_out_is_told_beside_the_green_and_takes_it_if_nothing_stands():

@@ -10,7 +10,7 @@ from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
 from rockbatch.checks.suite import NOT_RUN
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
-from rockbatch.report.markup import Markup, join, number, paragraphs, tag
+from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
 from rockbatch.report.table import alarm
@@ -31,7 +31,7 @@ def section(finished: Finished) -> Markup:
     """Return the first screen; every check and every run follow further down."""
     weak = weak_supports(finished.info["cases"])
     passes = tag("div", verdicts.answer(finished), class_="lead")
-    return join(paragraphs(alarm(weak)) if weak else "", passes, worst(finished), by_record(finished))
+    return join(tag("div", alarm(weak)) if weak else "", passes, worst(finished), by_record(finished))
 
 
 def worst(finished: Finished) -> Markup:
