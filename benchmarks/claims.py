@@ -30,7 +30,7 @@ from independent import pool
 
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, Pier
-from rockbatch.simulation import error_control, run_all_to_tolerance
+from rockbatch.simulation import chaos, run_all_to_tolerance
 from rockbatch.simulation.models import readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed
@@ -168,14 +168,14 @@ def cost(base: str, count: int, seed: int, repeats: int) -> str:
     """Return what the error control's changed motions add to the time of the pool."""
     runs = [Run(pier, base, motion) for _, pier, base, motion in cases(base, count, seed)]
     times: dict[bool, list[float]] = {True: [], False: []}
-    changes = error_control.CHANGES
+    changes = chaos.CHANGES
     for _ in range(repeats + 1):  # the first compiles
         for probed in (True, False):
-            error_control.CHANGES = changes if probed else {}
+            chaos.CHANGES = changes if probed else {}
             start = time.process_time()
             run_all_to_tolerance(runs, TOLERANCE, QUIET_S, Stop())
             times[probed].append(time.process_time() - start)
-    error_control.CHANGES = changes
+    chaos.CHANGES = changes
     whole, without = min(times[True][1:]), min(times[False][1:])
     return f"{whole:.2f} s with changed motions, {without:.2f} s without: {whole / without - 1.0:.1%}"
 

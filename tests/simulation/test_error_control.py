@@ -14,6 +14,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import (
     Run,
+    chaos,
     error_control,
     first_substeps,
     least_substeps,
@@ -56,6 +57,7 @@ def scripted(monkeypatch, *outcomes, stronger=None, weaker=None):
         return trials
 
     monkeypatch.setattr(error_control, "try_all", run)
+    monkeypatch.setattr(chaos, "try_all", run)
     return asked
 
 

@@ -1,0 +1,99 @@
+"""Agreement of two trials of a run: in outcome, peak, residual rotation, trajectory and counts of events."""
+
+import math
+from collections.abc import Sequence
+from enum import IntEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.motions.motion import Samples
+from rockbatch.pier import Pier
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.runs import LEFT_ALONE, Trial
+
+SAME_TIME = 0.01
+"""In units of 1/p: tolerance on the time of overturning, of flight and of the peak."""
+
+SAME_FALL = 0.02
+"""In units of α: tolerance on the rotations before a pier overturned."""
+
+COUNTS = ("impacts", "separations", "flights", "tendon_slack", "stop_blows", "deck_spring_blows")
+
+FAR_BELOW = 3.0
+"""An extreme that has not converged is harmless if it is below the peak by so many times its change."""
+
+SAME_COURSE = 1e-3
+"""In units of the peak: change of an extreme up to which two runs with different counts of events had the same course."""
+
+
+class Agreement(IntEnum):
+    """Extent to which two trials of a run agree."""
+
+    NONE = 0
+    RESULTS = 1  # in outcome, peak and residual rotation; its time, or other extremes near the peak, have not converged
+    APART = 2  # likewise, and the extremes that have not converged are far below the peak
+    THROUGHOUT = 3  # in the extremes of all windows too, and in the counts of events unless their course is the same
+
+
+PAIRS = {Agreement.THROUGHOUT: 1, Agreement.APART: 2, Agreement.RESULTS: 4}
+"""Halvings in a row that have to agree to this extent at least: the less two runs have in common, the more it takes."""
+
+
+def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agreement:
+    """Return how far two runs agree; ``tolerance`` on rotations [rad]."""
+    finer, coarser = fine.outcome, coarse.outcome
+    if finer.status != coarser.status:
+        return Agreement.NONE
+    if finer.status == "failed":
+        moved = abs(finer.theta_max_in_motion - coarser.theta_max_in_motion)  # what comes after it is no result
+        alike = finer.reason == coarser.reason and moved <= tolerance
+        return Agreement.THROUGHOUT if alike and finer.reason in LEFT_ALONE else Agreement.NONE
+    greatest, change = windows(fine, coarse)
+    if finer.status == "overturned":
+        standing = greatest < pier.alpha
+        fell_together = abs(finer.t_end - coarser.t_end) <= SAME_TIME / pier.p
+        together = fell_together and not (change[standing] > max(tolerance, SAME_FALL * pier.alpha)).any()
+        return Agreement.THROUGHOUT if together else Agreement.NONE
+    if finer.status == "flight" and abs(flight_of(finer) - flight_of(coarser)) > SAME_TIME / pier.p:
+        return Agreement.NONE
+    if max(finer.theta_max_error or 0.0, finer.theta_res_error or 0.0) > tolerance:
+        return Agreement.NONE
+    if abs(finer.t_max - coarser.t_max) > SAME_TIME / pier.p:  # another peak of about the same height
+        return Agreement.RESULTS
+    differs = change > tolerance
+    if not differs.any():
+        same = same_counts(finer, coarser) or not (change > SAME_COURSE * finer.theta_max).any()
+        return Agreement.THROUGHOUT if same else Agreement.APART
+    return Agreement.APART if far_below(greatest, change, differs, finer.theta_max) else Agreement.RESULTS
+
+
+def settled(agreements: Sequence[Agreement]) -> Agreement:
+    """Return the extent to which the last of ``agreements``, from one halving to the next, suffice; NONE if they do not."""
+    for least, pairs in PAIRS.items():
+        last = agreements[-pairs:]
+        if len(last) == pairs and min(last) >= least:
+            return least
+    return Agreement.NONE
+
+
+def same_counts(fine: Outcome, coarse: Outcome) -> bool:
+    """Return whether two outcomes have the same counts of events."""
+    return all(getattr(fine, name) == getattr(coarse, name) for name in COUNTS)
+
+
+def windows(fine: Trial, coarse: Trial) -> tuple[Samples, Samples]:
+    """Return the greater of two runs' extremes in each window, and how far they lie apart [rad]; 0 where neither has one."""
+    greatest, change = np.fmax(fine.extremes, coarse.extremes), np.abs(fine.extremes - coarse.extremes)
+    change[np.isnan(change)] = math.inf  # a window that one of them has not reached
+    reached = ~np.isnan(greatest)
+    return np.where(reached, greatest, 0.0), np.where(reached, change, 0.0)
+
+
+def far_below(greatest: Samples, change: Samples, differs: npt.NDArray[np.bool_], peak: float) -> bool:
+    """Return whether the extremes that differ are below the ``peak`` by several times their change."""
+    return bool((FAR_BELOW * change[differs] <= peak - greatest[differs]).all())
+
+
+def flight_of(outcome: Outcome) -> float:
+    return math.nan if outcome.t_flight is None else outcome.t_flight
