@@ -23,6 +23,9 @@ MARGIN = 2.0
 SENSITIVE = 0.05
 """Change of the trajectory by halving the step, over α and (ω dt/k)², beyond which a run is tried under :data:`CHANGES`."""
 
+NEARER = 4.0
+"""Least factor by which halving the step brings residuals nearer that converge as the method does."""
+
 RISES, FALLS = 300.0, 0.5
 """An extreme behind the peak is harmless if so many times its change by halving the step bring it neither to the peak nor to
 this rotation over α, from which a pier may fall."""
@@ -48,14 +51,15 @@ def magnifies(run: Run, fine: Trial, coarse: Trial, outcome: Outcome, until: int
 def residuals_wander(levels: Sequence[Trial], tolerance: float, pier: Pier) -> bool:
     """Return whether the residuals of a run that converged may be chaotic; as sums over the motion they do not show in rotations.
 
-    Counts of events then differ between the last two ``levels``, or residuals between earlier ones.
+    Counts of events then differ between the last two ``levels``, or residuals did not come nearer by :data:`NEARER` from one
+    halving to the next.
     """
     outcomes = [trial.outcome for trial in levels]
     if outcomes[-1].theta_res_error is None:
         return False
-    return not same_counts(outcomes[-1], outcomes[-2]) or any(
-        _residuals_apart(coarse, fine, pier) > tolerance for coarse, fine in pairwise(outcomes[:-1])
-    )
+    changes = [_residuals_apart(coarse, fine, pier) for coarse, fine in pairwise(outcomes)]
+    slow = any(after > max(tolerance, before / NEARER) for before, after in pairwise(changes))
+    return slow or not same_counts(outcomes[-1], outcomes[-2])
 
 
 def look_for_chaos(
