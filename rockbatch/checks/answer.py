@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
@@ -98,7 +98,7 @@ def missing_stations(stations: Stations) -> Line | None:
         return None
     whole = [name for name in stations.unusable if name not in stations.used]
     parts = {name: files for name, files in stations.unusable.items() if name in stations.used}
-    names = whole + [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in parts.items()]
+    names = _wholly_or_in_part(stations.unusable, stations.used)
     text = f"{_listed(names, ', ')} could not be used"
     if stations.known:
         text = f"{len(stations.used)} of {stations.total} stations; {text}"
@@ -117,6 +117,12 @@ def _why(file: File) -> str:
     """Return the name of a file, unless that is in the reason, and why it could not be used."""
     source, reason = str(file["source"]).split(", ")[0].rpartition("/")[2], str(file["reason"]).rstrip(".")
     return reason if str(file["name"]) in reason or source in reason else f"{source}: {reason}"
+
+
+def _wholly_or_in_part(stations: Mapping[str, Sequence[Any]], used: Collection[str]) -> list[str]:
+    """Return the names of stations, then those that are ``used`` but for some files, with the number of these."""
+    parts = [f"{len(files)} file{'s' * (len(files) > 1)} of {name}" for name, files in stations.items() if name in used]
+    return [name for name in stations if name not in used] + parts
 
 
 def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:
@@ -201,7 +207,7 @@ class _Cases:
 
     def _left_out(self) -> tuple[str, ...]:
         """Return the stations that are left out by name, in a sentence."""
-        names = list(self.stations.left_out)
+        names = _wholly_or_in_part(self.stations.left_out, self.stations.used)
         return (f"Left out by name: {_listed(names, ', ')}.",) if names else ()
 
     def without_limit(self, free: Mapping[str, Sequence[Worst]]) -> Line | None:

@@ -92,6 +92,6 @@ def stations_of(info: Mapping[str, Any]) -> Stations:
 
     unusable = grouped(info["unusable"], station)
     named = grouped((file for file in info.get("left_out", ()) if file.get("named")), station)
-    left_out = {name: files for name, files in named.items() if name not in used and name not in unusable}
+    left_out = {name: files for name, files in named.items() if name not in unusable}
     known = all(file.get("station") for file in info["unusable"])
     return Stations(list(dict.fromkeys(used)), unusable, left_out, known)

@@ -121,6 +121,10 @@ IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_mot
 DEVICES_ERROR = "devices_error"
 """Column of the error of all demands on devices but counts, as a share."""
 
+TILTS = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
+RESIDUAL = TILTS | {"settlement_m", "toe_settlement_m"}
+"""Demands on what remains after a motion, and those of them that are tilts."""
+
 BROUGHT = {"forces": FORCES, "rocking": ROCKING}
 """By keys of [output], a column that each brings."""
 

@@ -13,15 +13,16 @@ from rockbatch.checks.rules import Rule
 from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.checks.suite import (
     OTHER_LAW,
+    SCATTER,
     by_other_law,
     by_record,
+    chaotic,
     complete,
     counted,
     counts_as,
     creeps,
     governing,
     lacking,
-    noted,
     of_runs,
     simulated,
     suites,
@@ -29,7 +30,6 @@ from rockbatch.checks.suite import (
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
 
@@ -200,8 +200,11 @@ def _chaotic(rule: Rule, suite: "pd.DataFrame", case: Case) -> str:
     """Return the remark on runs that claim no error because their results are chaotic."""
     if DEMANDS[rule.demand].event:
         return ""
-    unclaimed = int((np.isnan(DEMANDS[rule.demand].evaluate(suite, case).error) & noted(suite, CHAOTIC)).sum())
-    return f"{unclaimed} of the runs are chaotic: twice their value counts" if unclaimed else ""
+    wild = int(chaotic(rule, suite, DEMANDS[rule.demand].evaluate(suite, case).error).sum())
+    if not wild:
+        return ""
+    runs = "1 run is chaotic, and is" if wild == 1 else f"{wild} runs are chaotic, and are"
+    return f"{runs} known to a factor of {SCATTER:g}"
 
 
 def _directions(records: Mapping[str, tuple[int, int]]) -> str:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.demands import DEMANDS, TILTS, Case
 from rockbatch.checks.suite import OTHER_LAW, creeps, rows_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
@@ -15,7 +15,6 @@ PEAKS = frozenset(
     ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")
 )
 """Demands that are the greatest rotation times a length of the case."""
-_RESIDUAL = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
 _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
 
@@ -30,8 +29,8 @@ RESPONSES = {
     "theta_max_over_alpha": Response("rotation", PEAKS),
     "top_drift_m": Response("drift of the top", PEAKS),
     "settlement_m": Response("mean settlement", _SETTLED),
-    "base_tilt_rad": Response("residual tilt", _RESIDUAL | {"toe_settlement_m"}),
-    "theta_res_rad": Response("residual rotation", _RESIDUAL),
+    "base_tilt_rad": Response("residual tilt", TILTS | {"toe_settlement_m"}),
+    "theta_res_rad": Response("residual rotation", TILTS),
     "heel_uplift_m": Response("uplift of the heel", PEAKS),
     "ductility": Response("ductility", frozenset(("ductility",))),
 }

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.demands import DEMANDS, Case
+from rockbatch.checks.demands import DEMANDS, RESIDUAL, Case
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.checks.statistics import Values
 from rockbatch.common.lazy import pd
@@ -19,6 +19,9 @@ MIRROR_OF = "mirror_of"
 """Column of the polarity of the run whose mirror image a row is; only where a study has both polarities."""
 
 NOT_RUN = "not run"
+
+SCATTER = 2.0
+"""Factor within which a chaotic result is known: of 41, motions 10⁻⁸ stronger or weaker moved five further (THEORY.md)."""
 
 
 def creeps(case: Case) -> bool:
@@ -143,8 +146,9 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     estimated = bool(np.isfinite(error).any())
-    margin = np.where(np.isnan(error), np.where(noted(runs, CHAOTIC), np.abs(value), 0.0), error)
-    low, high = np.maximum(value - margin, 0.0), value + margin
+    margin, wild = np.nan_to_num(error), chaotic(rule, runs, error)
+    low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
+    high = np.where(wild, value * SCATTER, value + margin)
     status = runs["status"].to_numpy()
     counting = np.ones(len(runs), dtype=bool)
     if demand.event:
@@ -157,6 +161,8 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     if by_other is not None:  # the worse counts
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
+    if rule.counts("overturned") == "infinite":
+        high = np.where(noted(runs, OVERTURNS), np.inf, high)
     unknown = np.zeros(len(runs), dtype=bool)
     for name in USUAL:
         ended, kind = status == name, rule.counts(name)
@@ -176,6 +182,12 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
         known = unknown & (status == "failed") & ~np.isnan(error)
         low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
     return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
+
+
+def chaotic(rule: Rule, runs: "pd.DataFrame", error: Values) -> npt.NDArray[np.bool_]:
+    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
+    of_peak = np.isnan(runs["theta_max_error"].to_numpy(np.float64, na_value=np.nan)) | (rule.demand in RESIDUAL)
+    return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
 
 
 def noted(runs: "pd.DataFrame", words: str) -> npt.NDArray[np.bool_]:

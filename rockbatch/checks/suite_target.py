@@ -15,19 +15,23 @@ _ROUNDING = 1e-4  # relative: run.json has five digits of either spectrum
 def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Verdict]:
     """Return whether the suite reaches its targets, those that ask it to, as run.json (``info``) has them.
 
-    It is judged as it was fitted; ``scales`` are the factors that the study puts on top.
+    It is judged as it was fitted if that was run; else with the greatest of ``scales``, the factors that the study puts on top.
+    There is no verdict on a suite without a record that is fitted.
     """
-    note = "" if set(scales) <= {1.0} else "as fitted, before the study's scale"
+    factors = sorted(set(scales)) or [1.0]
+    factor = 1.0 if 1.0 in factors else factors[-1]
+    note = "" if factors == [1.0] else "as fitted, at scale 1" if factor == 1.0 else f"at scale {factor:g}"
     targets = {name: info.get(key) for key, name in NAMES.items()}
     return [
-        _verdict(name, target, note)
+        _verdict(name, target, factor, note)
         for name, target in targets.items()
-        if target is not None and target.get("required", target["factors"] != "none")
+        if target is not None and target.get("required", target["factors"] != "none") and any(target["mean_sa_g"])
     ]
 
 
-def _verdict(name: str, target: Mapping[str, Any], note: str) -> Verdict:
-    value, period = least_over_target(target)
+def _verdict(name: str, target: Mapping[str, Any], factor: float, note: str) -> Verdict:
+    least, period = least_over_target(target)
+    value = factor * least
     limit = float(target["at_least"])
     if math.isclose(value, limit, rel_tol=_ROUNDING):
         value = limit

@@ -24,7 +24,7 @@ from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
-from rockbatch.motions.leaving_out import LeaveOut
+from rockbatch.motions.leaving_out import LeaveOut, Reading
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
@@ -37,7 +37,6 @@ _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
 _MANY = 200  # files; fewer take no time worth a bar
 
 Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
-Reading = Component | Unusable | LeftOut
 
 
 @dataclass(frozen=True)

@@ -535,7 +535,8 @@ ASKED = (
     ),
     Column(
         DEVICES_ERROR,
-        "estimated error, as a share of itself, of that of the columns of devices, but for counts, whose error is the largest: "
+        "estimated error of that column of devices, but for counts, whose error is the largest, as a share of it or of 1 % "
+        "of its scale: "
         "what halving the step still changed; empty with a fixed step",
         "devices_error", page=OnPage("devices ±", ".0e", behind="deck_spring_energy_J_kg"), stood=True,
         requested=lambda study: any(case.base.restraints for case in study.cases),

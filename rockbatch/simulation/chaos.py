@@ -10,6 +10,7 @@ import numpy as np
 from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.pier import Pier
 from rockbatch.simulation.agreement import far_below, same_counts, windows
+from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.models import fastest_rate
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, Trial, try_all
@@ -79,26 +80,34 @@ def look_for_chaos(
         if probe is None or outcome is None:
             outcomes[i] = None
             continue
-        outcome = _with_peak_of(probe, doubtful[i], outcome, tolerance * runs[i].pier.alpha, f"{abs(change):g} {words}")
+        outcome = _with_peak_of(probe, doubtful[i], outcome, tolerance, runs[i].pier, f"{abs(change):g} {words}")
         outcomes[i] = _with_residuals_of(probe.outcome, outcome, tolerance, runs[i].pier)
 
 
-def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, changed: str) -> Outcome:
+def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float, pier: Pier, changed: str) -> Outcome:
     """Return ``outcome`` with the error of θ_max that ``probe``, under a ``changed`` motion, shows; none if it is chaotic."""
+    tolerance *= pier.alpha
     if outcome.change_in_motion is not None:
         within = MARGIN * abs(probe.outcome.theta_max_in_motion - outcome.theta_max_in_motion)
         known = max(outcome.change_in_motion, within) if within <= tolerance else None
         outcome = outcome.changed(change_in_motion=known)
+    ends = probe.outcome.status
+    falls = ends == "overturned" and outcome.status in ("ok", "flight") and OVERTURNS not in outcome.note
     if outcome.theta_max_error is None:
-        return outcome
+        return outcome.noted(f"a motion {changed} {OVERTURNS}" if falls else "")
     moved = abs(probe.outcome.theta_max - outcome.theta_max)
-    if probe.outcome.status == outcome.status and MARGIN * moved <= tolerance:
+    does = OVERTURNS if falls else f"moves it by {moved:.1e} rad"
+    if ends == outcome.status and MARGIN * moved <= tolerance:
         greatest, change = windows(probe, fine)
         if far_below(greatest, change, change > tolerance, outcome.theta_max):
-            return outcome.changed(theta_max_error=max(outcome.theta_max_error, MARGIN * moved))
+            of_devices = change_of_devices(probe.outcome, fine.outcome, pier)
+            return outcome.changed(
+                theta_max_error=max(outcome.theta_max_error, MARGIN * moved),
+                devices_error=of_devices and max(outcome.devices_error or 0.0, MARGIN * of_devices),
+            )
         does = "brings another one as near to it"
-    else:
-        does = OVERTURNS if probe.outcome.status == "overturned" else f"moves it by {moved:.1e} rad"
+    elif ends not in (outcome.status, "overturned"):
+        does = f"ends it in {ends}" if ends == "flight" else "is not decided"
     return without_error(outcome, f"a motion {changed} {does}")
 
 

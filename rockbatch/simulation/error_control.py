@@ -71,7 +71,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
                     outcome = without_error(outcome, "other peaks near it follow the step")
-                if magnified or residuals_wander(levels[i], tolerance * pier.alpha, pier):
+                if magnified or CHAOTIC in outcome.note or residuals_wander(levels[i], tolerance * pier.alpha, pier):
                     doubtful[i] = fine
                 outcomes[i] = outcome
                 del levels[i]

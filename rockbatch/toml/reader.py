@@ -363,7 +363,7 @@ class Table:
         else:
             known = list(other)
         if advice := own.advice(name):
-            self._mark_misspelt([word for word in re.findall(r"\w+", advice) if word in known][:1])
+            self._mark_misspelt([word for word in re.findall(r"(\w+) = ", advice) if word in known][:1])
             return advice
         absent = [key for key in known if key not in self.data]
         if meant := own.known_as(name, absent) or own.known_as(name, known):

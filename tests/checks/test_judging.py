@@ -666,19 +666,32 @@ def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
     assert (Rule("a", "eta", at_least=2).words, Rule("a", "eta", at_least=2).counting) == ("eta", "")
 
 
-CHAOTIC = "the peak is chaotic, a motion 1e-08 weaker overturns the pier: no error of it is claimed"
+CHAOTIC = "the peak is chaotic, a motion 1e-08 weaker moves it by 2.4e-03 rad: no error of it is claimed"
+FALLS = "the peak is chaotic, a motion 1e-08 weaker overturns the pier: no error of it is claimed"
 
 
-@pytest.mark.parametrize(("theta", "verdict"), [(0.2, "pass"), (0.3, "not decided")])
-def test_a_chaotic_peak_counts_twice_and_is_said(theta, verdict):
-    """0.3 α may be 0.6 α under a motion that no record tells from this one; the limit is 0.5 α."""
+@pytest.mark.parametrize(
+    ("theta", "verdict"), [(0.2, "pass"), (0.3, "not decided"), (0.9, "not decided"), (1.1, "fail")]
+)
+def test_a_chaotic_peak_is_known_to_a_factor_of_2_and_is_said(theta, verdict):
+    """0.3 α may be 0.6 α under a motion that no record tells from this one, and 0.9 α 0.45 α; the limit is 0.5 α."""
     found = judged(runs([0.1, theta], theta_max_error=[1e-6, None], note=["", CHAOTIC]))
-    assert (found.verdict, found.high) == (verdict, pytest.approx(2.0 * theta))
-    assert "1 of the runs are chaotic: twice their value counts" in found.note
-    assert judged(runs([0.1, theta], theta_max_error=[1e-6, 1e-6])).verdict == "pass"
+    assert (found.verdict, found.low, found.high) == (verdict, pytest.approx(theta / 2), pytest.approx(2 * theta))
+    assert "1 run is chaotic, and is known to a factor of 2" in found.note
 
 
-def test_a_pier_that_overturns_under_a_motion_a_hair_weaker_is_not_held_to_stand():
-    found = judged(runs([0.1, 0.3], theta_max_error=[1e-6, None], note=["", CHAOTIC]), demand="overturned", at_most=0.0)
-    assert (found.verdict, found.high) == ("not decided", 1.0)
-    assert judged(runs([0.1, 0.3]), demand="overturned", at_most=0.0).verdict == "pass"
+def test_chaotic_residuals_leave_the_demands_on_a_peak_that_converged_as_they_are():
+    table = runs([0.1], theta_max_error=1e-6, ductility_left=2.0, ductility_right=1.0, settlement_m=0.02,
+                 note="the residuals are chaotic, a motion 1e-08 off moves them: no error of them is claimed")  # fmt: skip
+    pads = case(base=replace(PADS, spring="epp"))
+    found = judged(table, one=pads, demand="ductility", at_most=3.0)
+    assert (found.verdict, found.high) == ("pass", 2.0)
+    assert (settled := judged(table, one=pads, demand="settlement_m", at_most=0.03)).verdict == "not decided"
+    assert settled.high == 0.04
+
+
+@pytest.mark.parametrize(("demand", "limit"), [("overturned", 0.0), ("theta_max_over_alpha", 0.85)])
+def test_a_pier_that_overturns_under_a_motion_a_hair_weaker_passes_nothing(demand, limit):
+    found = judged(runs([0.1, 0.3], theta_max_error=[1e-6, None], note=["", FALLS]), demand=demand, at_most=limit)
+    assert found.verdict == "not decided"
+    assert judged(runs([0.1, 0.3], theta_max_error=1e-6), demand=demand, at_most=limit).verdict == "pass"

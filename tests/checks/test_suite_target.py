@@ -51,11 +51,25 @@ def test_both_targets_are_checks_but_not_one_that_is_only_compared():
     below = target(0.5)
     both = suite_verdicts({"target": below, "vertical_target": below}, [0.5, 1.0])
     assert [found.check for found in both] == ["suite to target", "suite to vertical target"]
-    assert all("before the study's scale" in found.note for found in both)
+    assert all("as fitted, at scale 1" in found.note for found in both)
     assert not suite_verdicts({"target": target(0.5, factors="none")}, [1.0])  # as an earlier version wrote it
     assert not suite_verdicts({"target": target(0.5, factors="none", required=False)}, [1.0])
     assert suite_verdicts({"target": target(0.5, factors="none", required=True)}, [1.0])
     assert not suite_verdicts({}, [1.0])
+
+
+@pytest.mark.parametrize(
+    ("scales", "value"), [([1.0], 0.9), ([0.5, 1.0, 2.0], 0.9), ([0.5], 0.45), ([0.25, 0.5], 0.45)]
+)
+def test_a_suite_is_held_against_its_target_as_it_is_run(scales, value):
+    """At scale 1 if that is among the scales, else at the greatest; a mean of 0.9 of the target at half of it is 0.45."""
+    (found,) = suite_verdicts({"target": target(0.9)}, scales)
+    assert (found.value, found.verdict) == (pytest.approx(value), "pass" if value == 0.9 else "fail")
+    assert (f"at scale {max(scales):g}" in found.note) == (1.0 not in scales)
+
+
+def test_a_suite_without_a_record_that_was_fitted_has_no_verdict():
+    assert not suite_verdicts({"target": target(0.0)}, [1.0])
 
 
 def test_a_suite_below_its_target_comes_first_and_leaves_nothing_green():

@@ -321,7 +321,7 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("yield_mm = 8.0", "stiffness_kN_m = 43750", "write yield_mm, the force over the stiffness", "belongs"),
     ("prestress_kN = 4000.0", "prestress_MPa = 1200", "write prestress_kN, the stress times the area", "did you mean"),
     ('base = "yielding"', 'base = "yielding"\nname = "stiff"', "keep one, or write [[case]] above if another one begins", "?"),
-    ("at_most = 150", "at_most = 0.15", 'at_most = 0.15: in mm, as heel_uplift_mm is, less than any pier', "?"),
+    ("at_most = 150", "at_most = 0.15", 'at_most = 0.15: in mm, as heel_uplift_mm is, hardly more', "?"),
     ("at_most = 150", 'at_most = 150\nunit = "mm"', "the unit stands in the name of the demand", "[motions]"),
     ('demand = "heel_uplift_mm"', 'demand = "uplift"', 'did you mean "heel_uplift_m" or "heel_uplift_mm"?', "expected"),
     ('unit = "cm/s2"', 'unit = "%g"', "expected one of g, g/10, m/s2", "write for example"),

@@ -66,7 +66,7 @@ FOUND = [  # part, what stands there, what shall, its key, and what is said
     ("pier", "mass_t = 3000", "deck_mass_t = 900\n[[pier.part]]\nmass_t = 1.8\nheight_m = 15", "deck_mass_t",
      "[pier]: deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8"),
     ("check", THETA[0], 'demand = "heel_uplift_mm"\nat_most = 0.15', "at_most",
-     '[[check]] "uplift": at_most = 0.15: in mm, as heel_uplift_mm is, less than any pier shows that rocks; 0.15 m are 150 mm'),
+     '[[check]] "uplift": at_most = 0.15: in mm, as heel_uplift_mm is, hardly more than nothing; 0.15 m are 150 mm'),
     ("check", THETA[0], 'demand = "top_drift_mm"\nat_most = 1.2', "at_most", '[[check]] "uplift": at_most = 1.2: in mm, as'),
     ("check", THETA[0], 'demand = "damper_stroke_m"\nat_most = 60', "at_most",
      '[[check]] "uplift": at_most = 60: damper_stroke_m above 4 is more than the pier is wide'),
