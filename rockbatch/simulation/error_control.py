@@ -24,7 +24,7 @@ ROUGH = 3e-8
 does not fall evenly with the step, so that two runs may agree better than either is right."""
 
 CHANCE = 4.0
-"""Error of the peak within a motion that is claimed, over what halving the step still changed: no third trial confirms it."""
+"""Error of what need not agree, over what halving the step still changed: the peak within a motion, and demands on devices."""
 
 
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
@@ -107,7 +107,8 @@ def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
         errors["theta_res_error"] = max(abs(fine.theta_res - coarse.theta_res), least)
     if run.base.yields and fine.settlement is not None and coarse.settlement is not None:
         errors["settlement_error"] = max(abs(fine.settlement - coarse.settlement), least * run.pier.half_width)
-    return fine.changed(devices_error=change_of_devices(fine, coarse, run.pier), **errors)
+    of_devices = change_of_devices(fine, coarse, run.pier)
+    return fine.changed(devices_error=of_devices and CHANCE * of_devices, **errors)
 
 
 def _with_peak_in_motion(

@@ -170,7 +170,7 @@ class Outcome:
     deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
         Of deck springs, likewise.
     devices_error : float or None
-        By which share of itself halving the step still changed one of these demands at most, but for counts.
+        Estimated error of these demands but counts, as a share of the one whose error is the largest or of 1 % of its scale.
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
