@@ -133,6 +133,17 @@ def test_no_error_is_claimed_of_a_peak_that_either_sign_of_a_change_moves(monkey
         assert f"the peak is chaotic, a motion 1e-08 {side} {words}" in outcome.note
 
 
+@pytest.mark.parametrize("earlier", ["a probe", "rotations before the peak"])
+def test_overturning_under_a_changed_motion_is_noted_though_the_error_was_withdrawn_before(monkeypatch, earlier):
+    fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5}
+    moved = ok(0.1 + 0.6e-4 * FIG5.alpha) if earlier == "a probe" else None
+    wanders = [ok(0.1, t_max=4.9, windows=[0.0, rotation]) for rotation in (0.010, 0.012, 0.011)]
+    scripted(monkeypatch, *(SENSITIVE if moved else wanders), stronger=moved, weaker=fallen)
+    outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
+    assert (outcome.status, outcome.theta_max_error) == ("ok", None)
+    assert f"a motion 1e-08 weaker {OVERTURNS}" in outcome.note
+
+
 def test_no_error_is_claimed_of_a_peak_to_which_a_later_one_may_rise(monkeypatch):
     """Under a changed motion an extreme behind the peak moves by half of what it lies below it."""
     later = 0.1 - 4e-4 * FIG5.alpha
