@@ -8,7 +8,7 @@ from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
 from rockbatch.checks.answer import MOST_ENDS, answer
-from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases
+from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.pier import Damper, RigidBase
@@ -212,6 +212,13 @@ def test_a_component_of_a_station_that_is_used_is_told_by_its_files():
 def test_stations_that_are_left_out_by_name_stay_green_and_are_listed():
     (line,) = lines([verdict("a", "pass")], stations=Stations(["s"], {}, {"RSN1633": [LOST]}))
     assert (line.verdict, line.details[-1]) == (PASS, "Left out by name: RSN1633.")
+
+
+def test_a_component_that_is_left_out_of_a_station_in_use_is_listed_too():
+    dropped = {"name": "CHAN24", "station": "1336", "reason": "left out", "named": True}
+    found = stations_of({"records": [{"record": "CHAN15", "station": "1336"}], "unusable": [], "left_out": [dropped]})
+    (line,) = lines([verdict("a", "pass")], stations=found)
+    assert (line.verdict, line.details[-1]) == (PASS, "Left out by name: 1 file of 1336.")
 
 
 def test_of_a_mean_the_record_is_the_one_with_the_largest_demand_and_says_so():

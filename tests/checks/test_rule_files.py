@@ -123,6 +123,13 @@ limit = 3
     assert all(part in problem for problem, part in zip(told, parts, strict=True))
 
 
+def test_advice_on_an_unknown_key_hides_no_missing_one(tmp_path):
+    text = '[[check]]\ndemand = "theta_max_rad"\nunit = "mm"\nat_most = 0.1\nreason = "x"\n'
+    told = problems(rules_file(tmp_path / "rules.toml", text))
+    assert any("name is missing" in problem for problem in told)
+    assert any("unit" in problem for problem in told)
+
+
 def test_what_the_keys_of_a_rule_say_about_each_other_is_told_at_the_key(tmp_path):
     text = '[[check]]\nname = "a"\nreason = "x"\ndemand = "eta"\nstatistic = "mean"\nat_least = 2\nother_law = true\n'
     path = rules_file(tmp_path / "rules.toml", text)
