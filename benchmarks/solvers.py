@@ -18,7 +18,7 @@ from interleaved import Times, interleaved, machine, ratio
 from peers import Rocking, Solve, cvode, heyoka, scipy
 from tower import QUIET_S, TOWER, foundations, record
 
-from rockbatch.analysis.error_and_time import reference
+from rockbatch.analyses.accuracy.error_and_time import reference
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.motions import Motion
 from rockbatch.pier import YieldingBase

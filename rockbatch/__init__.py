@@ -1,41 +1,16 @@
 """rockbatch: peak rotations of stepping bridge piers under a folder of ground motions."""
 
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import Any
 
 from rockbatch._version import __version__ as __version__
 
-if TYPE_CHECKING:
-    from rockbatch.analysis.accuracy import accuracy
-    from rockbatch.analysis.fragility import fragility
-    from rockbatch.analysis.release import release
-    from rockbatch.analysis.sensitivity import sensitivity
-    from rockbatch.analysis.spectrum import spectrum
-    from rockbatch.batch.running import run
-    from rockbatch.batch.single import simulate
-    from rockbatch.checks import Rule
-    from rockbatch.errors import InputError
-    from rockbatch.motions import Motion, MotionSet, ReadOptions, pair_spectrum, pulse, read_motions, sequence
-    from rockbatch.motions.hazard import HazardCurve
-    from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
-    from rockbatch.pier.statics import Statics, statics
-    from rockbatch.report import report
-    from rockbatch.results.checking import check
-    from rockbatch.results.opened import open_results
-    from rockbatch.simulation.response import Response
-    from rockbatch.study import Study, load_study
-
 _NAMES = {
-    "analysis.accuracy": "accuracy",
-    "analysis.fragility": "fragility",
-    "analysis.release": "release",
-    "analysis.sensitivity": "sensitivity",
-    "analysis.spectrum": "spectrum",
     "batch.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
-    "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "report": "report",
@@ -44,54 +19,25 @@ _NAMES = {
     "simulation.response": "Response",
     "study": "Study load_study",
 }
-_HOMES = {name: f"rockbatch.{home}" for home, names in _NAMES.items() for name in names.split()}
+"""Public names by their modules, beside those of the analyses; ``__init__.pyi`` has all of them for type checkers."""
 
-__all__ = [
-    "Damper",
-    "DeckSpring",
-    "ElasticBase",
-    "HazardCurve",
-    "InputError",
-    "Motion",
-    "MotionSet",
-    "Part",
-    "Pier",
-    "ReadOptions",
-    "Response",
-    "RigidBase",
-    "Rule",
-    "Statics",
-    "Stop",
-    "Study",
-    "Tendon",
-    "YieldingBase",
-    "accuracy",
-    "check",
-    "fragility",
-    "load_study",
-    "open_results",
-    "pair_spectrum",
-    "pulse",
-    "read_motions",
-    "release",
-    "report",
-    "run",
-    "sensitivity",
-    "sequence",
-    "simulate",
-    "spectrum",
-    "statics",
-]
+
+def _homes() -> dict[str, str]:
+    """Return the module of each public name."""
+    from rockbatch.common.analyses import public_names
+
+    homes = {name: f"rockbatch.{module}" for module, names in _NAMES.items() for name in names.split()}
+    return homes | public_names()
 
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used: the compiler costs 0.4 s, and a report needs none."""
-    if name in _HOMES:
-        from importlib import import_module
-
-        return getattr(import_module(_HOMES[name]), name)
+    if name == "__all__":
+        return sorted(_homes())
+    if not name.startswith("_") and name in (homes := _homes()):
+        return getattr(import_module(homes[name]), name)
     raise AttributeError(f"module 'rockbatch' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])
+    return sorted([*_homes(), *(name for name in globals() if name.startswith("__"))])

@@ -59,17 +59,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if parsed.command is None:
         root.print_help()
         return 2
-    code = _carried_out(parsed)
+    code = _exit_code(parsed)
     return code or int(is_lost(sys.stdout))
 
 
-def _carried_out(parsed: argparse.Namespace) -> int:
+def _exit_code(parsed: argparse.Namespace) -> int:
     """Run a command and return its exit code; report what went wrong in words."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
-            return COMMANDS[parsed.command].carry_out(parsed)
+            return COMMANDS[parsed.command].run_command(parsed)
     except InputError as error:
         for problem in error.problems:
             say(f"rockbatch: {problem}")

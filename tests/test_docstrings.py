@@ -12,7 +12,7 @@ import rockbatch as rb
 
 ROOT = Path(__file__).parents[1]
 
-PUBLIC = {name: getattr(import_module(home), name) for name, home in rb._HOMES.items()}
+PUBLIC = {name: getattr(import_module(home), name) for name, home in rb._homes().items()}
 MODULES = sorted({thing.__module__ for thing in PUBLIC.values()})
 
 STUDY = study_text(

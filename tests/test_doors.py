@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rockbatch.analysis.folder import AnalysisFolder
+from rockbatch.batch.analysis import AnalysisFolder
 from rockbatch.errors import InputError
 from rockbatch.study import load_study
 

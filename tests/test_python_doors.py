@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-import rockbatch.analysis.error_and_time
+import rockbatch.analyses.accuracy.error_and_time
 import rockbatch.batch.threads
 from rockbatch.cli import main
 from rockbatch.common.files import read_table
@@ -233,8 +233,8 @@ def test_a_saved_analysis_leaves_no_table_of_an_earlier_one(study, tmp_path):
 
 
 def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypatch):
-    monkeypatch.setattr(rockbatch.analysis.error_and_time, "SCIPY_TOLERANCES", ())
-    monkeypatch.setattr(rockbatch.analysis.error_and_time, "REPEATS", 1)
+    monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "SCIPY_TOLERANCES", ())
+    monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "REPEATS", 1)
     found = rb.accuracy(study, runs=2)
     assert files(nowhere) == []
     assert set(found.accuracy["runs"]) == {2}
@@ -249,7 +249,7 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
 
 
 def test_the_command_measures_as_many_runs_as_the_function():
-    from rockbatch.analysis import accuracy
+    from rockbatch.analyses.accuracy import analysis as accuracy
     from rockbatch.commands.arguments import RUNS, SECONDS
 
     assert (accuracy.RUNS, accuracy.SECONDS) == (RUNS, SECONDS)

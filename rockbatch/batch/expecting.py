@@ -6,8 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import accumulate
 
-from rockbatch.batch.carrying_out import row_of, to_simulate
 from rockbatch.batch.compiling import make_ready
+from rockbatch.batch.execution import row_of, to_simulate
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch._version import __version__
-from rockbatch.batch.carrying_out import to_simulate
+from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.half_cycles import HALF_CYCLES, rows_of_half_cycles
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep

@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockbatch.batch.carrying_out import InMemory, carry_out, to_simulate
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
+from rockbatch.batch.execution import InMemory, execute_runs, to_simulate
 from rockbatch.batch.finishing import (
     OUTPUTS,
     FinishedBatch,
@@ -107,7 +107,7 @@ def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFram
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))
     with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-        carry_out(runs, study.numerics, rows, engine, study.output, progress=progress)
+        execute_runs(runs, study.numerics, rows, engine, study.output, progress=progress)
     return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(motions)], study)
 
 
@@ -164,7 +164,7 @@ def run_into(
         with engine:
             every = count(len(to_simulate(runs, requested)), "run")
             listener.say(f"{described(study, motions)} on {engine}{of_share.format(every)}")
-            cost = _carry_out_left(study, runs, requested, journal, engine, listener)
+            cost = _execute_remaining(study, runs, requested, journal, engine, listener)
         if share:
             listener.say(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
@@ -239,7 +239,7 @@ def _share(runs: int, share: int, shares: int) -> range:
     return range(runs * (share - 1) // shares, runs * share // shares)
 
 
-def _carry_out_left(
+def _execute_remaining(
     study: Study, runs: Plan, requested: range, journal: Journal, engine: Engine, listener: Listener
 ) -> dict[str, Any]:
     """Carry out the runs that are missing in the journal; return their entry in run.json."""
@@ -250,7 +250,7 @@ def _carry_out_left(
     make_ready(study, listener)
     try:
         with listener.progress(remaining) as progress:
-            carry_out(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
+            execute_runs(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
     except KeyboardInterrupt:
         n_done = every - len(to_simulate(runs, requested, journal))
         listener.say(

@@ -5,11 +5,13 @@ Lines differ in colour and in dashes, marks in colour and shape, so that they di
 """
 
 import functools
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 Arguments = ParamSpec("Arguments")
@@ -66,3 +68,23 @@ def marks(place: int) -> dict[str, Any]:
         "linestyle": "",
         "mfc": "none",
     }
+
+
+def panels(count: int, width_mm: float) -> tuple[Figure, list[Axes]]:
+    """Return a figure with this many panels, in as many columns as its width bears, and their axes."""
+    columns = max(1, min(count, int(width_mm / 70.0)))
+    rows = math.ceil(count / columns)
+    drawn = figure(width_mm, 10.0 + 60.0 * rows)
+    grid = drawn.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for axes in grid[count:]:
+        axes.set_visible(False)
+    return drawn, grid[:count]
+
+
+def with_legend(drawn: Figure, panels: Sequence[Axes]) -> Figure:
+    """Return the figure with one legend of all panels below."""
+    entries = {
+        label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    drawn.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3)
+    return drawn

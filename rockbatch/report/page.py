@@ -1,32 +1,29 @@
 """The pages: their sections, in order, one line each."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 from rockbatch._version import __version__
+from rockbatch.common.analyses import doors, from_analysis
 from rockbatch.report import compared
 from rockbatch.report.finished import Finished
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.markup import Markup
 from rockbatch.report.pair import Pair
 from rockbatch.report.sections import (
-    accuracy,
     answer,
+    cost,
     distribution,
     estimate,
     forces,
-    fragility,
     histories,
     intensity,
     motions,
     peak_rotations,
     peaks,
     published,
-    release,
-    risk,
-    sensitivity,
     shocks,
-    spectrum,
     statics,
     statistics,
     studied,
@@ -49,7 +46,19 @@ class Part(NamedTuple):
 
 def _template(name: str) -> Callable[[Contents], Markup]:
     """Return the content of a section that is a template alone."""
-    return lambda contents: render(f"sections/{name}.html", contents=contents)
+    return lambda contents: render(f"report/sections/{name}.html", contents=contents)
+
+
+def _of_analyses() -> Iterator[Part]:
+    """Yield the parts that the analyses bring, each loaded when it is drawn."""
+    for name, door in doors().items():
+        for part in door.parts:
+            yield Part(part.heading, part.anchor, partial(_of_analysis, name, part.function), Contents)
+
+
+def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
+    content: Markup = from_analysis(name, function)(contents)
+    return content
 
 
 PARTS = (
@@ -64,18 +73,14 @@ PARTS = (
     Part("One record and the suite", "distribution", distribution.section),
     Part("Intensity measures", "intensity", intensity.section),
     Part("Code estimates, for comparison", "estimate", estimate.section),
-    Part("Fragility", "fragility", fragility.section, Contents),
-    Part("Annual rates", "risk", risk.section, Contents),
-    Part("Rocking spectra and overturning", "spectrum", spectrum.section, Contents),
-    Part("What the answer depends on", "sensitivity", sensitivity.section, Contents),
-    Part("The release test", "release", release.section, Contents),
+    *_of_analyses(),
     Part("Histories", "histories", histories.section),
     Part("What was studied", "studied", studied.section),
     Part("Statics", "statics", statics.section),
     Part("The suite against its target spectrum", "target", target.section),
     Part("Ground motions", "records", motions.section),
     Part("Not used", "unusable", motions.unusable),
-    Part("Speed and error", "accuracy", accuracy.section),
+    Part("Speed and error", "accuracy", cost.section),
     Part("Notes", "notes", _template("notes"), Contents),
     Part("How to reproduce", "reproduce", _template("reproduce")),
 )

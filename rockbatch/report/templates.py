@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 
+TOP = HERE.parent
+
 
 class Section(NamedTuple):
     """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading."""
@@ -40,14 +42,14 @@ def document(kind: str, title: str, sections: Iterable[Section], version: str = 
     """
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
     return render(
-        "page.html", kind=kind, title=title, sections=[section for section in sections if section.content],
+        "report/page.html", kind=kind, title=title, sections=[section for section in sections if section.content],
         version=f"rockbatch {version}", digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         markers=markers(), style=Markup(style), script=Markup(script),
     )  # fmt: skip
 
 
 def render(template: str, **values: object) -> Markup:
-    """Return a template of this package as HTML; ``template`` is its path in the package.
+    """Return a template of this package as HTML; ``template`` is its path in rockbatch.
 
     Raises ``KeyError`` if a value lacks what the template shows.
     """
@@ -78,7 +80,7 @@ def _environment() -> "Environment":
     pattern = f"%s.{sys.implementation.cache_tag}-{compiler}.jinja"
     made = Environment(
         bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), pattern),
-        loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined,
+        loader=FileSystemLoader(TOP), autoescape=True, undefined=StrictUndefined,
         finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip

@@ -13,6 +13,7 @@ from rockbatch.checks.choices import implausible, unmet
 from rockbatch.checks.demands import BROUGHT
 from rockbatch.checks.reading import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
+from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import MOST, Bounds
@@ -118,8 +119,6 @@ SECTIONS = (
     SUITE, CHECK, REFERENCE,
 )  # fmt: skip
 """Tables that are read with the study, outer ones before inner; those of analyses are read by their own commands."""
-
-ANALYSES = ("fragility", "spectrum", "sensitivity", "release")
 
 
 @dataclass(frozen=True, repr=False)
@@ -279,7 +278,7 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
 
 def _checked(file: TomlFile, motions: Motions) -> Study:
     top = Table(file, (), "", file.data).read(
-        TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *ANALYSES))
+        TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *_tables_of_analyses()))
     )
     motion_spec = read_motions_table(file, as_source(motions))
     numerics = _numerics(file)
@@ -318,6 +317,12 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
         lined=bool(file.lines),
     )
+
+
+def _tables_of_analyses() -> Iterator[str]:
+    """Yield the names of tables that analyses read, by their own commands."""
+    for door in doors().values():
+        yield from door.tables
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:

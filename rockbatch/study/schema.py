@@ -15,17 +15,16 @@ from typing import Any
 from rockbatch.checks.reading import SUITE
 from rockbatch.checks.reading import TOP as CHECKS_TOP
 from rockbatch.checks.rules import CHECK
+from rockbatch.common.analyses import doors, from_analysis
 from rockbatch.motions import manifest
-from rockbatch.study import load, sensitivity
-from rockbatch.study.fragility import FRAGILITY
-from rockbatch.study.hazard import DISPERSION, HAZARD
-from rockbatch.study.release import RELEASE
-from rockbatch.study.spectrum import MAP, SPECTRUM
-from rockbatch.study.stripes import STRIPE
+from rockbatch.study import load
 from rockbatch.toml.kinds import Schema
 from rockbatch.toml.section import Section, options
 
-STUDY = (*load.SECTIONS, FRAGILITY, HAZARD, DISPERSION, STRIPE, SPECTRUM, MAP, *sensitivity.SECTIONS, RELEASE)
+STUDY = (
+    *load.SECTIONS,
+    *(part for name, door in doors().items() if door.tables for part in from_analysis(name, "study.SECTIONS")),
+)
 """A study file."""
 
 CHECKS = (CHECKS_TOP, SUITE, replace(CHECK, required=True))

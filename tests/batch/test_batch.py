@@ -12,9 +12,9 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 import rockbatch.batch.compiling
-from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
+from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.groups import NOTHING_MORE, groups
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
@@ -200,7 +200,7 @@ def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study,
     calls = []
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
         for wanted in (range(5, 9), range(7, 12), range(7, 12)):
-            carry_out(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
+            execute_runs(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
         assert list(journal) == list(range(105, 112))
         assert journal[108]["record"] == runs[8].motion.name
         assert float(journal[108]["beta"]) == runs[8].case.columns["beta"]

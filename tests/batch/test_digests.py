@@ -48,8 +48,8 @@ def reached(starts):
 def starts():
     """What makes a row of a run, and the analyses that ask for runs."""
     plan = TOP / "batch" / "plan.py"
-    asking = {file for file in TOP.joinpath("analysis").glob("*.py") if plan in imports(file)}
-    return {TOP / "batch" / "groups.py", TOP / "batch" / "carrying_out.py", *asking}
+    asking = {file for file in TOP.joinpath("analyses").rglob("*.py") if plan in imports(file)}
+    return {TOP / "batch" / "groups.py", TOP / "batch" / "execution.py", *asking}
 
 
 def test_every_module_that_can_change_a_row_takes_part():
@@ -59,7 +59,7 @@ def test_every_module_that_can_change_a_row_takes_part():
         "simulation/error_control.py",
         "pier/block.py",
         "motions/pulses.py",
-        "analysis/ida.py",
+        "analyses/fragility/ida.py",
     ):
         assert TOP / known in takes_part  # the walk finds its way
     missing = takes_part - set(digests.sources())
@@ -72,7 +72,7 @@ def test_every_module_that_can_change_a_row_takes_part():
     ("module", "takes_part"),
     [
         ("core/springs/equations.py", True),
-        ("analysis/ida.py", True),
+        ("analyses/fragility/ida.py", True),
         ("pier/block.py", True),
         ("common/units.py", True),
         ("report/page.py", False),

@@ -16,9 +16,9 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 import rockbatch.batch.dask
 import rockbatch.batch.groups
 import rockbatch.batch.threads
-from rockbatch.batch.carrying_out import carry_out
 from rockbatch.batch.dask import Dask, Records, _result_of, simulate
 from rockbatch.batch.digests import program
+from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import silent
@@ -58,7 +58,7 @@ def runs(study):
 def table(folder, study, runs, engine, progress=silent):
     """Bytes of peaks.csv as an engine carries out the runs."""
     with engine, Journal(folder / "peaks.csv.part", columns(study), {}, fresh=True) as journal:
-        carry_out(runs, study.numerics, journal, engine, study.output, progress=progress)
+        execute_runs(runs, study.numerics, journal, engine, study.output, progress=progress)
         journal.write_in_order(folder / "peaks.csv")
     return (folder / "peaks.csv").read_bytes()
 
@@ -92,7 +92,7 @@ def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs,
 
 def test_threads_load_nothing_of_a_cluster():
     code = (
-        "import sys, rockbatch.batch.carrying_out, rockbatch.commands.run, rockbatch.batch.dask\n"
+        "import sys, rockbatch.batch.execution, rockbatch.commands.run, rockbatch.batch.dask\n"
         "print([name for name in ('dask', 'distributed') if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -9,7 +9,7 @@ import pytest
 from studies import COSINE, PADS, SINE, study_text
 
 import rockbatch as rb
-from rockbatch.batch.carrying_out import carry_out, row_of, to_simulate
+from rockbatch.batch.execution import execute_runs, row_of, to_simulate
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
@@ -70,7 +70,7 @@ def carried_out(path, folder, among=None):
     loaded = load_study(path)
     engine = Watched()
     with Journal(folder / "peaks.csv.part", columns(loaded), {}) as journal:
-        carry_out(Plan(loaded, ground_motions(loaded)), loaded.numerics, journal, engine, loaded.output, among=among)
+        execute_runs(Plan(loaded, ground_motions(loaded)), loaded.numerics, journal, engine, loaded.output, among=among)
         return engine.simulated, dict(journal.rows())
 
 
@@ -165,10 +165,10 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
     _, whole = carried_out(study(), tmp_path / "whole")
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
         for kept in (range(lost), range(lost + 1, len(runs))):
-            carry_out(runs, loaded.numerics, journal, Threads(1), loaded.output, among=kept)
+            execute_runs(runs, loaded.numerics, journal, Threads(1), loaded.output, among=kept)
         assert list(to_simulate(runs, range(len(runs)), journal)) == [0]
         engine = Watched()
-        carry_out(runs, loaded.numerics, journal, engine, loaded.output)
+        execute_runs(runs, loaded.numerics, journal, engine, loaded.output)
         assert len(engine.simulated) == 1
         assert journal[lost] == whole[lost]
 

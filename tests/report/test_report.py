@@ -323,7 +323,7 @@ def test_templates_are_compiled_once_where_modules_are_kept(tmp_path, monkeypatc
     counts = []
     for _ in compiled:
         compilations.clear()
-        templates._environment.__wrapped__().get_template("sections/notes.html")
+        templates._environment.__wrapped__().get_template("report/sections/notes.html")
         counts.append(len(compilations))
     assert counts == compiled
 
@@ -334,7 +334,7 @@ def test_templates_are_compiled_anew_by_another_jinja(tmp_path, monkeypatch):
     for version in ("3.1.6", "99.0"):
         (tmp_path / "__init__.py").write_text(version)
         monkeypatch.setattr("jinja2.__file__", str(tmp_path / "__init__.py"))
-        templates._environment.__wrapped__().get_template("sections/notes.html")
+        templates._environment.__wrapped__().get_template("report/sections/notes.html")
     assert len(list(tmp_path.glob("*.jinja"))) == 2
 
 

@@ -40,7 +40,7 @@ STUDY = study_text(
 )  # fmt: skip
 PICTURES = {
     "answer", "figure", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",
-    "accuracy",
+    "error_and_time",
 }  # fmt: skip
 """Sections of the report that have one."""
 

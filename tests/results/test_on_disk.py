@@ -13,7 +13,7 @@ import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.batch.carrying_out import carry_out
+from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import history_bytes, keep_histories, to_keep, worst
 from rockbatch.batch.plan import Plan
@@ -53,7 +53,7 @@ def carried_out(folder, text=STUDY):
     motions = ground_motions(study)
     runs = Plan(study, motions)
     with Journal(folder / "peaks.csv.part", columns(study), {}) as journal:
-        carry_out(runs, study.numerics, journal, Threads(1), study.output)
+        execute_runs(runs, study.numerics, journal, Threads(1), study.output)
         journal.write_in_order(folder / "peaks.csv")
     info = {"rockbatch": "0.1.0", "created": CREATED, "versions": {"python": "3.11.2", "numpy": "2.3.1"}}
     info |= {"command": [], "machine": "", "runs": len(runs), "jobs": 1, "wall_s": 1.0, **describe(study, motions)}

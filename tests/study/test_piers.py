@@ -7,13 +7,13 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-from rockbatch.analysis.sampled import low_base_high
+from rockbatch.analyses.sensitivity.sampled import low_base_high
+from rockbatch.analyses.sensitivity.study import applying, read_sensitivity, varied
+from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.pier import Part, Pier
 from rockbatch.study import load_study
-from rockbatch.study.sensitivity import applying, read_sensitivity, varied
-from rockbatch.study.spectrum import read_spectrum
 
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.2\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2\n'

@@ -15,11 +15,11 @@ from studies import study_text, write_study
 import rockbatch.checks
 import rockbatch.motions
 import rockbatch.study
+from rockbatch.analyses.sensitivity.study import read_sensitivity
 from rockbatch.common.units import Bounds
 from rockbatch.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
-from rockbatch.study.sensitivity import read_sensitivity
 from rockbatch.toml import kinds
 from rockbatch.toml.kinds import KindError, Text, Whole
 from rockbatch.toml.reader import Table, TomlFile

@@ -48,7 +48,7 @@ def worst(finished: Finished) -> Markup:
         if n
     ]  # fmt: skip
     return render(
-        "sections/answer.html", finished=finished, runs=runs, guided=guided,
+        "report/sections/answer.html", finished=finished, runs=runs, guided=guided,
         alphas={f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()},
         symbols=any("=" in words for words in (*(series.label for series in finished.series), *finished.piers)),
         over=runs[runs["status"] == "overturned"],

@@ -32,6 +32,6 @@ def section(finished: Finished) -> Markup:
     if counts_as(finished.runs, finished.count)[0].nunique() >= LEAST_RECORDS:
         picture = distribution.draw(shown, finished.series, finished.count)
     return render(
-        "sections/distribution.html", picture=picture, records=RECORDS[finished.count], shown=len(shown),
+        "report/sections/distribution.html", picture=picture, records=RECORDS[finished.count], shown=len(shown),
         groups=finished.grouped.ngroups, foundations=len(places), best=BEST if len(places) > MOST_CURVES else None,
     )  # fmt: skip

@@ -32,7 +32,7 @@ def section(finished: Finished) -> Markup:
     once = list({(run["record"], finished.place(run["case"], run)[1], run["scale"]): run for run in runs}.values())
     on_rigid = [run for run in runs if finished.series[finished.place(run["case"], run)[0]].rigid]
     return render(
-        "sections/estimate.html", start=START, motions=len(once), on_rigid=on_rigid, file=ESTIMATE,
+        "report/sections/estimate.html", start=START, motions=len(once), on_rigid=on_rigid, file=ESTIMATE,
         methods=[_outcomes(method, once, on_rigid) for method in METHODS], table=_table(finished, runs),
     )  # fmt: skip
 

@@ -36,7 +36,7 @@ def section(finished: Finished) -> Markup:
     cut_short = finished.runs["status"].isin(_CUT_SHORT).to_numpy()
     known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
     return render(
-        "sections/forces.html", of_cases=_of_cases(finished, shown),
+        "report/sections/forces.html", of_cases=_of_cases(finished, shown),
         every_run=every_run(finished, heads, cells, "Forces of every run"),
         interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
         known=int(known.sum()), on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,

@@ -36,7 +36,7 @@ def section(finished: Finished) -> Markup:
     words = list(map(str, finished.info["command"]))
     from_command = not any(word.endswith(FROM_PYTHON) for word in words)
     command = shlex.join([*words, "--history", "RECORD"]) if from_command else ""
-    return render("sections/histories.html", pictures=_pictures(finished, finished.responses), command=command)
+    return render("report/sections/histories.html", pictures=_pictures(finished, finished.responses), command=command)
 
 
 def _pictures(finished: Finished, responses: Sequence[Response]) -> list[dict[str, Any]]:

@@ -26,7 +26,9 @@ def section(finished: Finished) -> Markup:
     if measures is None or measures.empty:
         return Markup("")
     ranks, dispersions = _order(finished, orders(measures, finished.info["varied"]))
-    return render("sections/intensity.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS)
+    return render(
+        "report/sections/intensity.html", ranks=ranks, dispersions=dispersions, file=INTENSITY, least=LEAST_RUNS
+    )
 
 
 def _order(finished: Finished, order: "pd.DataFrame") -> tuple[Markup, Markup]:

@@ -28,7 +28,7 @@ def section(finished: Finished) -> Markup:
     gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs() if OTHER_LAW in runs else None
     widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
     return render(
-        "sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
+        "report/sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
         linearised=LINEARISED, far=int(runs["note"].str.contains(LINEARISED).sum()), one_law=gap is None,
         ratchets=any(map(creeps, finished.info["cases"])),
         range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),

@@ -44,7 +44,7 @@ def section(finished: Finished, level: str = "h3") -> Markup:
     for case in cases:
         piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
     return render(
-        "sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
+        "report/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
         degrees=math.degrees, piers=list(piers.values()), given=_numbers_of(finished.pier_as_given),
         drawn=_drawn(finished), vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],

@@ -31,7 +31,7 @@ def section(finished: Finished) -> Markup:
         factors = [record["vertical_factor"] for record in records if record.get("vertical_factor") is not None]
         parts.append(
             render(
-                "sections/vertical_target.html",
+                "report/sections/vertical_target.html",
                 target=vertical,
                 factors=factors,
                 below=_is_below(finished, "vertical_target"),
@@ -72,7 +72,7 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
-        "sections/target.html", target=target, records=records, below=_is_below(finished, "target"), **_mean_over(target),
+        "report/sections/target.html", target=target, records=records, below=_is_below(finished, "target"), **_mean_over(target),
         run=(both / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(both) == len(target["sa_g"]) else [],
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),

@@ -1,0 +1,37 @@
+"""The public names, for type checkers and editors."""
+
+from rockbatch._version import __version__ as __version__
+from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
+from rockbatch.analyses.fragility.analysis import fragility as fragility
+from rockbatch.analyses.fragility.hazard_curve import HazardCurve as HazardCurve
+from rockbatch.analyses.release.analysis import release as release
+from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity
+from rockbatch.analyses.spectrum.analysis import spectrum as spectrum
+from rockbatch.batch.running import run as run
+from rockbatch.batch.single import simulate as simulate
+from rockbatch.checks import Rule as Rule
+from rockbatch.errors import InputError as InputError
+from rockbatch.motions import Motion as Motion
+from rockbatch.motions import MotionSet as MotionSet
+from rockbatch.motions import ReadOptions as ReadOptions
+from rockbatch.motions import pair_spectrum as pair_spectrum
+from rockbatch.motions import pulse as pulse
+from rockbatch.motions import read_motions as read_motions
+from rockbatch.motions import sequence as sequence
+from rockbatch.pier import Damper as Damper
+from rockbatch.pier import DeckSpring as DeckSpring
+from rockbatch.pier import ElasticBase as ElasticBase
+from rockbatch.pier import Part as Part
+from rockbatch.pier import Pier as Pier
+from rockbatch.pier import RigidBase as RigidBase
+from rockbatch.pier import Stop as Stop
+from rockbatch.pier import Tendon as Tendon
+from rockbatch.pier import YieldingBase as YieldingBase
+from rockbatch.pier.statics import Statics as Statics
+from rockbatch.pier.statics import statics as statics
+from rockbatch.report import report as report
+from rockbatch.results.checking import check as check
+from rockbatch.results.opened import open_results as open_results
+from rockbatch.simulation.response import Response as Response
+from rockbatch.study import Study as Study
+from rockbatch.study import load_study as load_study

@@ -1,0 +1,1 @@
+"""Analyses of a study beyond its runs: a folder for each, listed in ``rockbatch/common/analyses.py``."""

@@ -1,0 +1,25 @@
+"""Accuracy: error of the peak rotation against time per run, on this machine."""
+
+from rockbatch.commands.values import flag, seconds, value, whole
+from rockbatch.common.analyses import Door, ReportPart
+
+RUNS, SECONDS = 24, 60.0
+"""Default number of runs that are measured, and default time limit [s]."""
+
+DOOR = Door(
+    help="measure error against time of a study on this machine",
+    example="rockbatch accuracy pier.toml --no-scipy",
+    writes="  accuracy.csv, accuracy.json, and a section of report.html",
+    parts=(ReportPart("Error against time", "error_and_time", "section.section"),),
+    options={
+        "--runs": value(whole, "N", f"runs to measure, spread over the study (default: {RUNS})", default=RUNS),
+        "--seconds": value(
+            seconds,
+            "S",
+            f"time limit; measurements that do not fit are left out (default: {SECONDS:g})",
+            default=SECONDS,
+        ),
+        "--no-scipy": flag("leave out SciPy's solvers, which are slow"),
+    },
+    engine=False,
+)

@@ -1,0 +1,147 @@
+"""Error against time of a study on this machine: the analysis and its table."""
+
+import json
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from rockbatch.analyses.accuracy.error_and_time import Clock, measure, references
+from rockbatch.batch.analysis import Analysis
+from rockbatch.batch.compiling import make_ready
+from rockbatch.batch.listening import Progress, listener_of
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.lazy import pd
+from rockbatch.errors import InputError
+from rockbatch.report import write_report
+from rockbatch.results.columns import PEAKS
+from rockbatch.results.run_json import INFO
+from rockbatch.study import Motions, Study, given_study
+from rockbatch.study.suite import ground_motions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RUNS = 24
+"""Default number of runs that are measured."""
+
+SECONDS = 60.0
+"""Default time that it takes at most, or little more [s]."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Accuracy(Analysis):
+    """Error against time per run; see also :class:`rockbatch.batch.analysis.Analysis`.
+
+    Attributes
+    ----------
+    accuracy : DataFrame
+        A row for each method and setting, with the columns :data:`rockbatch.analyses.accuracy.error_and_time.COLUMNS`: errors of
+        θ_max/α, times per run [s].
+    records : tuple of str
+        Names of the motions.
+    """
+
+    NAME: ClassVar[str] = "accuracy"
+    TABLES: ClassVar[tuple[str, ...]] = ("accuracy",)
+
+    accuracy: "pd.DataFrame"
+    records: tuple[str, ...]
+
+    def plot(self, width_mm: float = 160.0) -> "Figure":
+        """Draw the error that 95 % of the runs stay below, over the time of a run: a matplotlib Figure of this width."""
+        from rockbatch.analyses.accuracy import plots
+
+        return plots.accuracy(self.accuracy, width_mm)
+
+    def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+        """Write ``accuracy.csv``, and the report again where the folder holds results of this very study.
+
+        Returns the paths written. Raises ``InputError`` if the disk is full.
+        """
+        directory = made_folder(Path(folder))
+        path = directory / "accuracy.csv"
+        write_whole(path, self.accuracy.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
+        return (path, write_report(directory)) if self._has_results(directory) else (path,)
+
+    def _has_results(self, directory: Path) -> bool:
+        """Return whether the folder holds results of this very study with these motions, whose report can show the table."""
+        try:
+            info = json.loads(read_text(directory / INFO))
+            records = tuple(record["record"] for record in info["records"])
+            is_same = info["study"]["sha256"] == self.accuracy["study"].iloc[0] and records == self.records
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            return False
+        return is_same and is_plain(directory / PEAKS)
+
+
+@checked
+def accuracy(
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    runs: int = RUNS,
+    seconds: float = SECONDS,
+    scipy: bool = True,
+    motions: Motions = None,
+    progress: Progress = None,
+) -> Accuracy:
+    """Measure the error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
+
+    Parameters
+    ----------
+    study, motions, progress
+        As for :func:`rockbatch.run`.
+    out : path, optional
+        Folder for ``accuracy.csv``; if it holds results of the study, their report shows it. Without it nothing is
+        written.
+    runs : int
+        Number of runs measured, spread over the study; fewer if there is no time for more.
+    seconds : float
+        Time allowed [s], once the kernels are compiled. What does not fit is left out: runs, the longest of
+        the fixed steps, repetitions, the tightest of SciPy's tolerances.
+    scipy : bool
+        Measure SciPy's solvers too, on springs without dampers and tendons; they are slow.
+
+    Returns
+    -------
+    Accuracy
+        With the table ``accuracy``.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the study; if no run converges under step halving, so that there is no error to measure.
+
+    Examples
+    --------
+    >>> result = rb.accuracy("pier4.toml", runs=2, scipy=False)
+    >>> result
+    <accuracy of 'Pier 4'>
+      tables  accuracy (13 rows)
+    >>> result.accuracy[["method", "substeps", "runs"]].head(3)
+        method  substeps  runs
+    0  located         1     2
+    1  located         2     2
+    2  located         4     2
+    """
+    if runs < 1:
+        raise InputError(f"runs = {runs}: must be at least 1")
+    if not seconds > 0:
+        raise InputError(f"seconds = {seconds:g}: must be above 0")
+    loaded, listener = given_study(study, motions), listener_of(progress)
+    if out is not None:
+        Accuracy.refuse_folders(Path(out))
+    suite = ground_motions(loaded)
+    make_ready(loaded, listener)
+    clock = Clock(seconds)
+    chosen = references(loaded, suite, runs, listener, clock)
+    measured = Accuracy(
+        study=loaded,
+        info={},
+        unusable=tuple(suite.unusable),
+        accuracy=measure(loaded, chosen, scipy, listener, clock),
+        records=tuple(motion.name for motion in suite.motions),
+    )
+    return measured if out is None else replace(measured, files=measured.save(out))

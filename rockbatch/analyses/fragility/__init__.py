@@ -1,0 +1,16 @@
+"""Fragility: how probable overturning, and every limit of a check, is at a given intensity; annual rates from a hazard."""
+
+from rockbatch.common.analyses import Door, ReportPart
+
+DOOR = Door(
+    help="fragility curves for overturning and for design checks",
+    example="rockbatch fragility pier.toml --jobs 4",
+    writes="  fragility.csv  shares of the records that exceed each limit\n"
+    "  fragility_capacities.csv, fragility_runs.csv, fragility.json, and a section of report.html",
+    parts=(
+        ReportPart("Fragility", "fragility", "section.section"),
+        ReportPart("Annual rates", "risk", "risk_section.section"),
+    ),
+    tables=("fragility",),
+    names={"HazardCurve": "hazard_curve"},
+)

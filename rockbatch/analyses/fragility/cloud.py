@@ -1,0 +1,353 @@
+"""Cloud analysis: fragility from records as they are, by a line ln demand over ln intensity and a logistic share that overturns.
+
+Of the records that stand, ln D = ln a + b ln x + ε, with ε normal of deviation σ; the share that overturns is logistic in ln x:
+
+    P(x) = Φ((ln a + b ln x − ln d)/σ) (1 − C(x)) + C(x),    C(x) = 1/(1 + exp(−α0 − α1 ln x))
+
+(Jalayer, Ebrahimian, Miano, Manfredi & Sezen 2017, Earthq. Eng. Struct. Dyn. 46(15):2639–2663). A rocking pier that does not lift
+off has no demand, or next to none, of which the logarithm says nothing about those near the limit d: demands below a share of d
+are censored, known only to be below it (Tobin 1958, Econometrica 26(1):24–36).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import expit, log_expit, log_ndtr, ndtr
+
+from rockbatch.analyses.fragility.lognormal import Values
+
+DRAWS = 1000
+"""Sets of parameters from their joint distribution, from which all intervals come."""
+
+SEED = 2017
+"""Of the draws, so that the same runs give the same intervals."""
+
+PROPOSALS = 10_000
+"""Points from which the draws of a logistic part are chosen."""
+
+BLOCK = 1_000_000
+"""Products of points and records that are in memory at a time."""
+
+WIDER = 1.5
+"""Width of the distribution of the proposals over that of the information at the maximum."""
+
+LEAST_RECORDS = 4
+"""Demands above the floor that a line needs."""
+
+_WIDEST = 12.0
+"""Of ln x about the data, in which medians are sought; beyond it one is 0 or infinite."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """ln D = intercept + slope ln x, deviation sigma; ``draws``, shape (m, 3), of all three."""
+
+    intercept: float
+    slope: float
+    sigma: float
+    draws: Values
+
+
+@dataclass(frozen=True)
+class Logistic:
+    """Share 1/(1 + exp(−intercept − slope ln x)); ``draws``, shape (m, 2), of both."""
+
+    intercept: float
+    slope: float
+    draws: Values
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """A fragility curve of a cloud analysis.
+
+    Attributes
+    ----------
+    limit : float
+        d, in the unit of the demand; 1 of an event.
+    line : Line or None
+        Demands of those that stand; None for an event, such as overturning itself.
+    overturning : Logistic or None
+        Share that overturns, or has the event; None if no record did, and it counts as 0.
+    confidence : float
+    centre : float
+        Mean of ln x.
+    added : float
+        Dispersion added to that of the records.
+    """
+
+    limit: float
+    line: Line | None
+    overturning: Logistic | None
+    confidence: float
+    centre: float
+    added: float = 0.0
+
+    def probability(self, x: Values) -> Values:
+        """Return P(x), shape of ``x``."""
+        line = None if self.line is None else np.array([[self.line.intercept, self.line.slope, self.line.sigma]])
+        share = None if self.overturning is None else np.array([[self.overturning.intercept, self.overturning.slope]])
+        return self._probabilities(line, share, np.log(x))[0]
+
+    def band(self, x: Values) -> tuple[Values, Values]:
+        """Return the pointwise interval of P(x), each shape (n,)."""
+        low, high = np.quantile(self._of_draws(np.log(x)), self._ends, axis=0)
+        return low, high
+
+    @property
+    def median(self) -> float:
+        """Return x where P = 1/2."""
+        return float(self._quantiles(0.5)[0])
+
+    @property
+    def dispersion(self) -> float:
+        """Return half of ln(x_84/x_16), which is β of a lognormal curve."""
+        low, high = (self._quantiles(float(ndtr(z)))[0] for z in (-1.0, 1.0))
+        return 0.5 * math.log(high / low) if low > 0 and math.isfinite(high) else math.inf
+
+    @property
+    def median_interval(self) -> tuple[float, float]:
+        """Return the interval of the median."""
+        low, high = np.quantile(self._quantiles(0.5, drawn=True), self._ends, method="nearest")
+        return float(low), float(high)
+
+    @property
+    def dispersion_interval(self) -> tuple[float, float]:
+        """Return the interval of the dispersion."""
+        low, high = (self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            half = np.where((low > 0) & np.isfinite(high), 0.5 * np.log(high / low), np.inf)
+        least, most = np.quantile(half, self._ends, method="nearest")
+        return float(least), float(most)
+
+    def widened(self, added: float) -> "Cloud":
+        """Return the curve with a dispersion ``added`` to the intensity that exceeds the limit."""
+        return self if added == 0 else replace(self, added=math.hypot(self.added, added))
+
+    def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
+        """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its interval.
+
+        Of draws with which the probability falls with the intensity the rate is infinite.
+        """
+        of_draws = self._of_draws(np.log(x)) @ rates
+        for part in (self.line, self.overturning):
+            if part is not None:
+                of_draws = np.where(part.draws[:, 1] > 0, of_draws, np.inf)
+        low, high = np.quantile(of_draws, self._ends, method="nearest")
+        return float(self.probability(x) @ rates), float(low), float(high)
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return 0.5 - 0.5 * self.confidence, 0.5 + 0.5 * self.confidence
+
+    def _of_draws(self, log_x: Values) -> Values:
+        """Return P for each draw, shape (m, n)."""
+        line, share = (None if part is None else part.draws for part in (self.line, self.overturning))
+        return self._probabilities(line, share, log_x)
+
+    def _probabilities(self, line: Values | None, share: Values | None, log_x: Values) -> Values:
+        """Return P of m parameters at ``log_x``, shape (n,) or (m, n): shape (m, n)."""
+        if self.added == 0:
+            return self._plain(line, share, log_x)
+        places, weights = np.polynomial.hermite_e.hermegauss(15)
+        parts = (w * self._plain(line, share, log_x + self.added * z) for z, w in zip(places, weights, strict=True))
+        total: Values = sum(parts) / weights.sum()
+        return total
+
+    def _plain(self, line: Values | None, share: Values | None, log_x: Values) -> Values:
+        beyond = 0.0 if share is None else expit(share[:, :1] + share[:, 1:] * log_x)
+        if line is None:
+            return np.asarray(beyond)
+        standing = ndtr((line[:, :1] + line[:, 1:2] * log_x - math.log(self.limit)) / line[:, 2:])
+        return standing * (1.0 - beyond) + beyond
+
+    def _quantiles(self, p: float, *, drawn: bool = False) -> Values:
+        """Return x where P = ``p``, of every draw or of the curve, by bisection; 0 or infinite far from the data."""
+        parts = (self.line, self.overturning)
+        if drawn:
+            line, share = (None if part is None else part.draws for part in parts)
+        else:
+            line = None if self.line is None else np.array([[self.line.intercept, self.line.slope, self.line.sigma]])
+            share = (
+                None if self.overturning is None else np.array([[self.overturning.intercept, self.overturning.slope]])
+            )
+        m = next(len(part) for part in (line, share) if part is not None)
+        low, high = np.full((m, 1), self.centre - _WIDEST), np.full((m, 1), self.centre + _WIDEST)
+        below, above = (self._probabilities(line, share, end)[:, 0] for end in (low, high))
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            lower = self._probabilities(line, share, middle) < p
+            low, high = np.where(lower, middle, low), np.where(lower, high, middle)
+        return np.where(below >= p, 0.0, np.where(above < p, np.inf, np.exp(0.5 * (low + high)[:, 0])))
+
+
+@dataclass(frozen=True)
+class Demands:
+    """Runs of a cloud: intensities ``x``, shape (n,), ``demand`` of those that stand, and which ``overturned``.
+
+    ``within`` are those of which only this is known: that they do not exceed the limit.
+    """
+
+    x: Values
+    demand: Values
+    overturned: npt.NDArray[np.bool_]
+    within: npt.NDArray[np.bool_]
+
+
+def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> Cloud | str:
+    """Return the curve of a limit above 0, or why the data do not have one, in words; demands below ``floor`` are censored.
+
+    σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
+    the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
+    keeps it finite where intensities part the records that overturned from the others.
+    """
+    log_x, stands = np.log(runs.x), ~runs.overturned
+    share = _share(log_x, runs.overturned)
+    if isinstance(share, str):
+        return share
+    exact = stands & ~runs.within & (runs.demand > floor)
+    if np.count_nonzero(exact) < LEAST_RECORDS:
+        return (
+            f"{np.count_nonzero(exact)} records stand with a demand above {floor:.3g}, where a line needs {LEAST_RECORDS}: more "
+            "records, stronger ones, or a smaller censored_below"
+        )
+    if np.ptp(log_x[exact]) < 1e-6:
+        return "all records have the same intensity: a line needs a cloud of them"
+    censored = stands & ~exact
+    bounds = np.log(np.where(runs.within, limit, floor))[censored]
+    line = _line(log_x[exact], np.log(runs.demand[exact]), log_x[censored], bounds)
+    if not line.slope > 0:
+        return "the demand does not grow with the intensity"
+    return Cloud(limit, line, share, confidence, float(log_x.mean()))
+
+
+def fit_event(x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95) -> Cloud | str:
+    """Return the curve of an event such as overturning, logistic alone, or why the data do not have one."""
+    log_x = np.log(x)
+    if not happened.any():
+        return (
+            f"no record exceeds the limit up to {x.max():.4g}: the median is beyond" if len(x) else "no record counts"
+        )
+    if happened.all():
+        return f"every record exceeds the limit from {x.min():.4g} on: the median is below"
+    share = _share(log_x, happened)
+    if not isinstance(share, Logistic):
+        return share or "no record exceeds the limit"
+    return Cloud(1.0, None, share, confidence, float(log_x.mean()))
+
+
+def _share(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic | str | None:
+    if not happened.any():
+        return None
+    if happened.all():
+        return "every record overturns: weaker ones are needed"
+    if np.ptp(log_x) < 1e-6:
+        return "all records have the same intensity: a share over it needs a cloud of them"
+    share = _logistic(log_x, happened)
+    return share if share.slope > 0 else "the share of records that overturn does not grow with the intensity"
+
+
+def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> Line:
+    """Return the censored regression by maximum likelihood, by Newton's method.
+
+    In δ = β/σ and γ = 1/σ the likelihood is concave (Olsen 1978, Econometrica 46(5):1211–1215).
+    """
+    centre = log_x.mean()
+    x = np.column_stack((np.ones(len(log_x)), log_x - centre))
+    xc = np.column_stack((np.ones(len(censored_x)), censored_x - centre))
+    beta = np.linalg.lstsq(x, log_d, rcond=None)[0]
+    sigma = max(float(np.sqrt(np.mean((log_d - x @ beta) ** 2))), 1e-9)
+    point = np.append(beta, 1.0) / sigma
+
+    def value(point: Values) -> float:
+        if point[2] <= 0:
+            return -math.inf
+        z = point[2] * log_d - x @ point[:2]
+        return float(len(z) * math.log(point[2]) - 0.5 * z @ z + log_ndtr(point[2] * bounds - xc @ point[:2]).sum())
+
+    for _ in range(100):
+        score, hessian = _derivatives(point, x, log_d, xc, bounds)
+        step, current = np.linalg.solve(-hessian, score), value(point)
+        while value(point + step) < current and np.abs(step).max() > 1e-14 * np.abs(point).max():
+            step = 0.5 * step
+        point = point + step
+        if np.abs(step).max() < 1e-12 * np.abs(point).max():
+            break
+    _, hessian = _derivatives(point, x, log_d, xc, bounds)
+    # From δ, γ to β and ln σ: at the maximum information changes by the Jacobian alone
+    turned = np.column_stack((np.vstack((np.eye(2), np.zeros(2))) * point[2], -point))
+    covariance = np.linalg.inv(-turned.T @ hessian @ turned)[:2, :2]
+    free = max(len(log_x) - 2, 1)
+    grown = len(log_x) / free
+    beta, sigma = point[:2] / point[2], math.sqrt(grown) / point[2]
+    rng = np.random.default_rng(SEED)
+    sigmas = sigma * np.sqrt(free / rng.chisquare(free, DRAWS))
+    spread = rng.standard_normal((DRAWS, 2)) @ np.linalg.cholesky(covariance * grown).T
+    betas = beta + spread * (sigmas / sigma)[:, None]
+    draws = np.column_stack((betas[:, 0] - betas[:, 1] * centre, betas[:, 1], sigmas))
+    return Line(float(beta[0] - beta[1] * centre), float(beta[1]), float(sigma), draws)
+
+
+def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Values) -> tuple[Values, Values]:
+    """Return score, shape (3,), and Hessian, shape (3, 3), over δ and γ."""
+    rows = np.column_stack((-x, log_d))
+    z = rows @ point
+    score = -rows.T @ z
+    score[2] += len(z) / point[2]
+    hessian = -rows.T @ rows
+    hessian[2, 2] -= len(z) / point[2] ** 2
+    if len(bounds):
+        rows = np.column_stack((-xc, bounds))
+        w = rows @ point
+        ratio = np.exp(-0.5 * w**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(w))
+        score += rows.T @ ratio
+        hessian -= rows.T @ (rows * (ratio * (w + ratio))[:, None])
+    return score, hessian
+
+
+def _logistic(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic:
+    """Return Firth's logistic regression, by Newton's method on its penalised score."""
+    centre, width = log_x.mean(), log_x.std()
+    x = np.column_stack((np.ones(len(log_x)), (log_x - centre) / width))
+    coefficients = np.zeros(2)
+    for _ in range(200):
+        p = expit(x @ coefficients)
+        weight = p * (1.0 - p)
+        covariance = np.linalg.inv(x.T @ (x * weight[:, None]))
+        leverage = weight * np.einsum("ij,jk,ik->i", x, covariance, x)
+        step = covariance @ (x.T @ (happened - p + leverage * (0.5 - p)))
+        coefficients = coefficients + step * min(1.0, 2.0 / max(np.abs(step).max(), 1e-300))
+        if np.abs(step).max() < 1e-11:
+            break
+    draws = np.vstack((coefficients, _posterior(coefficients, covariance, x, happened)))
+    slopes = draws[:, 1] / width
+    plain = np.column_stack((draws[:, 0] - slopes * centre, slopes))
+    return Logistic(float(plain[0, 0]), float(plain[0, 1]), plain[1:])
+
+
+def _posterior(mode: Values, covariance: Values, x: Values, happened: npt.NDArray[np.bool_]) -> Values:
+    """Return draws, shape (DRAWS, 2), from the penalised likelihood, which is the posterior with Jeffreys' prior.
+
+    They are chosen by their weights from many of Student's distribution with three degrees of freedom about the maximum: a normal
+    one would be too narrow where few records overturn.
+    """
+    rng = np.random.default_rng(SEED + 1)
+    normal = rng.standard_normal((PROPOSALS, 2))
+    far = rng.chisquare(3, PROPOSALS) / 3
+    proposed = mode + normal @ np.linalg.cholesky(covariance).T * (WIDER / np.sqrt(far))[:, None]
+    products = np.column_stack((x[:, 0] ** 2, x[:, 0] * x[:, 1], x[:, 1] ** 2))
+    likelihood = np.empty(PROPOSALS)
+    block = max(1, BLOCK // len(x))
+    for some in (slice(k, k + block) for k in range(0, PROPOSALS, block)):
+        z = proposed[some] @ x.T
+        p = expit(z)
+        first, mixed, last = ((p * (1.0 - p)) @ products).T  # of the information, whose determinant is Jeffreys' prior
+        with np.errstate(divide="ignore"):
+            prior = 0.5 * np.log(np.maximum(first * last - mixed**2, 0.0))
+        likelihood[some] = z @ happened + log_expit(-z).sum(axis=1) + prior
+    of_proposal = -2.5 * np.log1p((normal**2).sum(axis=1) / far / 3)
+    logs = likelihood - of_proposal
+    weights = np.exp(logs - logs.max())
+    return proposed[rng.choice(PROPOSALS, DRAWS, p=weights / weights.sum())]

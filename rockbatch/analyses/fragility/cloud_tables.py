@@ -1,0 +1,95 @@
+"""Cloud analysis as output: what each run came to, and the line and the logistic part of each curve."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.analyses.fragility.cloud import Cloud
+from rockbatch.analyses.fragility.curves import CloudPoint, Curve
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, threshold
+from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.batch.listening import count
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.common.lazy import pd
+
+CLOUD = "fragility_cloud.csv"
+
+FEW = 3
+"""Records beyond a limit, fewer of which leave its curve an extrapolation."""
+
+
+def cloud_table(
+    curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str], names: Sequence[str]
+) -> "pd.DataFrame":
+    """Return fragility_cloud.csv: a row for each curve and run, with its ``demand`` and the ``limit``.
+
+    It ``counts`` in the "line", as "below" the share of the limit under which demands are censored, as "overturned" or by the
+    event, as "undecided", or is "left out".
+    """
+    rows: list[dict[str, Any]] = []
+    for curve in curves:
+        constants = {"measure": spec.label, "unit": spec.unit, "limit": threshold(curve.limit)}
+        rows += [
+            {"record": names[run.motion]} | curve.identity(varied) | constants
+            | {"intensity": run.intensity, "demand": run.demand, "status": run.status, "counts": counts(run, curve, spec)}
+            for run in curve.cloud
+        ]  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
+    """Return how a run counts in a curve, in a word or two."""
+    if run.state == LEFT_OUT:
+        return "left out"
+    if run.state == UNDECIDED and run.status != "ok":
+        return "undecided"
+    if DEMANDS[curve.limit.demand].event:
+        return "exceeds" if run.state == EXCEEDED else "within"
+    if run.state == EXCEEDED and run.status == "overturned":
+        return "overturned"
+    return "line" if run.demand > spec.censored_below * threshold(curve.limit) else "below"
+
+
+def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
+    """Return the cloud of a curve for fragility.json: its runs as they are drawn, its line and its logistic part."""
+    fitted = curve.fitted
+    line = fitted.line if isinstance(fitted, Cloud) else None
+    share = fitted.overturning if isinstance(fitted, Cloud) else None
+    event = DEMANDS[curve.limit.demand].event
+    return {
+        "limit": threshold(curve.limit),
+        "floor": None if event else spec.censored_below * threshold(curve.limit),
+        "demand": "" if event else DEMANDS[curve.limit.demand].words,
+        "line": None if line is None else {"ln_a": line.intercept, "b": line.slope, "sigma": line.sigma},
+        "logistic": None if share is None else {"alpha_0": share.intercept, "alpha_1": share.slope},
+        "runs": [
+            {
+                "x": run.intensity,
+                "demand": run.demand if np.isfinite(run.demand) else None,
+                "counts": counts(run, curve, spec),
+            }
+            for run in curve.cloud
+        ],
+    }
+
+
+def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
+    """Return remarks on what a curve of a cloud rests on."""
+    notes = []
+    beyond = sum(run.state == EXCEEDED for run in curve.cloud)
+    if beyond < FEW:
+        extrapolated = (
+            f"{count(beyond, 'record')} of {len(curve.cloud)} exceed" if beyond != 1 else "one record exceeds"
+        )
+        notes.append(
+            f"only {extrapolated} the limit: the curve extrapolates; add stronger records, or scale in [motions]"
+        )
+    if isinstance(curve.fitted, Cloud) and curve.fitted.overturning is None:
+        notes.append("no record overturns: their share counts as 0 at every intensity")
+    below = sum(counts(run, curve, spec) == "below" for run in curve.cloud)
+    if below:
+        notes.append(
+            f"{count(below, 'record')} below {100 * spec.censored_below:g} % of the limit count as small, without their value"
+        )
+    return notes

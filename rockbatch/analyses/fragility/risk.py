@@ -1,0 +1,282 @@
+"""Annual rates at which limits are exceeded: fragility curves times the hazard of the site.
+
+The mean annual rate is λ = ∫ P(x) |dν(x)| (Cornell, Jalayer, Hamburger & Foutch 2002, J. Struct. Eng. 128(4):526–533), and the
+probability in T years 1 − exp(−λT), as of a Poisson process.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockbatch.analyses.fragility.curves import Curve, Fitted
+from rockbatch.analyses.fragility.hazard import Hazard
+from rockbatch.analyses.fragility.hazard_curve import MOST_RATE, HazardCurve
+from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.common.lazy import pd
+
+RISK, DEAGGREGATION = "fragility_risk.csv", "fragility_deaggregation.csv"
+
+NOTABLE = 0.05
+"""Share of a rate from which a remark says what it rests on."""
+
+MIDDLE = (0.05, 0.95)
+"""Shares of a rate between which the intensities lie that are named as those that contribute."""
+
+BINS_PER_DECADE = 10
+
+
+@dataclass(frozen=True)
+class Risk:
+    """How often a case exceeds a limit.
+
+    Attributes
+    ----------
+    curve : Curve
+        The fragility.
+    total : Lognormal or Cloud
+        Its curve with the added dispersion.
+    rate : float
+        Mean annual rate of exceedance.
+    interval : tuple of two floats
+        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known.
+    undecided : tuple of two floats or None
+        The rates with all undecided runs counted as within the limit, and as beyond it; None without any.
+    below, above : float
+        Parts of the rate from intensities below and above the hazard's points, where its end slopes go on.
+    bounds : tuple of two floats
+        The rate whatever the hazard is above its highest point: with the fragility there as it is at that point, and 1.
+    beyond_levels : tuple of two floats
+        Parts from intensities below and above the levels that were run, where the curve is an extrapolation.
+    contributing : tuple of two floats
+        Intensities between which nine tenths of the rate come about.
+    """
+
+    curve: Curve
+    total: Fitted
+    rate: float
+    interval: tuple[float, float]
+    undecided: tuple[float, float] | None
+    below: float
+    above: float
+    bounds: tuple[float, float]
+    beyond_levels: tuple[float, float]
+    contributing: tuple[float, float]
+
+    def probability(self, years: float) -> float:
+        """Return the probability of at least one exceedance in that time."""
+        return probability(self.rate, years)
+
+
+def probability(rate: float, years: float) -> float:
+    """Return 1 − exp(−λT), the probability of at least one event of a Poisson process in ``years``."""
+    return -math.expm1(-rate * years)
+
+
+def percent(p: float) -> str:
+    """Return a probability in per cent with two digits, without exponent where it is all but certain."""
+    return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
+
+
+def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
+    """Return the risk of every curve that has a fit; none without a hazard."""
+    hazard = spec.hazard
+    if hazard is None:
+        return []
+    x, rates = hazard.curve.quadrature()
+    return [_risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, str)]
+
+
+def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
+    total = fitted.widened(spec.added)
+    rate, least, most = total.rate(x, rates)
+    if most > _meaningful(hazard.curve):
+        most = math.inf
+    yearly = total.probability(x) * rates
+    first, last = hazard.curve.ends
+    above = float(yearly[x > last].sum())
+    beyond = float(hazard.curve.rate([last])[0])
+    at_least = rate - above + beyond * float(total.probability(np.array([last]))[0])
+    passed = np.cumsum(yearly) / rate if rate > 0 else np.linspace(0.0, 1.0, len(x))
+    low, high = (float(np.exp(np.interp(share, passed, np.log(x)))) for share in MIDDLE)
+    return Risk(
+        curve,
+        total,
+        rate,
+        (least, most),
+        _undecided(curve, spec.added, x, rates),
+        float(yearly[x < first].sum()),
+        above,
+        (at_least, rate - above + beyond),
+        (float(yearly[x < spec.levels[0]].sum()), float(yearly[x > spec.levels[-1]].sum())),
+        (low, high),
+    )
+
+
+def _meaningful(hazard: HazardCurve) -> float:
+    """Return the greatest rate that says anything: that of the lowest point of a table, below which a hazard is not known."""
+    return hazard.rates[0] if len(hazard.rates) > 1 else MOST_RATE
+
+
+def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[float, float] | None:
+    """Return both rates, the lower first; 0 or that of all motions for a reading without a curve."""
+    if curve.readings is None:
+        return None
+    bounds = []
+    for reading, rate_of_tail in ((curve.readings.withstood, 0.0), (curve.readings.exceeded, math.inf)):
+        bounds.append(rate_of_tail if isinstance(reading, str) else reading.widened(added).rate(x, rates)[0])
+    return min(bounds), max(bounds)
+
+
+def note(risk: Risk, spec: FragilitySpec) -> str:
+    """Return what the number does not say by itself; empty if there is nothing."""
+    notes = []
+    if math.isinf(risk.interval[1]):
+        notes.append(
+            "the records leave the upper bound of the rate open: more often than the weakest motions of the hazard"
+        )
+    points = spec.hazard.curve.levels if spec.hazard else ()
+    if len(points) == 1:
+        notes.append("all of the rate rests on the slope through one point of the hazard")
+    elif risk.rate > 0 and risk.above > NOTABLE * risk.rate:
+        low, high = risk.bounds
+        notes.append(
+            f"{_share(risk.above, risk)} of the rate comes from above the hazard's highest point, where its last slope goes on: "
+            f"whatever the hazard is there, the rate is between {low:.3g} and {high:.3g}"
+        )
+    if len(points) > 1 and risk.rate > 0 and risk.below > NOTABLE * risk.rate:
+        notes.append(
+            f"{_share(risk.below, risk)} comes from below its lowest point, where its first slope goes on, though hazard curves "
+            "flatten there: too much, rather"
+        )
+    weaker, stronger = risk.beyond_levels
+    if risk.rate > 0 and weaker > NOTABLE * risk.rate:
+        notes.append(
+            f"{_share(weaker, risk)} comes from below the lowest intensity that was run, {spec.levels[0]:.3g} {spec.unit}: "
+            "from the tail of the fitted curve, which no run has tried"
+        )
+    if risk.rate > 0 and stronger > NOTABLE * risk.rate:
+        notes.append(
+            f"{_share(stronger, risk)} comes from above the highest that was run, {spec.levels[-1]:.3g} {spec.unit}"
+        )
+    if risk.rate * max(spec.hazard.years if spec.hazard else (0.0,)) > 3.0:
+        notes.append(
+            "several exceedances in the longest of the periods: the probability is all but 1 whatever the pier"
+        )
+    return "; ".join(notes)
+
+
+def _share(part: float, risk: Risk) -> str:
+    return f"{100 * part / risk.rate:.0f} %"
+
+
+def risk_table(
+    curves: Sequence[Curve], risks: Sequence[Risk], spec: FragilitySpec, varied: Sequence[str]
+) -> "pd.DataFrame":
+    """Return fragility_risk.csv: a row for each curve, with the fields of :class:`Risk`; an open bound is empty.
+
+    Of a curve that could not be fitted there is the reason, as its ``note``.
+    """
+    finite = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
+    rows = [finite.get(id(curve)) or curve.identity(varied) | {"note": str(curve.fitted)} for curve in curves]
+    return pd.DataFrame(rows, columns=list(next(iter(finite.values()), rows[0] if rows else {})))
+
+
+def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
+    curve, hazard = risk.curve, spec.hazard
+    row = curve.identity(varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
+    dispersion = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
+    row |= {"dispersion": dispersion, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
+    low, high = map(_or_nothing, risk.interval)
+    within, beyond = map(_or_nothing, risk.undecided or (math.nan, math.nan))
+    row |= {"rate_per_year": risk.rate, "rate_low": low, "rate_high": high}
+    row |= {"rate_if_withstood": within, "rate_if_exceeded": beyond}
+    row |= {"rate_below_points": risk.below, "rate_above_points": risk.above}
+    row |= {"rate_least": risk.bounds[0], "rate_most": risk.bounds[1]}
+    row |= {"rate_below_levels": risk.beyond_levels[0], "rate_above_levels": risk.beyond_levels[1]}
+    row |= {"contributing_from": risk.contributing[0], "contributing_to": risk.contributing[1]}
+    for years in hazard.years if hazard else ():
+        name = f"p_in_{years:g}_years"
+        row |= {name: risk.probability(years), f"{name}_low": probability(risk.interval[0], years)}
+        row[f"{name}_high"] = probability(risk.interval[1], years)
+    return row | {"note": note(risk, spec)}
+
+
+def _or_nothing(bound: float) -> float:
+    return bound if math.isfinite(bound) else math.nan
+
+
+def deaggregation_table(risks: Sequence[Risk], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return fragility_deaggregation.csv: for each curve the part of the rate from motions ``above`` one intensity up to another.
+
+    ``hazard`` says whether they are between the points of the hazard, "within", or "below" or "above" them.
+    """
+    rows: list[dict[str, Any]] = []
+    for risk in risks:
+        identity = risk.curve.identity(varied)
+        for low, high, position, part in deaggregated(risk, spec):
+            share = part / risk.rate if risk.rate > 0 else math.nan
+            bin_ = {"above": low, "up_to": high, "unit": spec.unit, "hazard": position}
+            rows.append(identity | bin_ | {"rate_per_year": part, "share": share})
+    return pd.DataFrame(rows)
+
+
+def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, str, float]]:
+    """Return bins of intensity, low and high, where they are on the hazard's table, and the part of the rate from each.
+
+    Ten of a decade, cut at the hazard's ends; those of less than a thousandth of the rate at either end are joined.
+    """
+    if spec.hazard is None:
+        return []
+    x, rates = spec.hazard.curve.quadrature()
+    passed = np.concatenate(([0.0], np.cumsum(risk.total.probability(x) * rates)))
+    ends = spec.hazard.curve.ends
+    low, high = (float(np.exp(np.interp(share * risk.rate, passed[1:], np.log(x)))) for share in (1e-3, 1.0 - 1e-3))
+    decades = np.arange(
+        math.floor(BINS_PER_DECADE * math.log10(low)), math.ceil(BINS_PER_DECADE * math.log10(high)) + 1
+    )
+    grid = 10.0 ** (decades / BINS_PER_DECADE)
+    edges = np.unique(np.concatenate((grid, [end for end in ends if grid[0] < end < grid[-1]])))
+    upto = np.interp(np.log(edges), np.log(x), passed[1:])
+    upto[0], upto[-1] = 0.0, passed[-1]
+    bins = []
+    for i, part in enumerate(np.diff(upto)):
+        middle = math.sqrt(edges[i] * edges[i + 1])
+        position = "below" if middle < ends[0] else "above" if middle > ends[1] else "within"
+        bins.append((float(edges[i]), float(edges[i + 1]), position, float(part)))
+    return bins
+
+
+def described_hazard(spec: FragilitySpec) -> dict[str, Any] | None:
+    """Return the hazard for fragility.json: its points, and the curve through them as it is drawn."""
+    if spec.hazard is None:
+        return None
+    curve = spec.hazard.curve
+    low, high = min(curve.ends[0], spec.levels[0]), max(curve.ends[1], spec.levels[-1])
+    x = np.geomspace(low / 1.2, high * 1.2, 60)
+    return {
+        "levels": curve.levels,
+        "rates": curve.rates,
+        "slope": curve.slope,
+        "shape": curve.shape,
+        "misfit": curve.misfit,
+        "years": spec.hazard.years,
+        "source": spec.hazard.source,
+        "file": spec.hazard.file,
+        "drawn": {"x": x.tolist(), "rate": curve.rate(x).tolist()},
+    }
+
+
+def described(risk: Risk, spec: FragilitySpec) -> dict[str, Any]:
+    """Return the risk of a curve for fragility.json, with the share of the rate per unit of ln x as it is drawn."""
+    row = {name: value for name, value in _row(risk, spec, ()).items() if name not in ("case", "limit_state")}
+    content = {name: value if isinstance(value, str) or math.isfinite(value) else None for name, value in row.items()}
+    if spec.hazard is not None and risk.rate > 0:
+        curve, (low, high) = spec.hazard.curve, risk.contributing
+        x = np.geomspace(low / 2.0, high * 2.0, 80)
+        density = risk.total.probability(x) * curve.log_slope(x) * curve.rate(x) / risk.rate
+        content["density"] = {"x": x.tolist(), "share": density.tolist()}
+    return content

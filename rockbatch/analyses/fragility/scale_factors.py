@@ -1,0 +1,75 @@
+"""Factors on the records of a fragility: which one each record takes at each level, and which are beyond the study's limits."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.analyses.fragility.curves import LevelPlan
+from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.batch.listening import count
+from rockbatch.common.lazy import pd
+
+SCALES = "fragility_scales.csv"
+
+FAR = 0.1
+"""Relative distance of an intensity from its level from which a remark says so."""
+
+
+def scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> "pd.DataFrame":
+    """Return fragility_scales.csv: a row for each record and level that it is meant for.
+
+    ``scale`` is the factor on the record as it was recorded, also what the study's target has done, ``unscaled`` its intensity
+    then, and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
+    """
+    rows = [
+        {"record": name, "measure": spec.label, "unit": spec.unit, "unscaled": plan.unscaled[m] / plan.earlier[m]}
+        | {"level": level, "intensity": intensity, "scale": plan.factor(m, level), "used": level in plan.used[m]}
+        for m, name in enumerate(names)
+        for level, intensity in sorted((plan.used[m] | plan.not_used[m]).items())
+    ]
+    return pd.DataFrame(rows)
+
+
+def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
+    """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
+    if spec.method == "cloud":
+        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plan, spec)}
+    factors, used = [], []
+    for m in range(len(names)):
+        intensities = plan.used[m] | plan.not_used[m]
+        factors.append([plan.factor(m, x) if x in intensities else None for x in spec.levels])
+        used.append([x in plan.used[m] for x in spec.levels])
+    limits = [spec.least_scale or None, spec.most_scale if np.isfinite(spec.most_scale) else None]
+    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": in_words(plan, spec)}
+
+
+def in_words(plan: LevelPlan, spec: FragilitySpec) -> str:
+    """Return in words how far records are scaled, and how many are left at each level."""
+    factors = [plan.factor(m, x) for m, used in enumerate(plan.used) for x in used]
+    if min(factors) == max(factors) == 1.0:
+        return "records are taken as they were recorded"
+    parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
+    if spec.method == "cloud" and max(map(len, plan.used)) > 1:
+        parts.append("each counts once at every scale, as if these were records of their own: intervals are too narrow")
+    beyond = {x: sum(x in used for used in plan.not_used) for x in spec.levels}
+    if any(beyond.values()):
+        limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"
+        remaining = [
+            f"{sum(x in used for used in plan.used)} of {count(sum(x in used for used in plan.used) + n, 'record')} at {x:g}"
+            for x, n in beyond.items()
+            if n
+        ]
+        parts.append(f"factors {limits} are allowed, which leaves {', '.join(remaining)} {spec.unit}")
+    far = [
+        f"{min(values):.3g} to {max(values):.3g} at {x:g}"
+        for x in (() if spec.method == "cloud" else spec.levels)
+        if (values := [by_level[x] for by_level in plan.used if x in by_level])
+        and max(abs(y / x - 1.0) for y in values) > FAR
+    ]
+    if far:
+        parts.append(
+            f"the given factors bring records to intensities away from their levels, {', '.join(far)} {spec.unit}: is "
+            f"{spec.label} the measure of the selection?"
+        )
+    return "; ".join(parts)

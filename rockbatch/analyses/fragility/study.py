@@ -1,0 +1,235 @@
+"""Fragility curves in a study file: [fragility]."""
+
+import fnmatch
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+from rockbatch.analyses.fragility.hazard import (
+    DISPERSION,
+    HAZARD,
+    Dispersion,
+    Hazard,
+    read_dispersions,
+    read_hazard,
+    root_of_squares,
+)
+from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
+from rockbatch.checks.demands import DEMANDS
+from rockbatch.checks.rules import Rule
+from rockbatch.common.grouping import closest
+from rockbatch.pier import Base
+from rockbatch.study.load import Study
+from rockbatch.toml.kinds import Number, choice, positive, shown, text
+from rockbatch.toml.meant import names
+from rockbatch.toml.reader import Table
+from rockbatch.toml.section import Key, Section
+
+MEASURES = ("PGA", "PGV", "Sa")
+OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a rocking pier")
+"""The limit state that every study has."""
+
+
+HUNT_STEP = 0.0025
+"""Relative steps of the hunt on rigid ground, unless the study gives others."""
+
+WINDOW = 0.02
+"""Relative half-width of the windows about the levels on rigid ground, unless the study gives another."""
+
+
+LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
+
+
+@dataclass(frozen=True)
+class FragilitySpec:
+    """[fragility]: how intensity is measured, where fragility is sampled, and the limits.
+
+    :data:`FRAGILITY` says what each key means. ``levels`` rise, in :attr:`unit`; ``limits`` are overturning, then the checks,
+    each held against every record by itself, with runs that flew or failed undecided unless the check leaves them out.
+    ``stripes`` are those with records of their own, one for each level.
+    """
+
+    method: str
+    measure: str
+    levels: tuple[float, ...]
+    limits: tuple[Rule, ...]
+    period_s: float = 1.0
+    damping: float = 0.05
+    tolerance: float = 0.01
+    confidence: float = 0.95
+    hunt_step: float | None = None
+    window: float | None = None
+    hazard: Hazard | None = None
+    dispersions: tuple[Dispersion, ...] = ()
+    least_scale: float = 0.0
+    most_scale: float = math.inf
+    censored_below: float = 0.01
+    stripes: tuple[StripeRecords, ...] = ()
+
+    @property
+    def of_runs(self) -> "FragilitySpec":
+        """The settings on which runs depend, with the others as they are by default."""
+        return replace(self, confidence=0.95, hazard=None, dispersions=())
+
+    @property
+    def added(self) -> float:
+        """Dispersion added to that of the records, the root of the squares of all; 0 without any."""
+        return root_of_squares(self.dispersions)
+
+    def step_on(self, base: Base) -> float | None:
+        """Return the relative steps of the hunt between the levels on ``base``; None where it is the levels alone."""
+        return HUNT_STEP if self.hunt_step is None and not base.on_springs else self.hunt_step
+
+    def window_on(self, base: Base) -> float | None:
+        """Return the relative half-width of the windows about the levels on ``base``; None where there are none."""
+        if self.method != "ida":
+            return None
+        return WINDOW if self.window is None and not base.on_springs else self.window
+
+    def allows(self, factor: float) -> bool:
+        """Return whether a factor on a record as it was recorded is within the limits of the study."""
+        return self.least_scale <= factor * (1 + 1e-9) and factor <= self.most_scale * (1 + 1e-9)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the levels."""
+        return "m/s" if self.measure == "PGV" else "g"
+
+    @property
+    def label(self) -> str:
+        """The measure in words: "Sa(1 s, 5 %)"."""
+        return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)" if self.measure == "Sa" else self.measure
+
+
+_BELOW_ONE = Number("a number, 0 or above and below 1", low=0.0, high=1.0, below=True)
+_SA, _IDA, _CLOUD = {"measure": ("Sa",)}, {"method": ("ida",)}, {"method": ("cloud",)}
+_SCALED = {"method": ("stripes", "ida")}
+FRAGILITY = Section(("fragility",), (
+    "Fragility curves, by `rockbatch fragility`: how probable it is at a given intensity that a limit is exceeded."
+), {
+    "method": Key(choice("stripes", "ida", "cloud"), '"ida"',
+        '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit; '
+        '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
+        default="stripes"),
+    "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
+    "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
+    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
+        "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True,
+        only={"measure": ("PGA", "Sa")} | _SCALED),
+    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
+        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED),
+    "least_scale": Key(positive, "0.25",
+        "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
+        only=_SCALED),
+    "most_scale": Key(positive, "4.0",
+        "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used.",
+        only=_SCALED),
+    "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
+        "Relative width to which the least intensity is narrowed down.", only=_IDA),
+    "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
+        "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.0025 "
+        "on rigid ground and the levels alone elsewhere.", only=_IDA),
+    "window": Key(Number("a number from 0.001 to 0.2", low=1e-3, high=0.2), "0.05",
+        "Relative half-width of a window about each level, of which the share of the scales that exceed a limit gives a second "
+        "curve, on every base; if it is not given, 0.02 on rigid ground and none elsewhere.", only=_IDA),
+    "censored_below": Key(Number("a number above 0 and below 1", low=0.0, high=1.0, above=True, below=True), "0.05",
+        "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have logarithms "
+        "that say nothing about the limit.", only=_CLOUD),
+    "checks": Key(text, '["no overturning", "uplift*"]',
+        "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
+        "given.", many=True),
+    "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
+}, homes=(FragilitySpec,), also=names({
+    "measure": "im intensity intensitymeasure", ("levels_g", "levels_m_s"): "levels", "checks": "limits limitstates",
+    "method": "type analysis",
+}))  # fmt: skip
+
+SECTIONS = (FRAGILITY, HAZARD, DISPERSION, STRIPE)
+"""Its tables in a study file."""
+
+
+def read_fragility(study: Study) -> FragilitySpec:
+    """Return the settings of the table [fragility] of a loaded study.
+
+    Raises ``InputError`` with every mistake in it, with its line.
+    """
+    file = study.file()
+    table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
+    read = table.read(FRAGILITY, other=("hazard", "dispersion", "stripe")) if table else {}
+    limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
+    stripes = read_stripes(file, LEVELS[read["measure"]]) if "measure" in read else ()
+    levels = _levels(table, read, stripes) if table else ()
+    hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
+    dispersions = read_dispersions(file)
+    file.finish()
+    settings = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
+    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **settings)
+
+
+def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]) -> tuple[float, ...]:
+    """Return the levels in the unit of the measure, those of ``stripes`` if there are any; mistakes are noted."""
+    written = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
+    if read.get("least_scale", 0.0) > read.get("most_scale", math.inf):
+        table.complain(
+            f"least_scale = {read['least_scale']:g}: more than most_scale; no factor lies between", "least_scale"
+        )
+    if "measure" not in read:
+        return ()
+    key = LEVELS[read["measure"]]
+    if table.file.has((*table.key_path, "stripe")):
+        if written[key]:
+            table.complain(f"{key}: each [[fragility.stripe]] has its level; leave {key} out", key)
+        if read.get("method", "stripes") != "stripes":
+            table.complain(
+                f'method = {shown(read["method"])}: records of their own are for "stripes"; leave it out', "method"
+            )
+        return tuple(stripe.level for stripe in stripes)
+    if read.get("method") == "cloud":
+        return ()
+    if not table.has(key):
+        table.complain(f"{key} is missing; write for example {key} = {FRAGILITY[key].example}")
+    levels = written[key]
+    for n, (previous, level) in enumerate(pairwise(levels), 1):
+        if level < previous:
+            table.complain(f"{key} = {level:g}: after {previous:g}; write them in rising order", key, n)
+    if len(levels) == 1:
+        table.complain(
+            f"{key} = {shown(table.data[key])}: one level does not determine a dispersion; write at least two", key
+        )
+    return levels
+
+
+def _limits(table: Table, rules: tuple[Rule, ...], chosen: tuple[str, ...] | None) -> tuple[Rule, ...]:
+    """Return the checks that are limit states, all by default, at all scales; those of the case alone are left out."""
+    able = [rule for rule in rules if not DEMANDS[rule.demand].of_the_case and rule.demand != OVERTURNING.demand]
+    if any(rule.name == OVERTURNING.name for rule in able):
+        table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
+    if chosen is not None:
+        names = [rule.name for rule in able]
+        for n, pattern in enumerate(chosen):
+            if not any(fnmatch.fnmatchcase(name, pattern) for name in names):
+                nearest = closest(pattern, names)
+                choices = f"there is {', '.join(map(shown, names))}" if names else "the study has none about records"
+                instead = f"did you mean {shown(nearest)}?" if nearest else choices
+                table.complain(f"checks = {shown(pattern)}: no [[check]] has this name; {instead}", "checks", n)
+        able = [rule for rule in able if any(fnmatch.fnmatchcase(rule.name, pattern) for pattern in chosen)]
+    return tuple(map(_of_one_record, able))
+
+
+def _of_one_record(rule: Rule) -> Rule:
+    """Return a check as a limit of every record, in any suite and direction.
+
+    A run that flew or failed may be left out, but else it is undecided: a check is on the safe side where such a run counts as
+    infinite, a fragility is not.
+    """
+    statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
+    limit = replace(rule, scale=(), polarity=None, statistic=statistic)
+    if not DEMANDS[rule.demand].of_runs:
+        return limit
+    flight, failed = (
+        "left out" if limit.counts(status) == "left out" else "unknown" for status in ("flight", "failed")
+    )
+    return replace(limit, flight=flight, failed=failed)

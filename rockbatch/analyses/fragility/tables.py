@@ -1,0 +1,280 @@
+"""Fragility curves as output: points and capacities as tables, fits and bands for fragility.json."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.analyses.fragility.cloud_tables import described_cloud, note_on_cloud
+from rockbatch.analyses.fragility.curves import Curve
+from rockbatch.analyses.fragility.ida import Capacity
+from rockbatch.analyses.fragility.limit_states import words
+from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.risk import Risk, described_hazard
+from rockbatch.analyses.fragility.risk import described as described_risk
+from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.analyses.fragility.windows import Windows
+from rockbatch.common.lazy import pd
+from rockbatch.study import Study
+
+POINTS, CAPACITIES, RUNS = "fragility.csv", "fragility_capacities.csv", "fragility_runs.csv"
+SAMPLES = 80
+"""Points of a curve and its band."""
+
+
+def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return fragility.csv: a row for each curve and level, with the counts of :class:`Stripe` as columns.
+
+    ``p`` is the curve there; it is between ``p_low`` and ``p_high``, whatever the undecided runs of all levels come to.
+    ``p_total`` is the curve with the dispersion that the study adds, if it does. Of incremental dynamic analysis
+    ``window_share`` is the share of the scales about the level that exceed the limit, the mean of ``window_n`` records, in which
+    ``window_undecided`` runs are not; ``window_p`` is the curve through these shares.
+    """
+    rows: list[dict[str, Any]] = []
+    for curve in curves:
+        units = {"measure": spec.label, "unit": spec.unit}
+        p = _probabilities(curve, np.array(spec.levels))
+        if spec.added:
+            p["p_total"] = _total(curve, spec, np.array(spec.levels))
+        if spec.method == "ida":
+            p |= _of_windows(curve.windows, spec)
+        rows += [
+            curve.identity(varied) | units | stripe._asdict() | {name: values[i].item() for name, values in p.items()}
+            for i, stripe in enumerate(curve.stripes)
+        ]
+    return pd.DataFrame(rows).rename(columns={"records": "n"})
+
+
+def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
+    """Return P(x) of a curve, and what it lies between; NaN without a curve."""
+    p = np.full(len(x), np.nan) if isinstance(curve.fitted, str) else curve.fitted.probability(x)
+    low, high = curve.readings.probability(x) if curve.readings else (p, p)
+    return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
+
+
+def _total(curve: Curve, spec: FragilitySpec, x: Values) -> Values:
+    """Return P(x) with the added dispersion; NaN without a curve."""
+    fitted = curve.fitted
+    return np.full(len(x), np.nan) if isinstance(fitted, str) else fitted.widened(spec.added).probability(x)
+
+
+def _of_windows(windows: Windows | None, spec: FragilitySpec) -> dict[str, npt.NDArray[Any]]:
+    """Return the columns of the windows of a curve, each with a value for every level; NaN where there are none."""
+    nothing = np.full(len(spec.levels), np.nan)
+    if windows is None:
+        return dict.fromkeys(("window_share", "window_n", "window_undecided", "window_p"), nothing)
+    fitted = windows.fitted
+    p = nothing if isinstance(fitted, str) else fitted.probability(np.array(spec.levels))
+    counts = {"window_n": np.array(windows.records), "window_undecided": np.array(windows.undecided)}
+    return {"window_share": np.array(windows.shares), **counts, "window_p": p}
+
+
+def capacities(
+    curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str], names: Sequence[str], unscaled: Sequence[float]
+) -> "pd.DataFrame":
+    """Return fragility_capacities.csv: a row for each curve and record.
+
+    A capacity is above ``above`` and at most ``at_most`` by the runs that are decided, in the unit of the levels; the same as
+    scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
+    ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an island of
+    exceedance that is narrower may have been missed.
+    ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
+    """
+    rows: list[dict[str, Any]] = []
+    for curve in curves:
+        for motion, cap in curve.capacities:
+            bounds = {"above": cap.decided.low, "at_most": _or_nothing(cap.decided.high)}
+            otherwise = {
+                "if_exceeded": _or_nothing(cap.if_exceeded.high) if cap.undecided else math.nan,
+                "if_withstood": cap.if_withstood.low if cap.undecided else math.nan,
+            }
+            rows.append(
+                {"record": names[motion], **curve.identity(varied), "measure": spec.label, "unit": spec.unit}
+                | {"found": _state(cap), **bounds}
+                | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
+                | {"undecided": cap.undecided, **otherwise, "returns": cap.returns, "widest_step": cap.widest_step}
+            )
+    return pd.DataFrame(rows)
+
+
+def _or_nothing(bound: float) -> float:
+    return bound if math.isfinite(bound) else math.nan
+
+
+def _state(cap: Capacity) -> str:
+    if cap.undecided:
+        return "undecided"
+    if math.isinf(cap.decided.high):
+        return "beyond the highest level"
+    return "below the lowest level" if cap.decided.low == 0 else "exceeded"
+
+
+def described(
+    curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int, risks: Sequence[Risk] = ()
+) -> dict[str, Any]:
+    """Return the content of fragility.json: what was asked, and every curve; an open bound of an interval is null."""
+    of_curves = {id(risk.curve): described_risk(risk, spec) for risk in risks}
+    return {
+        "method": spec.method,
+        "measure": spec.label,
+        "unit": spec.unit,
+        "levels": spec.levels,
+        "tolerance": spec.tolerance if spec.method == "ida" else None,
+        "confidence": spec.confidence,
+        "records": records,
+        "polarities": study.motions.polarity,
+        "looked_at": looked_at(curves, spec),
+        "by_shares": by_shares(curves),
+        "dispersions": [asdict(dispersion) for dispersion in spec.dispersions],
+        "hazard": described_hazard(spec),
+        "curves": [_described(curve, spec) | {"risk": of_curves.get(id(curve))} for curve in curves],
+    }
+
+
+def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
+    """Return where first exceedances were sought, case by case, in words; empty for stripes."""
+    if spec.method != "ida":
+        return ""
+    hunted = {curve.case.name: step for curve in curves if (step := spec.step_on(curve.case.base)) is not None}
+    not_hunted = list(dict.fromkeys(curve.case.name for curve in curves if curve.case.name not in hunted))
+    parts = []
+    if hunted:
+        width = f"{100 * next(iter(hunted.values())):g} %"
+        parts.append(
+            f"in steps of {width} from the lowest level up ({', '.join(hunted)}): narrower islands of exceedance may lie below"
+        )
+    if not_hunted:
+        apart = max(high / low - 1.0 for low, high in pairwise(spec.levels))
+        parts.append(
+            f"at the levels alone, up to {100 * apart:.0f} % apart ({', '.join(not_hunted)}): an exceedance between two of them, "
+            "below the first on the levels, is missed, and the median may be too high; hunt_step in [fragility] looks there too"
+        )
+    return "first exceedances were looked for " + "; ".join(parts)
+
+
+def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
+    """Return the intervals in which all records were run up to their first exceedance; a level alone has no width."""
+    if spec.step_on(curve.case.base) is None:
+        width = spec.window_on(curve.case.base) or 0.0
+        return [(level * (1.0 - width), level * (1.0 + width)) for level in spec.levels]
+    return [(spec.levels[0], min(spec.levels[-1], max((cap.decided.high for _, cap in curve.capacities), default=0.0)))]
+
+
+def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
+    fitted, readings = curve.fitted, curve.readings
+    content: dict[str, Any] = {
+        "case": curve.case.name,
+        "columns": curve.case.columns,
+        "limit_state": curve.limit.name,
+        "words": words(curve.limit),
+        "reason": curve.limit.reason,
+        "counting": curve.limit.counting,
+        "median": None,
+        "dispersion": None,
+        "note": note(curve, spec),
+        "undecided": curve.undecided._asdict(),
+        "says_little": curve.says_little,
+        "median_undecided": _finite(readings.medians) if readings else None,
+        "points": [stripe._asdict() for stripe in curve.stripes],
+        "capacities": [_finite(cap.decided) for _, cap in curve.capacities],
+        "looked": _looked(curve, spec) if spec.method == "ida" else [],
+    }
+    x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
+    if curve.cloud:
+        content["cloud"] = described_cloud(curve, spec)
+    if curve.windows:
+        content["windows"] = _described_windows(curve.windows, fitted, x)
+    if readings:
+        p = _probabilities(curve, x)
+        content["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
+    if not isinstance(fitted, str):
+        drawn = dict(zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True))
+        content |= {
+            "median": _or_none(fitted.median),
+            "median_interval": _finite(fitted.median_interval),
+            "dispersion": _or_none(fitted.dispersion),
+            "dispersion_interval": _finite(fitted.dispersion_interval),
+            "curve": _rounded(drawn),
+        }
+        if spec.added:
+            total = fitted.widened(spec.added)
+            content["dispersion_total"] = _or_none(total.dispersion)
+            content["total"] = _rounded({"x": x, "p": total.probability(x)})
+    return content
+
+
+def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, Any]:
+    """Return the shares of the windows and the curve through them, also how far its median is above that of the ``first``."""
+    shares = [_or_none(share) for share in windows.shares]
+    content: dict[str, Any] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
+    if not isinstance(fitted := windows.fitted, str):
+        content |= {
+            "median": _or_none(fitted.median),
+            "median_interval": _finite(fitted.median_interval),
+            "dispersion": _or_none(fitted.dispersion),
+            "above": windows.above(first),
+            "curve": _rounded({"x": x, "p": fitted.probability(x)}),
+        }
+    return content
+
+
+def by_shares(curves: Sequence[Curve]) -> str:
+    """Return what the median by shares is, in words; empty without windows."""
+    widths = [f"{100 * curve.windows.width:g} %" for curve in curves if curve.windows]
+    if not widths:
+        return ""
+    return (
+        f"by shares: the median of a curve through the share of the scales within ±{widths[0]} of each level that exceed the "
+        "limit, which no hunt changes"
+    )
+
+
+def _rounded(drawn: dict[str, Values]) -> dict[str, list[float]]:
+    return {name: [round(float(value), 6) for value in values] for name, values in drawn.items()}
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _finite(bounds: tuple[float, float]) -> list[float | None]:
+    """Return ``bounds`` with None for infinity, which JSON does not have."""
+    return [bound if math.isfinite(bound) else None for bound in bounds]
+
+
+def note(curve: Curve, spec: FragilitySpec) -> str:
+    """Return remarks on a curve, or why there is none."""
+    fitted = curve.fitted
+    notes = [_about_undecided(curve), fitted if isinstance(fitted, str) else ""]
+    if not isinstance(fitted, str):
+        if fitted.median > spec.levels[-1]:
+            notes.append("the median is extrapolated beyond the highest level")
+        elif fitted.median < spec.levels[0]:
+            notes.append("the median is extrapolated below the lowest level")
+        if any(math.isinf(bound) for bound in (*fitted.median_interval, *fitted.dispersion_interval)):
+            notes.append("the records leave the intervals open: more of them, or other levels, would close them")
+    if curve.cloud:
+        notes += note_on_cloud(curve, spec)
+    if curve.windows and isinstance(curve.windows.fitted, str):
+        notes.append(f"no median by shares: {curve.windows.fitted}")
+    if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
+        notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
+    return "; ".join(filter(None, notes))
+
+
+def _about_undecided(curve: Curve) -> str:
+    """Return how many runs are undecided, and what the curve would be with them."""
+    remark = curve.undecided.words
+    if not remark:
+        return ""
+    if curve.readings is None:
+        return f"{remark}, above the first exceedance of their records, where they change nothing"
+    beyond, within = (
+        f"no curve ({fit})" if isinstance(fit, str) else f"a median of {fit.median:.4g}" for fit in curve.readings
+    )
+    remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
+    return f"says little: {remark}" if curve.says_little else remark

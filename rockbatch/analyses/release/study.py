@@ -1,0 +1,205 @@
+"""A release test, what was measured of it and what is fitted: [release] of a study file."""
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, zip_longest
+from pathlib import Path
+from typing import Any
+
+from rockbatch.common.files import whole_input
+from rockbatch.study.load import Study
+from rockbatch.study.spec import Case
+from rockbatch.toml.kinds import Number, choice, positive, shown, text
+from rockbatch.toml.reader import Table, nearby
+from rockbatch.toml.section import Clash, Key, Section
+
+FITS = ("restitution", "epsilon", "zeta")
+
+UNITS = {
+    "impact_s": ("impact_s", 1.0), "impact_ms": ("impact_s", 1e-3), "amplitude_rad": ("amplitude_rad", 1.0),
+    "amplitude_mrad": ("amplitude_rad", 1e-3), "amplitude_deg": ("amplitude_rad", math.pi / 180.0),
+}  # fmt: skip
+"""Columns of a file of measured values: the key that each stands for, and the factor on its numbers."""
+
+FEWEST, MOST = 3, 500
+"""Values and impacts of a test: with fewer there is no interval, and more no test has."""
+
+_MOST_BYTES = 1_000_000
+
+
+@dataclass(frozen=True)
+class ReleaseSpec:
+    """[release]: a row of ``impact_s`` [s] from the release and ``amplitude_rad`` for each impact, NaN where not measured.
+
+    ``fit`` is None for what the base of each case has: restitution on rigid ground, zeta or epsilon of springs.
+    """
+
+    impact_s: tuple[float, ...] = ()
+    amplitude_rad: tuple[float, ...] = ()
+    measured: str | None = None
+    clock: str = "release"
+    fit: str | None = None
+    confidence: float = 0.95
+
+    def fits(self, case: Case) -> str:
+        """Return what is fitted in a case."""
+        if self.fit is not None:
+            return self.fit
+        if not case.base.on_springs:
+            return "restitution"
+        return "epsilon" if getattr(case.base, "zeta", None) is None else "zeta"
+
+
+RELEASE = Section(("release",), (
+    "A release test, by `rockbatch release`: what was measured as the pier was let go from `initial_rotation_rad`, to which the "
+    "restitution of rigid ground, or the losses of springs, are fitted."
+), {
+    "impact_s": Key(positive, "[0.32, 0.86, 1.31]",
+        "Times of the impacts [s], from the first one on; on springs of the passages through upright.", many=True,
+        distinct=False),
+    "amplitude_rad": Key(positive, "[0.082, 0.068, 0.057]",
+        "Greatest rotation [rad], without its sign, after each of these impacts.", many=True, distinct=False),
+    "measured": Key(text, '"test.csv"',
+        "Instead: a CSV with a row for each impact, and the columns impact_s or impact_ms, and amplitude_rad, amplitude_mrad or "
+        "amplitude_deg; empty where nothing was measured. Relative to the study file."),
+    "clock": Key(choice("release", "first impact"), '"first impact"',
+        'Where times count from: the "release", or the "first impact", whose own time may be any then.'),
+    "fit": Key(choice(*FITS), '"restitution"',
+        "What is fitted; by default restitution on a rigid base, and of springs zeta, if the case has one, or epsilon."),
+    "confidence": Key(Number("a number between 0 and 1", low=0.0, high=1.0, above=True, below=True), "0.95",
+        "Level of the intervals."),
+}, homes=(ReleaseSpec,), clashes=(
+    Clash(("measured", "impact_s"), "measured and impact_s are given; keep one"),
+    Clash(("measured", "amplitude_rad"), "measured and amplitude_rad are given; keep one"),
+))  # fmt: skip
+
+SECTIONS = (RELEASE,)
+"""Its tables in a study file."""
+
+
+def read_release(study: Study) -> ReleaseSpec:
+    """Return what the study file says of its release test in [release].
+
+    Raises ``InputError`` with every mistake, or because there is no such table.
+    """
+    file = study.file()
+    table = file.table("release", required="[release] with impact_s = [0.32, 0.86, 1.31], measured times of impacts")
+    spec = ReleaseSpec()
+    if table is not None:
+        read: dict[str, Any] = table.read(RELEASE)
+        if "measured" in read:
+            read |= _of_file(table, study.path.parent / Path(read["measured"]).expanduser(), read["measured"])
+        spec = ReleaseSpec(**_padded(read))
+        if not file.problems:
+            _check(table, spec, study)
+    file.finish()
+    return spec
+
+
+def _padded(read: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings with as many times as amplitudes."""
+    rows = list(zip_longest(read.get("impact_s", ()), read.get("amplitude_rad", ()), fillvalue=math.nan))
+    if read.get("clock") == "first impact" and rows:
+        first = rows[0][0] if rows[0][0] == rows[0][0] else 0.0
+        rows = [(t - first, amplitude) for t, amplitude in rows]
+        rows[0] = (math.nan, rows[0][1])  # 0 by definition, which says nothing
+    return read | {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(value for _, value in rows)}
+
+
+def _of_file(table: Table, path: Path, written: str) -> dict[str, tuple[float, ...]]:
+    """Return the columns of a CSV of measured values; what is wrong in it is noted with its line."""
+    try:
+        with whole_input(path) as (file, size):
+            if size > _MOST_BYTES:
+                long = f"{size} bytes, where a table of impacts has a few hundred"
+                table.complain(f"measured = {shown(written)}: {long}", "measured")
+                return {}
+            content = file.read().decode("utf-8-sig")
+    except (OSError, ValueError) as error:  # InputError is one, too
+        reason = (
+            "no such file" + nearby(path, written)
+            if isinstance(error, FileNotFoundError)
+            else f"cannot be read: {error}"
+        )
+        table.complain(f"measured = {shown(written)}: {reason}; paths are relative to the study file", "measured")
+        return {}
+    separator = ";" if ";" in content.partition("\n")[0] else ","
+    lines = csv.reader(io.StringIO(content), delimiter=separator)
+    names = [name.strip() for name in next(lines, [])]
+    if wrong := _wrong_columns(names):
+        table.complain(f"measured = {shown(written)}: {wrong}", "measured")
+        return {}
+    columns: dict[str, list[float]] = {UNITS[name][0]: [] for name in names}
+    for number, cells in enumerate(lines, 2):
+        if not any(cell.strip() for cell in cells):
+            continue
+        if len(cells) != len(names):
+            table.complain(f"{written}:{number}: {len(cells)} values under {len(names)} names", "measured")
+            return {}
+        for name, cell in zip(names, cells, strict=True):
+            value = _number(cell, separator)
+            if value is None or not (math.isnan(value) or 0.0 <= value < math.inf):
+                message = f"{name} = {shown(cell)}: expected 0, a number above it, or nothing"
+                table.complain(f"{written}:{number}: {message}", "measured")
+                return {}
+            columns[UNITS[name][0]].append(value * UNITS[name][1])
+    return {name: tuple(values) for name, values in columns.items()}
+
+
+def _wrong_columns(names: Sequence[str]) -> str:
+    """Return what is wrong about the names of the columns; empty if nothing is."""
+    unknown = [name for name in names if name not in UNITS]
+    if unknown or not names:
+        return (
+            f"column {shown(unknown[0] if unknown else '')}: expected names among {', '.join(UNITS)} in its first line"
+        )
+    kinds = [UNITS[name][0] for name in names]
+    twice = next((kind for kind in kinds if kinds.count(kind) > 1), "")
+    return f"{twice.partition('_')[0]} is given by two columns; keep one" if twice else ""
+
+
+def _number(cell: str, separator: str) -> float | None:
+    """Return a number, NaN for an empty cell; None for what is none. Beside semicolons a comma is a decimal one."""
+    cell = cell.strip().replace(",", ".") if separator == ";" else cell.strip()
+    try:
+        return float(cell) if cell else math.nan
+    except ValueError:
+        return None
+
+
+def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:
+    """Note what the values are that no pier does, and cases in which nothing can be fitted."""
+    times, amplitudes = _numbered(spec.impact_s), _numbered(spec.amplitude_rad)
+    key = "measured" if spec.measured else "impact_s"
+    measured = len(times) + len(amplitudes)
+    if measured < FEWEST or len(spec.impact_s) > MOST:
+        few = f"{measured} values were measured, and an interval takes {FEWEST} at least"
+        message = few if measured < FEWEST else f"more than {MOST} impacts"
+        table.complain(f"{message}; write impact_s, amplitude_rad or both", *([key] if table.has(key) else []))
+    for (n, previous), (m, t) in pairwise(times):
+        if not t > previous:
+            table.complain(f"impact {m} is at {t:g} s, and impact {n} at {previous:g} s: times have to rise", key)
+            break
+    start = [abs(case.pier.initial_rotation_rad) for case in study.cases]
+    if not all(start):
+        table.complain("from where was the pier let go? write initial_rotation_rad = 0.1 under [pier]")
+    elif amplitudes and amplitudes[0][1] >= min(start):
+        table.complain(
+            f"amplitude {amplitudes[0][0]} is {amplitudes[0][1]:g} rad, not below initial_rotation_rad, {min(start):g} rad: "
+            "the first amplitude is the one after the first impact",
+            "measured" if spec.measured else "amplitude_rad",
+        )
+    for case in study.cases:
+        if (spec.fits(case) == "restitution") == case.base.on_springs:
+            instead = "epsilon or zeta" if case.base.on_springs else "restitution"
+            table.complain(
+                f'fit = "{spec.fit}": case "{case.name}" has {instead} instead; write that, or leave it out', "fit"
+            )
+
+
+def _numbered(values: Iterable[float]) -> list[tuple[int, float]]:
+    """Return the values that were measured, with their numbers from 1."""
+    return [(n, value) for n, value in enumerate(values, 1) if not math.isnan(value)]

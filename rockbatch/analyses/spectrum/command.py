@@ -1,0 +1,89 @@
+"""``rockbatch spectrum``: rocking spectra and overturning maps of a study, as tables and in the report."""
+
+import argparse
+
+import numpy as np
+
+from rockbatch.analyses.spectrum.analysis import spectrum
+from rockbatch.analyses.spectrum.rocking_spectrum import OWN, groups
+from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
+from rockbatch.batch.listening import count
+from rockbatch.commands.analysis import analysis_arguments, print_files
+from rockbatch.commands.streams import in_width, say, show
+from rockbatch.commands.summary import named
+from rockbatch.common.lazy import pd
+from rockbatch.study import Study
+
+MOST_LINES = 12
+"""Greatest number of lines of a table for the terminal."""
+
+
+def main(arguments: argparse.Namespace, study: Study) -> int:
+    """Compute spectra and maps, and print them."""
+    result = spectrum(study, **analysis_arguments(arguments))
+    failed = 0
+    if result.spectra is not None and result.spectrum is not None and result.spectrum_suite is not None:
+        show(shown(result.spectrum_suite, result.spectra))
+        failed = int((result.spectrum["status"] == "failed").sum())
+        if failed:
+            runs = count(len(result.spectrum), "run")
+            say(f"{failed} of {runs} failed and count in no quantile; the column reason says why")
+    if result.overturning_map is not None:
+        show(shown_maps(result.overturning_map, study.varied))
+    print_files(result)
+    return 1 if failed or result.unusable else 0
+
+
+def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
+    """Return medians of θ_max/α for a terminal: a line for each value on the axis, ∞ where the pier overturns."""
+    axis = spectrum.axis
+    keys = [name for name in groups(spectrum.varied) if name != axis]
+    labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
+    lines = spread(suite[axis].unique())
+    columns: dict[str, dict[str, str]] = {}
+    for names, of_suite in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
+        values = dict(zip(keys, names, strict=True))
+        heading = f"{names[0]} {named(labels, [values[name] for name in labels])}".replace(INTENSITY, "A")
+        columns[heading] = {
+            f"{value:.4g}": "" if np.isnan(median) else "∞" if np.isinf(median) else f"{median:.4f}"
+            for value, median in zip(of_suite[axis], of_suite["median"], strict=True)
+        }
+    medians = dict.fromkeys(value for column in columns.values() for value in column)
+    rows = [[value, *(column.get(value, "") for column in columns.values())] for value in medians]
+    total = suite[axis].nunique()
+    share = f", {len(lines)} of {total} values of {axis}" if len(lines) < total else ""
+    text = f"Median of theta_max/alpha{share}; ∞: overturned or ended by flight\n{in_width([axis, *columns], rows)}"
+    if axis == SELF_SIMILAR and len(suite):
+        sizes, scales = (f"{suite[f'least_{name}'].min():.3g} to {suite[f'greatest_{name}'].max():.3g}" for name in OWN)
+        text += (
+            f"\nA = PGA/(g tan alpha), omega_g = PGA/PGV of each record; piers with R0 = {sizes} m, factors {scales}"
+        )
+    return text
+
+
+def spread(values: np.ndarray) -> np.ndarray:
+    """Return at most :data:`MOST_LINES` of ``values``, evenly, the first and the last among them."""
+    if len(values) <= MOST_LINES:
+        return values
+    return values[np.linspace(0, len(values) - 1, MOST_LINES).round().astype(int)]
+
+
+def _evenly(values: np.ndarray) -> np.ndarray:
+    """Return at most :data:`MOST_LINES` of ``values``, those that are nearest to evenly spaced ones."""
+    targets = np.linspace(values[0], values[-1], MOST_LINES)
+    return values[np.unique(np.abs(values[:, None] - targets).argmin(axis=0))]
+
+
+def shown_maps(table: "pd.DataFrame", varied: tuple[str, ...]) -> str:
+    """Return the regions of every map for a terminal, a line for each frequency."""
+    blocks = []
+    for names, of_map in table.groupby(["map", "case", *varied], sort=False, dropna=False):
+        lines = [f"{names[0]}, {names[1]} {named(varied, names[2:])}".rstrip() + ": outcome by a_p/(g tan alpha)"]
+        for frequency in _evenly(of_map["omega_p_over_p"].unique()):
+            column = of_map[of_map["omega_p_over_p"] == frequency]
+            regions = "; ".join(
+                f"{region.low:.4g} to {region.high:.4g} {region.outcome}" for region in column.itertuples()
+            )
+            lines.append(f"  omega_p/p = {frequency:<6.4g} {regions}")
+        blocks.append("\n".join(lines))
+    return "\n\n".join(blocks)

@@ -1,0 +1,112 @@
+"""Overturning maps: which amplitudes of a pulse a pier survives, over the pulse's frequency.
+
+A pulse overturns a block in two ways: after an impact or more (mode 1), or outright (mode 2); between them it may
+survive (Zhang & Makris 2001). An amplitude above that of overturning may therefore be safe, and the regions change with the
+frequency in number and order: :mod:`rockbatch.analyses.spectrum.map_search` finds them.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from rockbatch.analyses.spectrum.map_search import End, Point, Points, Region, Search, regions
+from rockbatch.analyses.spectrum.study import MapSpec
+from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.common.lazy import pd
+from rockbatch.motions import Motion
+from rockbatch.motions.pulses import pulse, pulse_length
+from rockbatch.pier import Base
+from rockbatch.study import Case
+
+FILE = "overturning_map.csv"
+RUNS = "overturning_runs.csv"
+
+SAFE, WITH_IMPACT, OUTRIGHT, FLIGHT, UNDECIDED = (
+    "safe",
+    "overturned with impact",
+    "overturned without impact",
+    "flight",
+    "undecided",
+)
+"""Ends of a run; undecided is one that did not converge, e.g. near a boundary."""
+
+SAMPLES = 400
+"""Samples of a period: a sine that is linear between them moves a boundary by 2e-5 of itself (2π/SAMPLES)²/12."""
+
+
+def ending(status: str, impacts: int, base: Base) -> End:
+    """Return the region to which a run belongs, and the way there.
+
+    Rigid blocks that overturn after another number of impacts do so by another way, with a boundary between the two, on which
+    they would stay at the unstable equilibrium: near it there may be a window of safe amplitudes, however narrow. On springs
+    the impacts change with every amplitude, and say nothing.
+    """
+    if status == "overturned":
+        return End(WITH_IMPACT if impacts else OUTRIGHT, 0 if base.on_springs else impacts)
+    return End({"ok": SAFE, "flight": FLIGHT}.get(status, UNDECIDED))
+
+
+class Maps:
+    """The map of one pulse for every case, and the runs in it."""
+
+    def __init__(self, spec: MapSpec, cases: Sequence[Case]) -> None:
+        self.spec, self.cases = spec, cases
+        self._units: dict[tuple[int, float], Motion] = {}
+
+    def runs(self, points: Sequence[Point]) -> Made:
+        """Return the runs at ``points``, (number of the case, ω_p/p, amplitude); their scale is the amplitude a_p/(g tan α)."""
+
+        def make(index: int) -> PlannedRun:
+            case, frequency, amplitude = points[index]
+            unit = self._unit(case, frequency)
+            return PlannedRun(scaled(unit, amplitude, "+"), "+", amplitude, self.cases[case], unit)
+
+        return Made(len(points), make)
+
+    def find(self, execute: "Callable[[Made], pd.DataFrame]") -> list[dict[float, Points]]:
+        """Return the columns of each case; ``execute`` gives the rows of peaks.csv of the runs of a wave, in their order."""
+
+        def ends(points: Sequence[Point]) -> list[End]:
+            table = execute(self.runs(points))
+            return [
+                ending(status, impacts, self.cases[case].base)
+                for (case, _, _), status, impacts in zip(points, table["status"], table["impacts"], strict=True)
+            ]
+
+        frequencies, amplitudes = self.spec.grid
+        return Search(ends, amplitudes, self.spec.tolerance, self.spec.width).find(len(self.cases), frequencies)
+
+    def _unit(self, number: int, frequency: float) -> Motion:
+        """Return the pulse with an amplitude of g tan α."""
+        if (number, frequency) not in self._units:
+            spec, pier = self.spec, self.cases[number].pier
+            period = 2 * math.pi / (frequency * pier.p)
+            self._units[number, frequency] = pulse(
+                spec.shape,
+                name=f"{spec.name}, {frequency:.6g}",
+                amplitude=pier.gravity * math.tan(pier.alpha),
+                period=period,
+                dt=period / SAMPLES,
+                duration=pulse_length(spec.shape, period, spec.gamma),
+                gamma=spec.gamma,
+                nu=spec.nu,
+            )
+        return self._units[number, frequency]
+
+    def rows(self, by_case: Sequence[Mapping[float, Points]]) -> Iterator[Mapping[str, Any]]:
+        """Yield the rows of overturning_map.csv, a region each, from the columns of each case."""
+        for case, columns in zip(self.cases, by_case, strict=True):
+            for frequency, points in columns.items():
+                for region in regions(points, self.spec.tolerance):
+                    yield {
+                        "map": self.spec.name,
+                        "case": case.name,
+                        **case.columns,
+                        "omega_p_over_p": frequency,
+                        **region._asdict(),
+                    }
+
+
+def columns(varied: Sequence[str]) -> list[str]:
+    """Return the columns of overturning_map.csv; amplitudes are a_p/(g tan α), a column of the map is identified by ω_p/p."""
+    return ["map", "case", *varied, "omega_p_over_p", *Region._fields]

@@ -1,1 +1,0 @@
-"""Analyses of a study, each by batches of runs of its own."""

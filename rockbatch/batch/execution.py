@@ -1,0 +1,110 @@
+"""Every record in every case: runs to rows, those that are not there yet."""
+
+from array import array
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from contextlib import closing
+from typing import Any
+
+from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Advance, silent
+from rockbatch.batch.plan import MOST_RUNS, PlannedRun, Runs, some_of
+from rockbatch.batch.threads import Engine
+from rockbatch.errors import InputError
+from rockbatch.results.columns import cells, row
+from rockbatch.simulation.outcome import Outcome
+from rockbatch.study import Numerics, Output
+
+RowOf = Callable[[PlannedRun, Outcome], Mapping[str, Any]]
+"""From a run and its outcome to its row of a table."""
+
+
+class InMemory(dict[int, Mapping[str, Any]]):
+    """Rows of finished runs by their numbers, with some ``columns``, in place of a journal where nothing is kept on disk."""
+
+    def __init__(self, columns: Sequence[str]) -> None:
+        self.columns = columns
+
+    def add_all(self, rows: Mapping[int, Mapping[str, Any]]) -> None:
+        """Add rows as :meth:`Journal.add_all`."""
+        self.update(rows)
+
+    def add_columns(self, numbers: Sequence[int], columns: Mapping[str, Sequence[Any]]) -> None:
+        """Add rows as :meth:`Journal.add_columns`."""
+        rows = zip(*columns.values(), strict=True)
+        self.update((number, dict(zip(columns, row, strict=True))) for number, row in zip(numbers, rows, strict=True))
+
+
+def execute_runs(
+    runs: Runs,
+    numerics: Numerics,
+    journal: Journal | InMemory,
+    engine: Engine,
+    output: Output = NOTHING_MORE,
+    *,
+    first: int = 0,
+    among: range | None = None,
+    row: RowOf | None = None,
+    progress: Advance = silent,
+) -> None:
+    """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
+
+    Of mirror images one is simulated, and both are written.
+
+    Parameters
+    ----------
+    first : int
+        Number of ``runs[0]`` in the journal; the others follow.
+    among : range, optional
+        Indices of the runs that are wanted, if not all.
+    row : function, optional
+        The row of a run with its outcome, where that is not a row of peaks.csv.
+    progress : function, optional
+        Called with the number of simulations of each group that is finished.
+    """
+    requested = range(len(runs)) if among is None else among
+    remaining = to_simulate(runs, requested, journal, first)
+    with closing(engine.outcomes(some_of(runs, remaining), numerics, output)) as groups:
+        for group in groups:
+            images = (image for place, outcome in group for image in _images(runs, remaining[place], outcome))
+            missing = [image for image in images if image[0] in requested and first + image[0] not in journal]
+            if row is not None:
+                journal.add_all({first + i: row(run, outcome) for i, run, outcome in missing})
+            elif missing:
+                columns = cells([run.ran(outcome) for _, run, outcome in missing], journal.columns)
+                journal.add_columns([first + i for i, _, _ in missing], columns)
+            progress(len(group))
+
+
+def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), first: int = 0) -> "array[int]":
+    """Return the indices of the runs that give all that are ``requested`` and not in ``journal``, or mirror images of them.
+
+    Raises ``InputError`` for more than :data:`MOST_RUNS`.
+    """
+    if len(runs) > MOST_RUNS:
+        raise InputError(
+            f"{len(runs):,} runs, more than {MOST_RUNS:,}: records × polarities × scales × cases; split the study, by its "
+            "records for example"
+        )
+
+    def is_left(index: int) -> bool:
+        return index in requested and first + index not in journal
+
+    if not runs.mirrored:
+        return array("q", filter(is_left, requested))
+    firsts = ((index, runs.images(index)[0]) for index in filter(is_left, requested))
+    return array(
+        "q", (first for index, first in firsts if first == index or not is_left(first))
+    )  # else in its own turn
+
+
+def _images(runs: Runs, index: int, outcome: Outcome) -> Iterator[tuple[int, PlannedRun, Outcome]]:
+    """Yield index, run and outcome of a run that was simulated, and of its mirror image."""
+    for image in runs.images(index):
+        run = runs[image]
+        yield image, run, outcome.mirrored() if run.mirror_of else outcome
+
+
+def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
+    """Return the row of peaks.csv of a run that is finished."""
+    return row(run.ran(outcome))

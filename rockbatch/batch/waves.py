@@ -1,0 +1,53 @@
+"""Runs in waves, each of which depends on the results of the one before; all of them in one journal."""
+
+from collections.abc import Mapping
+from contextlib import nullcontext
+from typing import Any
+
+from rockbatch.batch.execution import execute_runs
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Listener, silent
+from rockbatch.batch.plan import Runs
+from rockbatch.batch.threads import Engine
+from rockbatch.common.lazy import pd
+from rockbatch.results.columns import COUNTS, TEXTS, as_table
+from rockbatch.study import Study
+
+
+class Waves:
+    """Runner of waves of runs, each returned as its rows of peaks.csv, in the order of its runs.
+
+    The numbers of the runs go on from wave to wave: as long as a wave follows from the rows before it alone, a search that
+    was killed goes on where it stopped. Rows always come from the journal, with its ten digits, so that nothing depends on
+    whether they were there already.
+
+    The ``listener`` follows the progress of each wave that has runs left.
+    """
+
+    def __init__(self, study: Study, journal: Journal, engine: Engine, listener: Listener | None = None) -> None:
+        self.study, self.journal, self.engine, self.listener = study, journal, engine, listener or Listener()
+        self.finished = 0
+
+    def __call__(self, runs: Runs) -> "pd.DataFrame":
+        first, self.finished = self.finished, self.finished + len(runs)
+        pending = sum(number not in self.journal for number in range(first, self.finished))
+        with self.listener.progress(pending) if pending else nullcontext(silent) as progress:
+            execute_runs(
+                runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
+            )
+        return as_table((_read(self.journal[number]) for number in range(first, self.finished)), self.study)
+
+
+def _read(cells: Mapping[str, str]) -> dict[str, Any]:
+    """Return cells as numbers if they are numbers, None if empty."""
+    return {
+        name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
+        for name, text in cells.items()
+    }
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:  # a varied key such as kinematics
+        return text

@@ -1,0 +1,72 @@
+"""The analyses, and the door by which what lies below them finds each without importing it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from typing import Any, NamedTuple
+
+ANALYSES = ("fragility", "spectrum", "sensitivity", "release", "accuracy")
+"""Each has its folder ``rockbatch/analyses/NAME``; in the order of the help and of the report."""
+
+
+class ReportPart(NamedTuple):
+    """A part of the report: its heading, its anchor, and the function of the folder's contents that returns it."""
+
+    heading: str
+    anchor: str
+    function: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Door:
+    """What an analysis brings, in ``__init__.py`` of its folder; functions are named, and loaded when they are used.
+
+    Its command is ``command.main``, its function in Python ``analysis.NAME``, and its sections of the study file, if it has
+    ``tables`` there, are ``study.SECTIONS``.
+
+    Attributes
+    ----------
+    help, example, writes : str
+        Of its command: what it does, a command line that does it, and the files that it leaves, in lines.
+    parts : tuple of ReportPart
+        Its parts of the report.
+    tables : tuple of str
+        Names of its tables at the top of the study file.
+    options : mapping
+        Arguments of its command beyond the study, with what ``ArgumentParser.add_argument`` takes beside.
+    names : mapping
+        Public names beyond its function, each with the module in its folder that has it.
+    engine : bool
+        True if its runs are carried out by an engine that the command line may choose.
+    """
+
+    help: str
+    example: str
+    writes: str
+    parts: tuple[ReportPart, ...]
+    tables: tuple[str, ...] = ()
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
+    engine: bool = True
+
+
+@cache
+def doors() -> dict[str, Door]:
+    """Return the doors of all analyses, by their names."""
+    return {name: import_module(f"rockbatch.analyses.{name}").DOOR for name in ANALYSES}
+
+
+def from_analysis(name: str, function: str) -> Any:
+    """Return what an analysis names ``function``, such as "section.section", loading its module."""
+    module, _, attribute = function.partition(".")
+    return getattr(import_module(f"rockbatch.analyses.{name}.{module}"), attribute)
+
+
+def public_names() -> dict[str, str]:
+    """Return the module of each public name of the analyses."""
+    return {
+        public: f"rockbatch.analyses.{name}.{module}"
+        for name, door in doors().items()
+        for public, module in {name: "analysis", **door.names}.items()
+    }

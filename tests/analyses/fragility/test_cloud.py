@@ -1,0 +1,300 @@
+"""Cloud analysis: against other ways to the same line and share, closed forms, its own promises, and the mistakes of a file."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_page import Page
+from scipy.optimize import brentq, minimize
+from scipy.stats import linregress, norm, t
+from studies import seven_pulses, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.analyses.fragility import cloud
+from rockbatch.analyses.fragility.cloud import Cloud, Demands, Line, Logistic, fit, fit_event
+from rockbatch.analyses.fragility.hazard_curve import HazardCurve
+from rockbatch.analyses.fragility.study import read_fragility
+from rockbatch.errors import InputError
+from rockbatch.study import load_study
+
+LN_A, B, SIGMA, ALPHA = math.log(0.6), 1.2, 0.5, (-1.5, 3.0)
+LIMIT = 0.3
+RNG = np.random.default_rng(11)
+
+
+def made_up(rng, records=40, sigma=SIGMA):
+    """Runs of a pier of which the line and the share are known."""
+    x = np.exp(rng.normal(-0.7, 0.8, records))
+    overturned = rng.random(records) < 1 / (1 + np.exp(-ALPHA[0] - ALPHA[1] * np.log(x)))
+    demand = np.exp(LN_A + B * np.log(x) + sigma * rng.normal(size=records))
+    return Demands(x, demand, overturned, np.zeros(records, dtype=bool))
+
+
+def fitted(runs, floor=1e-9, **more):
+    found = fit(runs, LIMIT, floor, **more)
+    assert isinstance(found, Cloud), found
+    return found
+
+
+# The line
+
+
+def test_without_censored_demands_the_line_is_that_of_least_squares():
+    """SciPy's linregress on the logarithms, and σ² = SSE/(n − 2); to 1e-8."""
+    runs = made_up(np.random.default_rng(1))
+    line = fitted(runs).line
+    stands = ~runs.overturned
+    x, y = np.log(runs.x[stands]), np.log(runs.demand[stands])
+    expected = linregress(x, y)
+    residuals = y - expected.intercept - expected.slope * x
+    sigma = math.sqrt(residuals @ residuals / (len(x) - 2))
+    assert (line.intercept, line.slope, line.sigma) == pytest.approx(
+        (expected.intercept, expected.slope, sigma), rel=1e-8
+    )
+
+
+def test_the_interval_of_the_slope_is_students():
+    """Half-width t_(n−2) s_b of linregress; 1000 draws give 95 % ends to some 5 %."""
+    runs = made_up(np.random.default_rng(2), 12)
+    line = fitted(runs).line
+    stands = ~runs.overturned
+    expected = linregress(np.log(runs.x[stands]), np.log(runs.demand[stands]))
+    low, high = np.quantile(line.draws[:, 1], [0.025, 0.975])
+    half = t.ppf(0.975, stands.sum() - 2) * expected.stderr
+    assert high - low == pytest.approx(2 * half, rel=0.1)
+
+
+def test_censored_demands_make_the_line_of_a_tobit_model():
+    """Densities of the demands above the floor and probabilities of the others, by Nelder–Mead over a, b, ln σ; 1e-5."""
+    runs = made_up(np.random.default_rng(3), 80)
+    floor = 0.15
+    line = fitted(runs, floor).line
+    stands = ~runs.overturned
+    x, y = np.log(runs.x[stands]), np.log(runs.demand[stands])
+    above = y > math.log(floor)
+    assert 10 < (~above).sum() < 60
+
+    def negative(p):
+        mean, sigma = p[0] + p[1] * x, math.exp(p[2])
+        seen = norm.logpdf(y[above], mean[above], sigma).sum()
+        return -seen - norm.logcdf(math.log(floor), mean[~above], sigma).sum()
+
+    searched = minimize(
+        negative, [0.0, 1.0, -1.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 5000}
+    )
+    sigma = math.exp(searched.x[2]) * math.sqrt(above.sum() / (above.sum() - 2))
+    assert (line.intercept, line.slope, line.sigma) == pytest.approx((*searched.x[:2], sigma), rel=1e-5)
+
+
+def test_what_is_censored_does_not_bend_the_line_as_leaving_it_out_would(monkeypatch):
+    """4000 records: censored, b and σ are those of the truth within 4 standard errors; left out, b is too small by a tenth."""
+    monkeypatch.setattr(cloud, "PROPOSALS", 100)
+    runs = made_up(np.random.default_rng(4), 4000)
+    floor = 0.2
+    line = fitted(runs, floor).line
+    assert (line.intercept, line.slope, line.sigma) == pytest.approx((LN_A, B, SIGMA), abs=0.1)
+    seen = ~runs.overturned & (runs.demand > floor)
+    assert linregress(np.log(runs.x[seen]), np.log(runs.demand[seen])).slope < 0.9 * B
+
+
+# The share that overturns
+
+
+def test_the_share_is_that_of_the_penalised_likelihood():
+    """ℓ + ½ ln|I|, maximised by Nelder–Mead; 1e-5 is how far such a search goes."""
+    runs = made_up(np.random.default_rng(5))
+    share = fitted(runs).overturning
+    x = np.column_stack((np.ones(len(runs.x)), np.log(runs.x)))
+
+    def negative(at):
+        p = 1 / (1 + np.exp(-x @ at))
+        likelihood = np.log(np.where(runs.overturned, p, 1 - p)).sum()
+        return -likelihood - 0.5 * math.log(np.linalg.det(x.T @ (x * (p * (1 - p))[:, None])))
+
+    searched = minimize(negative, [-1.0, 1.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-13})
+    assert (share.intercept, share.slope) == pytest.approx(tuple(searched.x), rel=1e-5)
+
+
+def test_of_two_intensities_the_share_is_the_closed_form():
+    """The penalty of a saturated model is half a record in each cell: ln((k + ½)/(n − k + ½)) at either intensity."""
+    x = np.repeat([0.5, 2.0], [10, 12])
+    happened = np.arange(22) % 11 < np.repeat([2, 9], [10, 12])
+    share = fit_event(x, happened).overturning
+    for intensity in (0.5, 2.0):
+        k, n = happened[x == intensity].sum(), (x == intensity).sum()
+        assert share.intercept + share.slope * math.log(intensity) == pytest.approx(
+            math.log((k + 0.5) / (n - k + 0.5)), abs=1e-9
+        )
+
+
+def test_many_records_give_the_share_they_come_from(monkeypatch):
+    """20 000 records: within four standard errors of the maximum likelihood, 4 × 0.03 and 4 × 0.05; no intervals."""
+    monkeypatch.setattr(cloud, "PROPOSALS", 100)
+    runs = made_up(np.random.default_rng(6), 20_000)
+    share = fitted(runs).overturning
+    assert (share.intercept, share.slope) == pytest.approx(ALPHA, abs=0.2)
+
+
+def test_intensities_that_part_what_overturned_from_the_rest_leave_a_finite_share():
+    x = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+    found = fit_event(x, x > 0.35)
+    assert 0.3 < found.median < 0.4
+    assert 0 < found.overturning.slope < 100
+
+
+# The curve
+
+
+def exactly(limit=LIMIT, share=ALPHA):
+    logistic = None if share is None else Logistic(*share, np.array([share]))
+    return Cloud(limit, Line(LN_A, B, SIGMA, np.array([[LN_A, B, SIGMA]])), logistic, 0.95, 0.0)
+
+
+def test_without_overturning_the_curve_is_lognormal():
+    """θ = (d/a)^(1/b), β = σ/b; and its rate under a power law is the closed form of tests/analysis/test_risk.py."""
+    curve = exactly(share=None)
+    theta, beta = (LIMIT / 0.6) ** (1 / B), SIGMA / B
+    assert curve.median == pytest.approx(theta, rel=1e-9)
+    assert curve.dispersion == pytest.approx(beta, rel=1e-9)
+    assert curve.probability(np.array([0.2, 0.7])) == pytest.approx(norm.cdf(np.log([0.2 / theta, 0.7 / theta]) / beta))
+    wider = curve.widened(0.3)
+    assert wider.median == pytest.approx(theta, rel=1e-9)
+    assert wider.dispersion == pytest.approx(math.hypot(beta, 0.3), rel=1e-6)
+    rate, *_ = wider.rate(*HazardCurve([0.25], [1 / 475], slope=2.0).quadrature())
+    expected = 1 / 475 * (theta / 0.25) ** -2 * math.exp(2 * (beta**2 + 0.3**2))
+    assert rate == pytest.approx(expected, rel=1e-5)
+
+
+def test_the_curve_is_that_of_total_probability_and_rises_to_one():
+    x = np.geomspace(0.05, 5, 9)
+    share = 1 / (1 + np.exp(-ALPHA[0] - ALPHA[1] * np.log(x)))
+    line = norm.cdf((LN_A + B * np.log(x) - math.log(LIMIT)) / SIGMA)
+    curve = exactly()
+    assert curve.probability(x) == pytest.approx(line * (1 - share) + share)
+    median = brentq(lambda at: curve.probability(np.array([at]))[0] - 0.5, 0.1, 2)
+    assert curve.median == pytest.approx(median, rel=1e-9)
+
+
+def test_intervals_hold_the_truth_about_as_often_as_they_say():
+    """60 clouds of 40 records: medians and rates 95 %, less 3 deviations of 2.8 %, or more, as the intervals may be wide."""
+    rng = np.random.default_rng(7)
+    x, rates = HazardCurve([0.05, 0.15, 0.35, 0.7], [1 / 30, 1 / 150, 1 / 700, 1 / 2500]).quadrature()
+    kept = slice(300, 1000, 4)  # where the rate comes from, enough for a count
+    x, rates = x[kept], rates[kept]
+    truth = exactly()
+    held = np.zeros(2)
+    for _ in range(60):
+        found = fitted(made_up(rng), 0.05)
+        _, low, high = found.rate(x, rates)
+        least, most = found.median_interval
+        held += [low <= truth.rate(x, rates)[0] <= high, least <= truth.median <= most]
+    assert (held / 60 >= 0.87).all()
+
+
+@pytest.mark.parametrize(
+    ("runs", "words"),
+    [
+        (Demands(np.full(6, 0.5), np.linspace(0.1, 0.5, 6), np.zeros(6, bool), np.zeros(6, bool)), "have the same intensity"),
+        (Demands(np.linspace(1, 2, 6), np.linspace(0.5, 0.1, 6), np.zeros(6, bool), np.zeros(6, bool)), "does not grow"),
+        (Demands(np.linspace(1, 2, 6), np.zeros(6), np.zeros(6, bool), np.zeros(6, bool)), "0 records stand with a demand"),
+        (Demands(np.linspace(1, 2, 6), np.zeros(6), np.ones(6, bool), np.zeros(6, bool)), "every record overturns"),
+        (Demands(np.linspace(1, 2, 6), np.linspace(0.1, 0.5, 6), np.arange(6) < 2, np.zeros(6, bool)), "overturn does not grow"),
+    ],
+)  # fmt: skip
+def test_clouds_without_a_curve_say_why(runs, words):
+    assert words in fit(runs, LIMIT, 1e-3)
+
+
+def test_events_without_a_curve_say_why():
+    x = np.linspace(0.1, 0.5, 5)
+    assert "no record exceeds the limit up to 0.5" in fit_event(x, np.zeros(5, bool))
+    assert "every record exceeds the limit from 0.1 on" in fit_event(x, np.ones(5, bool))
+    assert fit_event(np.array([]), np.array([], dtype=bool)) == "no record counts"
+
+
+# The study
+
+
+def study(tmp_path, fragility=None, motions=None, check=0.5, **more):
+    text = study_text(
+        pier={"alpha": 0.2, "p": 2.0},
+        motions=motions or {"scale": [0.6, 1.0, 1.7, 2.6]},
+        pulses=seven_pulses(0.3),
+        cases=({"name": "rigid", "base": "rigid"},),
+        numerics={"tolerance": 1e-3},
+        check=[{"name": "rotation", "demand": "theta_max_over_alpha", "at_most": check, "reason": "margin"}],
+        fragility={"method": "cloud", "measure": "PGV"} | (fragility or {}),
+        **more,
+    )
+    return write_study(tmp_path, text)
+
+
+def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tmp_path):
+    """The line and its intensities again from the CSV, by linregress: none of its demands is censored there."""
+    found = rb.fragility(study(tmp_path))
+    assert sorted(found.fragility_runs["scale"].unique()) == [0.6, 1.0, 1.7, 2.6]
+    assert len(found.fragility_runs) == 7 * 4
+    rows = found.fragility_cloud
+    of_rotation = rows[rows["limit_state"] == "rotation"]
+    runs = found.fragility_runs.set_index(["record", "scale"])["theta_max_over_alpha"]
+    factors = found.fragility_scales.set_index(["record", "level"])["scale"]
+    for _, row in of_rotation[of_rotation["counts"] == "line"].iterrows():
+        scale = factors[row["record"]].iloc[(factors[row["record"]].index - row["intensity"]).map(abs).argmin()]
+        assert row["demand"] == pytest.approx(runs[row["record"], round(scale, 6)], rel=1e-8)
+    curve = next(curve for curve in found.curves if curve.limit.name == "rotation")
+    expected = fit(
+        Demands(
+            of_rotation["intensity"].to_numpy(),
+            of_rotation["demand"].to_numpy(),
+            (of_rotation["counts"] == "overturned").to_numpy(),
+            np.zeros(len(of_rotation), dtype=bool),
+        ),
+        0.5,
+        0.005,
+    )
+    assert curve.fitted.median == pytest.approx(expected.median, rel=1e-8)
+    overturning = next(curve for curve in found.curves if curve.limit.name == "overturning")
+    assert overturning.fitted.line is None
+    assert overturning.fitted.median > curve.fitted.median
+    html = next(path for path in found.save(tmp_path / "out") if path.suffix == ".html").read_text(encoding="utf-8")
+    assert "Cloud analysis of records as they are: of the records that stand a line" in Page(html).text
+    assert "each counts once at every scale, as if these were records of their own" in found.info["scales"]["said"]
+    found.plot()
+
+
+def test_with_a_hazard_a_cloud_has_rates(tmp_path):
+    hazard = {"levels_m_s": [0.05, 0.2, 0.6], "return_period_years": [30, 300, 3000]}
+    found = rb.fragility(study(tmp_path, {"hazard": hazard, "dispersion": [{"name": "limit", "value": 0.3}]}))
+    rates = found.fragility_risk.set_index("limit_state")
+    assert rates.loc["rotation", "rate_per_year"] > rates.loc["overturning", "rate_per_year"] > 0
+    assert (rates["rate_low"] < rates["rate_per_year"]).all()
+    for curve in found.curves:
+        rate, *_ = curve.fitted.widened(0.3).rate(*found.spec.hazard.curve.quadrature())
+        assert rates.loc[curve.limit.name, "rate_per_year"] == pytest.approx(rate, rel=1e-8)
+    assert isinstance(found.fragility_deaggregation, pd.DataFrame)
+
+
+def test_what_a_curve_rests_on_is_said(tmp_path):
+    found = rb.fragility(study(tmp_path, motions={"scale": [0.3, 0.5, 0.7]}, check=0.9))
+    notes = {curve["limit_state"]: curve["note"] for curve in found.info["curves"]}
+    assert "exceed the limit: the curve extrapolates" in notes["rotation"] or "exceeds the limit" in notes["rotation"]
+    assert "count as small, without their value" in notes["rotation"]
+
+
+@pytest.mark.parametrize(
+    ("fragility", "message"),
+    [
+        ({"levels_m_s": [0.2, 0.4]}, 'levels_m_s = [0.2, 0.4]: does not apply to method = "cloud"'),
+        ({"most_scale": 4.0}, 'most_scale = 4.0: does not apply to method = "cloud"'),
+        ({"censored_below": 1.5}, "censored_below = 1.5: expected a number above 0 and below 1"),
+        (
+            {"method": "stripes", "levels_m_s": [0.2, 0.4], "censored_below": 0.1},
+            'does not apply to method = "stripes"',
+        ),
+    ],
+)
+def test_keys_of_other_methods_are_named(tmp_path, fragility, message):
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(study(tmp_path, fragility)))
+    assert message in "\n".join(caught.value.problems)

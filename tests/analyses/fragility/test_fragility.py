@@ -1,0 +1,601 @@
+"""From records at rising intensities to fragility curves: scaling, limits, bisection, resuming, files and messages."""
+
+import csv
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from report_page import Page
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.analyses.fragility.command import table
+from rockbatch.analyses.fragility.curves import ScaledRuns, assess, intensities
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
+from rockbatch.analyses.fragility.lognormal import Capacities, fit
+from rockbatch.analyses.fragility.section import section
+from rockbatch.analyses.fragility.study import read_fragility
+from rockbatch.analyses.fragility.tables import described, points
+from rockbatch.batch.digests import digests
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.threads import Threads
+from rockbatch.batch.waves import Waves
+from rockbatch.checks import Rule
+from rockbatch.cli import main
+from rockbatch.errors import EditedTable, InputError
+from rockbatch.motions.measures import pga, pgv
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
+from rockbatch.report import finished_analysis
+from rockbatch.report.finished_analysis import Contents
+from rockbatch.results.columns import columns
+from rockbatch.simulation import run_to_tolerance
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
+
+STRIPES = 'measure = "PGA"\nlevels_g = [0.2, 0.4, 0.6, 0.8]'
+IDA = f'method = "ida"\ntolerance = 0.02\n{STRIPES}'
+
+
+def check(name, demand, reason, **limit):
+    return {"name": name, "demand": demand, **limit, "reason": reason}
+
+
+def written(tmp_path, fragility):
+    shapes = [("sine", 0.6), ("sine", 1.0), ("cosine", 0.7), ("ricker", 0.9), ("ricker", 1.4)]
+    text = study_text(
+        title="Fragility of a small pier",
+        pier={"alpha": 0.2, "p": 2.0},
+        motions={"polarity": ["+", "-"]},
+        pulses=[
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 6.0}
+            for shape, t in shapes
+        ],
+        cases=(RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"}),
+        numerics={"tolerance": 1e-3},
+        check=[
+            check("half way", "theta_max_over_alpha", "margin", at_most=0.5),
+            check("settlement", "settlement_m", "bearings", at_most=0.005),
+            check("bearing", "eta", "of the case, about no record", at_least=2.0),
+        ],
+    )
+    return write_study(tmp_path, f"{text}\n[fragility]\n{fragility}\n")
+
+
+def read(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Interrupted(Threads):
+    """Breaks off in the middle of the wave ``last``."""
+
+    def __init__(self, last):
+        super().__init__(1)
+        object.__setattr__(self, "left", [last])
+
+    def outcomes(self, runs, numerics, output):
+        for group in super().outcomes(runs, numerics, output):
+            if self.left[0] == 0:
+                yield group[: len(group) // 2]
+                raise KeyboardInterrupt
+            yield group
+        self.left[0] -= 1
+
+
+def journal_of(study, spec, directory):
+    found = ground_motions(study).motions
+    return found, Journal(directory / "runs.csv.part", columns(study), digests(found, levels=spec))
+
+
+# Scaling
+
+
+@pytest.mark.parametrize(
+    ("fragility", "measure"),
+    [
+        (STRIPES, lambda a: pga(a) / 9.81),
+        ('measure = "PGV"\nlevels_m_s = [0.2, 0.6]', lambda a: pgv(a, 0.01)),
+        ('measure = "Sa"\nperiod_s = 0.5\nlevels_g = [0.2, 0.6]', lambda a: spectral_acceleration(a, 0.01, [0.5])[0] / 9.81),
+    ],
+    ids=["PGA", "PGV", "Sa"],
+)  # fmt: skip
+def test_every_run_has_the_intensity_of_its_level(tmp_path, fragility, measure):
+    study = load_study(written(tmp_path, fragility))
+    spec = read_fragility(study)
+    motions = ground_motions(study).motions
+    seen = []
+
+    def simulate(runs):
+        assert isinstance(runs, ScaledRuns)
+        for run, point in zip(runs, runs.points, strict=True):
+            assert measure(run.motion.horizontal) == pytest.approx(point.intensity, rel=1e-12)
+            assert run.motion.horizontal == pytest.approx(
+                run.scale * run.recorded.horizontal * (1 if run.polarity == "+" else -1)
+            )
+            seen.append((run.motion.name, run.polarity, point.intensity, run.case.name))
+        raise StopIteration
+
+    with pytest.raises(StopIteration):
+        assess(study, spec, motions, simulate)
+    assert len(set(seen)) == len(seen) == 5 * len(spec.levels) * 2
+    assert {polarity for _, polarity, _, _ in seen} == {"+"}  # the other would be their mirror image
+
+
+def test_a_motion_without_intensity_is_told(tmp_path):
+    study = load_study(written(tmp_path, STRIPES))
+    still = rb.Motion("still", 0.01, np.zeros(10))
+    with pytest.raises(InputError, match="still: its horizontal component has PGA = 0"):
+        intensities([still], read_fragility(study), 9.81)
+
+
+# Limits
+
+
+def of_statuses(statuses, theta=0.4, error=0.01):
+    """Rows of peaks.csv with these statuses, and their case."""
+    import pandas as pd
+
+    n = len(statuses)
+    rows = {"status": statuses, "theta_max_over_alpha": [theta] * n, "theta_max_error": [error] * n}
+    flew = [1.0 if status == "flight" else np.nan for status in statuses]
+    return pd.DataFrame(rows | {"flight_s": flew, "polarity": ["+"] * n})
+
+
+@pytest.mark.parametrize(
+    ("rule", "expected"),
+    [
+        ({"at_most": 0.5}, [WITHSTOOD, EXCEEDED, UNDECIDED, UNDECIDED]),
+        ({"at_most": 0.3}, [EXCEEDED, EXCEEDED, EXCEEDED, UNDECIDED]),
+        ({"at_most": 0.405}, [UNDECIDED, EXCEEDED, UNDECIDED, UNDECIDED]),
+        ({"at_most": 0.5, "flight": "infinite", "failed": "left out"}, [WITHSTOOD, EXCEEDED, EXCEEDED, LEFT_OUT]),
+        ({"at_most": 0.5, "statistic": "asce7-16"}, [WITHSTOOD, EXCEEDED, EXCEEDED, EXCEEDED]),
+        ({"at_most": 3, "statistic": "count", "above": 0.3}, [EXCEEDED, EXCEEDED, EXCEEDED, UNDECIDED]),
+    ],
+)
+def test_a_run_that_did_not_go_through_counts_as_its_check_says(rule, expected):
+    runs = of_statuses(["ok", "overturned", "flight", "failed"])
+    found = states(Rule("check", "theta_max_over_alpha", **rule), runs, {"base": "rigid", "pier": {"alpha": 0.2}})
+    assert list(found) == expected
+
+
+def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
+    runs = of_statuses(["ok", "overturned", "flight", "failed"])
+    found = states(Rule("overturning", "overturned", at_most=0), runs, {"base": "rigid"})
+    assert list(found) == [WITHSTOOD, EXCEEDED, UNDECIDED, UNDECIDED]
+
+
+# Bisection
+
+
+@pytest.mark.parametrize(
+    ("shape", "first", "last", "amplitudes"),
+    [
+        ("half-sine", 3.289147, math.inf, [2.5, 4.5, 6.8, 7.5]),
+        ("sine", 3.018600, 6.318071, [2.5, 4.5, 6.8, 7.5]),
+        ("sine", 3.018600, 6.318071, [2.5, 6.8, 7.5]),
+    ],
+)
+def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape, first, last, amplitudes):
+    """Slender block, e = 0.9, ω_p/p = 5 (test_overturning): the one-sine's second safe window is 6.318–7.168.
+
+    The level 6.8 is inside it: the first exceedance is found all the same, also where no level is in the window of overturning
+    below, and that the block stands there is counted. Tolerance 1e-4, and as much for the pulse that is linear between 400
+    samples a period.
+    """
+    alpha, period = 1e-4, 2 * math.pi / 5
+    unit = math.tan(alpha)
+    levels = [amplitude * unit for amplitude in amplitudes]
+    text = study_text(
+        pier={"alpha": alpha, "p": 1.0},
+        pulses=[
+            {"name": "pulse", "shape": shape, "amplitude_g": 1.0}
+            | {"period_s": period, "dt_s": period / 400, "duration_s": period}
+        ],
+        cases=({"base": "rigid", "restitution": 0.9},),
+        numerics={"substeps": 1, "quiet_s": 0.0},
+        fragility={"method": "ida", "measure": "PGA", "levels_g": levels, "tolerance": 1e-4},
+    )
+    path = write_study(tmp_path, text)
+    study = load_study(path)
+    spec = read_fragility(study)
+    motions, journal = journal_of(study, spec, tmp_path)
+    with journal:
+        (curve,) = assess(study, spec, motions, Waves(study, journal, Threads(1)))
+    ((_, found),) = curve.capacities
+    assert found.decided.low / unit == pytest.approx(first, rel=2e-4)
+    assert found.decided.high / unit == pytest.approx(first, rel=2e-4)
+    assert found.returns == (1 if last < 6.8 else 0)
+
+
+# The whole
+
+
+def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_path):
+    study = load_study(written(tmp_path, IDA))
+    spec = read_fragility(study)
+
+    def searched(folder, engines):
+        motions, journal = journal_of(study, spec, folder)
+        for engine in engines:
+            try:
+                with journal:
+                    waves = Waves(study, journal, engine)
+                    curves = assess(study, spec, motions, waves)
+                    journal.write_in_order(folder / "runs.csv")
+            except KeyboardInterrupt:
+                assert (folder / "runs.csv.part").exists()
+        return waves.finished, curves, (folder / "runs.csv").read_bytes()
+
+    straight = searched(tmp_path / "straight", [Threads(1)])
+    resumed = searched(tmp_path / "resumed", [Interrupted(0), Interrupted(2), Threads(2)])
+    assert straight[0] == resumed[0] > 5 * 4 * 2
+    assert straight[2] == resumed[2]
+    for one, other in zip(straight[1], resumed[1], strict=True):
+        assert (one.stripes, one.capacities) == (other.stripes, other.capacities)
+
+
+def test_the_command_writes_points_curves_capacities_and_all_runs(tmp_path, capsys):
+    out = tmp_path / "results"
+    assert main(["fragility", str(written(tmp_path, IDA)), "--out", str(out), "--jobs", "2"]) == 0
+    printed = capsys.readouterr().out
+    points, capacities, runs = (read(out / f"fragility{name}.csv") for name in ("", "_capacities", "_runs"))
+    told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    limits = ["overturning", "half way", "settlement"]
+    assert list(dict.fromkeys(point["limit_state"] for point in points)) == limits
+    assert len(points) == 4 * (2 + 2 + 1)  # a rigid base does not settle, and eta is about no record
+    assert {(one["limit_state"], one["case"]) for one in told["curves"]} == {
+        (limit, case) for limit in limits for case in ("rigid", "pads") if (limit, case) != ("settlement", "rigid")
+    }
+    assert len(capacities) == 5 * 5
+    for one in capacities:
+        if one["found"] == "exceeded":
+            assert float(one["above"]) < float(one["at_most"]) <= 1.02 * float(one["above"]) * (1 + 1e-9)
+            assert float(one["scale_at_most"]) == pytest.approx(float(one["at_most"]) / 0.4, rel=0.05)
+    overturned = {(run["record"], run["case"]) for run in runs if run["status"] == "overturned"}
+    found = {
+        (one["record"], one["case"]) for one in capacities if one["limit_state"] == "overturning" and one["at_most"]
+    }
+    assert overturned == found
+    assert "Fragility for PGA, incremental dynamic analysis" in printed
+    assert "half way: theta_max_over_alpha > 0.5" in printed
+    assert not (out / "fragility_runs.csv.part").exists()
+
+
+def test_stripes_count_a_record_once_in_whatever_polarities(tmp_path):
+    study = load_study(written(tmp_path, STRIPES))
+    spec = read_fragility(study)
+    motions, journal = journal_of(study, spec, tmp_path)
+    with journal:
+        curves = assess(study, spec, motions, Waves(study, journal, Threads(2)))
+        rows = [row for _, row in journal.rows()]
+    over = next(curve for curve in curves if curve.case.name == "rigid" and curve.limit.name == "overturning")
+    unscaled = {motion.name: pga(motion.horizontal) / 9.81 for motion in motions}
+    for stripe in over.stripes:
+        names = {
+            row["record"]
+            for row in rows
+            if row["case"] == "rigid" and row["status"] == "overturned"
+            and float(row["scale"]) * unscaled[row["record"]] == pytest.approx(stripe.level)
+        }  # fmt: skip
+        assert (stripe.records, stripe.exceeded, stripe.collapsed) == (5, len(names), len(names))
+    assert 0 < sum(stripe.exceeded for stripe in over.stripes) < 20
+    assert over.capacities == ()
+
+
+# Undecided runs
+
+
+def made_up(tmp_path, fragility, status_of, limits=None, motions=30, **more):
+    """Curves of the rigid case through runs with a status by number of the motion and intensity."""
+    study = load_study(written(tmp_path, fragility))
+    study = replace(study, cases=study.cases[:1])
+    spec = read_fragility(study)
+    spec = replace(spec, limits=limits or spec.limits[:1], **more)
+    one = ground_motions(study).motions[0]
+    scaled = [replace(one, name=f"motion {m}") for m in range(motions)]
+
+    def simulate(runs):
+        return of_statuses([status_of(point.motion, point.intensity) for point in runs.points])
+
+    return assess(study, spec, scaled, simulate), spec, study
+
+
+def lognormal_capacities(motions=30, median=0.5, dispersion=0.4):
+    from scipy.special import ndtri
+
+    return median * np.exp(dispersion * ndtri((np.arange(motions) + 0.5) / motions))
+
+
+CAPACITIES = lognormal_capacities()
+
+
+def stands_or_falls(motion, x):
+    return "overturned" if x >= CAPACITIES[motion] else "ok"
+
+
+@pytest.mark.parametrize("fragility", [STRIPES, IDA], ids=["stripes", "ida"])
+def test_runs_that_flew_or_failed_far_below_their_capacity_do_not_move_the_headline(tmp_path, fragility):
+    """Every second record fails up to 0.3 g, where most would stand: the median is as without them."""
+
+    def status(motion, x):
+        return "failed" if x < 0.3 and motion % 2 else stands_or_falls(motion, x)
+
+    (without,), _, _ = made_up(tmp_path, fragility, stands_or_falls)
+    (curve,), _, _ = made_up(tmp_path, fragility, status)
+    assert without.readings is None
+    assert without.undecided.words == ""
+    assert curve.fitted.median == pytest.approx(without.fitted.median, rel=0.03)
+    low, high = curve.readings.medians
+    assert low < 0.8 * without.fitted.median
+    assert high == pytest.approx(without.fitted.median, rel=0.03)
+    assert high / low > np.divide(*curve.fitted.median_interval[::-1])
+    assert curve.says_little
+
+
+def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_path):
+    """Held against fits of the counts themselves; 12 of 120 runs, 4 of them flights."""
+
+    def status(motion, x):
+        if motion < 8 and x == 0.4:
+            return "failed"
+        return "flight" if motion >= 26 and x == 0.6 else stands_or_falls(motion, x)
+
+    (curve,), spec, _ = made_up(tmp_path, STRIPES, status)
+    assert curve.undecided.words == "12 of 120 runs undecided: 4 flew, 8 failed"
+    levels = np.array(spec.levels)
+    kinds = np.array([[status(m, x) for x in spec.levels] for m in range(30)])
+    open_, within, beyond = np.isin(kinds, ["flight", "failed"]), kinds == "ok", kinds == "overturned"
+    for found, expected in (
+        (curve.fitted, (within, beyond)),
+        (curve.readings.exceeded, (within, beyond | open_)),
+        (curve.readings.withstood, (within | open_, beyond)),
+    ):
+        assert found.median == fit(Capacities.of_same_records(levels, *expected)).median
+    assert curve.readings.exceeded.median < curve.fitted.median < curve.readings.withstood.median
+    assert [stripe.undecided for stripe in curve.stripes] == [0, 8, 4, 0]
+
+
+def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
+    rule = Rule("half way", "theta_max_over_alpha", at_most=0.5, overturned="unknown")
+    (curve,), _, _ = made_up(tmp_path, STRIPES, stands_or_falls, limits=(rule,))
+    assert [stripe.exceeded for stripe in curve.stripes] == [0, 0, 0, 0]
+    assert curve.fitted == curve.readings.withstood == "no record exceeds the limit up to 0.8: the median is beyond"
+    assert curve.readings.medians == (curve.readings.exceeded.median, math.inf)
+    assert curve.undecided.other == curve.undecided.number > 0
+
+
+def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
+    path = written(tmp_path, STRIPES)
+    text = path.read_text(encoding="utf-8").replace(
+        'at_most = 0.5\n', 'at_most = 0.5\nflight = "infinite"\nfailed = "value"\npolarity = "-"\n'
+    )  # fmt: skip
+    text = text.replace("at_most = 0.005\n", 'at_most = 0.005\nfailed = "left out"\n')
+    path.write_text(text, encoding="utf-8")
+    _, half, settled = read_fragility(load_study(path)).limits
+    assert (half.flight, half.failed, half.polarity) == ("unknown", "unknown", None)
+    assert (settled.flight, settled.failed) == ("unknown", "left out")
+    runs = of_statuses(["flight", "failed"], theta=0.6)
+    assert list(states(half, runs, {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
+
+
+def test_undecided_runs_are_told_first_in_the_table_the_files_and_the_report(tmp_path):
+    """Every second record fails at two of four levels."""
+    (curve,), spec, study = made_up(
+        tmp_path, STRIPES, lambda m, x: "failed" if m % 2 and x < 0.5 else stands_or_falls(m, x)
+    )
+    printed = table([curve], spec)
+    first, *rest = printed.splitlines()
+    assert first == "Fragility for PGA, stripes; 1 of 1 curve says little: too many runs are undecided"
+    assert any("says little: 30 of 120 runs undecided: 30 failed; they count for nothing here" in line for line in rest)
+    rows = points([curve], spec, ())
+    assert list(rows["undecided"]) == [15, 15, 0, 0]
+    assert (rows["p_low"] <= rows["p"]).all()
+    assert (rows["p"] <= rows["p_high"]).all()
+    told = described([curve], spec, study, 30)
+    told |= {"study": {"sha256": "here"}}
+    (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
+    page = section(Contents(tmp_path, told["study"]))
+    assert page.startswith("<p><strong>Too many runs are undecided for these curves to say much: overturning, rigid")
+    assert 'class="open s1"' in page
+    assert "30 of 120 runs undecided: 30 failed" in page
+
+
+@pytest.mark.parametrize(("stations", "said"), [(30, False), (15, True)])
+def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said(tmp_path, stations, said):
+    (curve,), spec, study = made_up(tmp_path, STRIPES, stands_or_falls)
+    told = described([curve], spec, study, 30) | {"stations": stations, "study": {"sha256": "here"}}
+    (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
+    page = section(Contents(tmp_path, told["study"]))
+    words = ", components of 15 stations: each counts by itself"
+    assert (words in page, "the bands are too narrow" in page) == (said, said)
+
+
+@pytest.mark.parametrize(
+    ("fragility", "words"),
+    [
+        ("", ["measure is missing"]),
+        ('measure = "PGD"', ['measure = "PGD": expected one of "PGA", "PGV", "Sa"']),
+        ('measure = "PGA"', ["levels_g is missing"]),
+        (
+            'measure = "PGA"\nlevels_m_s = [0.2, 0.4]',
+            ['levels_m_s = [0.2, 0.4]: does not apply to measure = "PGA"', "levels_g is missing"],
+        ),
+        ('measure = "Sa"\nlevels_g = [0.2, 0.4]', ["period_s is missing"]),
+        (
+            'measure = "PGA"\nperiod_s = 1.0\nlevels_g = [0.2]',
+            [
+                'period_s = 1.0: does not apply to measure = "PGA"; leave it out, or write measure = "Sa"',
+                "one level does not determine",
+            ],
+        ),
+        ('measure = "PGA"\nlevels_g = [0.4, 0.2]', ["levels_g = 0.2: after 0.4; write them in rising order"]),
+        (f"{STRIPES}\ntolerance = 0.1", ['tolerance = 0.1: is for method = "ida"; write that too']),
+        (f"{STRIPES}\nhunt_step = 0.1", ['hunt_step = 0.1: is for method = "ida"']),
+        (f"{IDA}\nhunt_step = 1e-4", ["hunt_step = 0.0001: expected a number from 0.001 to 1"]),
+        (f"{STRIPES}\nwindow = 0.02", ['window = 0.02: is for method = "ida"']),
+        (f"{IDA}\nwindow = 2", ["window = 2: expected a number from 0.001 to 0.2"]),
+        (f'{STRIPES}\nmethod = "IDA"', ['did you mean "ida"?']),
+        (
+            f'{STRIPES}\nchecks = ["half-way"]',
+            ['checks = "half-way": no [[check]] has this name; did you mean "half way"?'],
+        ),
+        (f"{STRIPES}\nconfidence = 1.0", ["confidence = 1.0: expected a number, 0 or above and below 1"]),
+    ],
+)
+def test_mistakes_in_the_settings_are_told_with_their_line(tmp_path, capsys, fragility, words):
+    path = written(tmp_path, fragility)
+    assert main(["fragility", str(path), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    for word in words:
+        line = next(line for line in told.splitlines() if word in line)
+        assert f"{path}:" in line
+        assert "[fragility]" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_study_without_the_table_is_told_what_to_write(tmp_path, capsys):
+    path = written(tmp_path, STRIPES)
+    path.write_text(path.read_text(encoding="utf-8").replace("[fragility]", "[output]\n[other]"), encoding="utf-8")
+    text = path.read_text(encoding="utf-8").replace("[other]\n" + STRIPES, "")
+    path.write_text(text, encoding="utf-8")
+    assert main(["fragility", str(path)]) == 2
+    assert '[fragility] is missing; write [fragility] with measure = "PGV"' in capsys.readouterr().err
+
+
+# The report
+
+
+def page_of(tmp_path, fragility):
+    """The page that the command leaves, and its folder."""
+    out = tmp_path / "results"
+    assert main(["fragility", str(written(tmp_path, fragility)), "--out", str(out), "--jobs", "2"]) == 0
+    return Page((out / "analyses.html").read_text(encoding="utf-8")), out
+
+
+def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_path):
+    page, out = page_of(tmp_path, IDA)
+    told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    assert page.mismatched == []
+    assert page.headings == ["Fragility", "The study file"]
+    assert len(told["curves"]) == 5
+    rows = page.tables["fragility"]
+    medians, capacities, factors = rows[1:6], rows[7:32], rows[32:]
+    of_csv = read(out / "fragility_capacities.csv")
+    assert [cells[0] for cells in capacities] == [row["record"] for row in of_csv]
+    assert [float(cells[-1]) for cells in capacities] == pytest.approx(
+        [100 * float(row["widest_step"]) for row in of_csv], rel=0.05
+    )
+    assert [cells[0] for cells in factors[2:]] == told["scales"]["records"]
+    for cells, one in zip(medians, told["curves"], strict=True):
+        assert one["limit_state"] in cells[0]
+        assert one["note"] == cells[-1] or one["note"] == ""
+        if one["median"] is not None:
+            assert f"{one['median']:.3g}" in cells
+        if one.get("windows", {}).get("median") is not None:
+            assert f"{one['windows']['median']:.3g}" in cells
+            assert f"{100 * (one['windows']['median'] / one['median'] - 1):+.1f}" in cells
+    fitted = [one for one in told["curves"] if one["median"] is not None]
+    classes = [value or "" for name, value in page.attributes if name == "class"]
+    assert sum(value.startswith("area ") for value in classes) == len(fitted) >= 3
+    assert sum(value == "whole" for value in classes) == 1
+
+
+def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_path):
+    _, out = page_of(tmp_path, STRIPES)
+    for one in json.loads((out / "fragility.json").read_text(encoding="utf-8"))["curves"]:
+        if "curve" in one:
+            low, p, high = (np.array(one["curve"][name]) for name in ("low", "p", "high"))
+            assert (low <= p).all()
+            assert (p <= high).all()
+            assert (np.diff(p) >= 0).all()
+
+
+def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(tmp_path, capsys):
+    """On rigid ground in steps of 0.25 % up to the greatest capacity, a single dash; on pads at the four levels, a dash each."""
+    page, out = page_of(tmp_path, IDA)
+    told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    words = "in steps of 0.25 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
+    for text in (page.text, capsys.readouterr().out):
+        assert [text.count(each) for each in words] == [1, 1]
+    by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}
+    assert by_case["pads"] == [[x, x] for x in (0.2, 0.4, 0.6, 0.8)]
+    ((low, high),) = by_case["rigid"]
+    capacities = [row for row in read(out / "fragility_capacities.csv") if row["limit_state"] == "overturning"]
+    bounds = [float(row["at_most"] or "inf") for row in capacities if row["case"] == "rigid"]
+    assert (low, high) == (0.2, pytest.approx(min(max(bounds), 0.8)))
+    steps = {case: [float(row["widest_step"]) for row in capacities if row["case"] == case] for case in by_case}
+    assert max(steps["rigid"]) <= 0.0025 + 1e-9
+    assert max(steps["pads"]) >= 0.3
+
+
+def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
+    spec = read_fragility(load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.05")))
+    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.05, 0.05]
+    spec = read_fragility(load_study(written(tmp_path, IDA)))
+    assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
+
+
+def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):
+    _, out = page_of(tmp_path, STRIPES)
+    study = json.loads((out / "fragility.json").read_text(encoding="utf-8"))["study"]
+    assert section(Contents(out, study)) != ""
+    assert section(Contents(out, study | {"sha256": "another"})) == ""
+    assert section(Contents(tmp_path, study)) == ""
+    assert not (out / "fragility_capacities.csv").exists()
+
+
+def test_what_an_analysis_says_is_told_where_it_was_edited_or_damaged(tmp_path):
+    """Medians stand in fragility.json only: a digit that flipped would be a wrong curve."""
+    _, out = page_of(tmp_path, STRIPES)
+    path, points_csv = out / "fragility.json", out / "fragility.csv"
+    whole = path.read_text(encoding="utf-8")
+    study = json.loads(whole)["study"]
+    first = next(one for one in json.loads(whole)["curves"] if one["median"] is not None)
+    other = whole.replace(f'"median": {first["median"]}', f'"median": {2 * first["median"]}', 1)
+    assert other != whole
+    of_another = whole.replace('"sha256": "', '"sha256": "0')
+    for text, shown in ((other, True), (of_another, False), (whole[:-100], False), ("\xf4" + whole, False)):
+        path.write_text(text, encoding="latin-1")
+        with pytest.warns(EditedTable, match=r"fragility\.json: not as it was written"):
+            assert (section(Contents(out, study)) != "") == shown
+    path.write_text(whole, encoding="utf-8")
+    assert section(Contents(out, study)) != ""
+    points_csv.write_text(points_csv.read_text(encoding="utf-8").replace("0", "1", 1), encoding="utf-8")
+    found = finished_analysis.read(out, "fragility", study["sha256"])
+    with pytest.warns(EditedTable, match=r"fragility\.csv: not as it was written"):
+        assert found.table("fragility.csv", ()) is not None
+
+
+def test_lists_of_dampers_and_of_zeta_are_cases_with_curves_of_their_own(tmp_path):
+    """Their runs are those of the pier with the value, at the scale of the level."""
+    text = study_text(
+        pulses=[SINE | {"duration_s": 1.0}],
+        cases=(
+            RIGID | {"damper": [{"kind": "friction", "f": [0.02, 0.2]}]},
+            {"name": "damped", "base": "elastic", "beta": 30, "zeta": [0.02, 0.2]},
+        ),
+        fragility={"measure": "PGA", "levels_g": [0.6, 0.9]},
+        check=[check("an eighth", "theta_max_over_alpha", "margin", at_most=0.125)],
+    )
+    path = write_study(tmp_path, text)
+    found = rb.fragility(path)
+    (motion,) = ground_motions(load_study(path)).motions
+    for key, value, base in (
+        ("damper_1_f", 0.02, RigidBase(restraints=(Damper("friction", f=0.02),))),
+        ("damper_1_f", 0.2, RigidBase(restraints=(Damper("friction", f=0.2),))),
+        ("zeta", 0.2, ElasticBase(30.0, zeta=0.2)),
+    ):
+        rows = found.fragility_runs[found.fragility_runs[key] == value]
+        assert len(rows) == 2
+        for _, row in rows.iterrows():
+            scaled = replace(motion, horizontal=motion.horizontal * row["scale"])
+            outcome = run_to_tolerance(Pier(0.2, 1.0), base, scaled, 1e-4)
+            assert row["theta_max_over_alpha"] == pytest.approx(outcome.theta_max / 0.2, rel=1e-8)
+    eighth = found.fragility[found.fragility["limit_state"] == "an eighth"].set_index(["damper_1_f", "level"])[
+        "exceeded"
+    ]
+    assert eighth[0.02].to_list() == [0, 1]
+    assert eighth[0.2].to_list() == [0, 0]

@@ -1,0 +1,226 @@
+"""Lognormal fragility by maximum likelihood: against other ways to the same maximum, and against its own promises.
+
+Whatever is compared with :func:`fit` here goes another way: the probit regression by Fisher scoring, Baker's own search over
+θ and β, closed forms, and constrained optimisation for the profile likelihood.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize, minimize_scalar
+from scipy.stats import binom, norm
+
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
+
+LEVELS = np.array([0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0])
+RECORDS = np.full(8, 40.0)
+EXCEEDED = np.array([0, 0, 0, 4, 6, 13, 12, 16])
+
+
+def fresh_records(levels, records, exceeded):
+    """Capacities of fresh records at each level, by their number and by how many exceeded the limit."""
+    low, high = np.r_[np.zeros(len(levels)), levels], np.r_[levels, np.full(len(levels), np.inf)]
+    count = np.r_[exceeded, records - exceeded].astype(float)
+    return Capacities(low[count > 0], high[count > 0], count[count > 0])
+
+
+STRIPES = fresh_records(LEVELS, RECORDS, EXCEEDED)
+
+
+def fitted(capacities, confidence=0.95):
+    found = fit(capacities, confidence)
+    assert isinstance(found, Lognormal), found
+    return found
+
+
+def bracketed(capacities, tolerance, limit=math.inf):
+    """Brackets around known capacities, open above ``limit``."""
+    low = np.where(capacities > limit, limit, capacities / math.sqrt(1 + tolerance))
+    high = np.where(capacities > limit, np.inf, capacities * math.sqrt(1 + tolerance))
+    return Capacities(low, high, np.ones(len(capacities)))
+
+
+def log_likelihood(theta, beta, levels=LEVELS, records=RECORDS, exceeded=EXCEEDED):
+    return binom.logpmf(exceeded, records, norm.cdf(np.log(levels / theta) / beta)).sum()
+
+
+def test_stripes_are_a_probit_regression_on_ln_im():
+    """Fisher scoring of the generalised linear model z = a + b ln x, to rounding: 1e-9 of θ and β."""
+    design = np.column_stack([np.ones(8), np.log(LEVELS)])
+    ab = np.array([0.0, 1.0])
+    for _ in range(100):
+        z = design @ ab
+        p, slope = norm.cdf(z), norm.pdf(z)
+        weight = RECORDS * slope**2 / (p * (1 - p))
+        working = z + (EXCEEDED / RECORDS - p) / slope
+        ab = np.linalg.solve(design.T @ (weight[:, None] * design), design.T @ (weight * working))
+    found = fitted(STRIPES)
+    assert found.median == pytest.approx(math.exp(-ab[0] / ab[1]), rel=1e-9)
+    assert found.dispersion == pytest.approx(1 / ab[1], rel=1e-9)
+
+
+def test_stripes_agree_with_bakers_search_over_median_and_dispersion():
+    """Nelder–Mead from (0.8, 0.4) on binomial probabilities; 1e-5: how far such a search goes."""
+    searched = minimize(
+        lambda x: -log_likelihood(*x), [0.8, 0.4], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12}
+    )
+    found = fitted(STRIPES)
+    assert (found.median, found.dispersion) == pytest.approx(tuple(searched.x), rel=1e-5)
+
+
+def test_capacities_of_all_records_give_the_mean_and_deviation_of_their_logarithms():
+    """Brackets of 1e-4 shift ln θ by less than 1e-8 and ln β by about their variance over 12 β²."""
+    capacities = np.exp(np.random.default_rng(1).normal(-0.3, 0.4, 44))
+    found = fitted(bracketed(capacities, 1e-4))
+    assert found.median == pytest.approx(math.exp(np.log(capacities).mean()), rel=1e-7)
+    assert found.dispersion == pytest.approx(np.log(capacities).std(), rel=1e-7)
+
+
+def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis():
+    """The densities of the m collapses times (1 − Φ) for the others, maximised over θ and ln β; 1e-6: the search."""
+    capacities = np.exp(np.random.default_rng(2).normal(0.0, 0.4, 40))
+    limit = 1.1
+    collapses, others = capacities[capacities <= limit], (capacities > limit).sum()
+
+    def negative(x):
+        mu, beta = x[0], math.exp(x[1])
+        return -norm.logpdf(np.log(collapses), mu, beta).sum() - others * norm.logsf((math.log(limit) - mu) / beta)
+
+    searched = minimize(negative, [0.1, -1.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-13})
+    found = fitted(bracketed(capacities, 1e-4, limit))
+    assert others > 10
+    assert found.median == pytest.approx(math.exp(searched.x[0]), rel=1e-6)
+    assert found.dispersion == pytest.approx(math.exp(searched.x[1]), rel=1e-6)
+
+
+def test_a_curve_is_recovered_from_many_records():
+    """20 000 records on seven stripes: within four standard errors, 4 × 0.004 and 4 × 0.004 by the Fisher information."""
+    rng = np.random.default_rng(3)
+    levels = np.linspace(0.4, 1.6, 7)
+    exceeded = rng.binomial(20_000, norm.cdf(np.log(levels / 0.9) / 0.45))
+    found = fitted(fresh_records(levels, np.full(7, 20_000), exceeded))
+    assert found.median == pytest.approx(0.9, abs=0.016)
+    assert found.dispersion == pytest.approx(0.45, abs=0.016)
+
+
+def test_the_unit_of_the_levels_does_not_matter():
+    scaled = fitted(fresh_records(981.0 * LEVELS, RECORDS, EXCEEDED))
+    found = fitted(STRIPES)
+    assert scaled.median == pytest.approx(981.0 * found.median, rel=1e-9)
+    assert scaled.median_interval == pytest.approx([981.0 * bound for bound in found.median_interval], rel=1e-9)
+    assert scaled.dispersion_interval == pytest.approx(found.dispersion_interval, rel=1e-9)
+
+
+def test_intervals_end_where_the_profile_likelihood_has_fallen_by_half_the_chi_square_quantile():
+    """The profile over the other parameter, by a bounded search, and its ends by root finding; 1e-4: between two of 360 rays."""
+    found = fitted(STRIPES)
+    least = log_likelihood(found.median, found.dispersion) - 0.5 * norm.ppf(0.975) ** 2
+
+    def of_median(theta):
+        return -minimize_scalar(lambda b: -log_likelihood(theta, b), bounds=(0.05, 3), method="bounded").fun - least
+
+    def of_dispersion(beta):
+        return -minimize_scalar(lambda t: -log_likelihood(t, beta), bounds=(0.3, 5), method="bounded").fun - least
+
+    theta, beta = found.median, found.dispersion
+    assert found.median_interval == pytest.approx(
+        (brentq(of_median, 0.5 * theta, theta), brentq(of_median, theta, 2 * theta)), rel=1e-4
+    )
+    assert found.dispersion_interval == pytest.approx(
+        (brentq(of_dispersion, 0.5 * beta, beta), brentq(of_dispersion, beta, 2 * beta)), rel=1e-4
+    )
+
+
+def test_the_band_leaves_one_half_where_the_interval_of_the_median_ends():
+    found = fitted(STRIPES)
+    low, high = found.band(np.array(found.median_interval))
+    assert (high[0], low[1]) == pytest.approx((0.5, 0.5), abs=1e-9)
+    assert found.probability(np.array([found.median])) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("suites", [60, pytest.param(100, marks=pytest.mark.slow)])
+def test_intervals_hold_the_truth_about_as_often_as_they_say(suites):
+    """Suites of 30 records, by IDA up to a level that a third of them survives: 95 % within 5 % is 2.3 deviations of 100."""
+    rng = np.random.default_rng(4)
+    held = np.zeros(2)
+    for _ in range(suites):
+        found = fitted(bracketed(np.exp(rng.normal(0.0, 0.5, 30)), 0.01, limit=1.24))
+        held += [
+            found.median_interval[0] <= 1.0 <= found.median_interval[1],
+            found.dispersion_interval[0] <= 0.5 <= found.dispersion_interval[1],
+        ]
+    assert held / suites == pytest.approx([0.95, 0.95], abs=0.05)
+
+
+@pytest.mark.slow
+def test_the_same_records_at_every_level_keep_the_curve_and_do_not_count_as_many_suites():
+    """100 suites of 30 records at 12 levels: as fresh ones they would hold the median about 60 times in 100, not 95."""
+    rng = np.random.default_rng(5)
+    levels = np.linspace(0.4, 1.8, 12)
+    held = np.zeros(2)
+    for _ in range(100):
+        beyond = np.exp(rng.normal(0.0, 0.5, (30, 1))) <= levels
+        fresh = fitted(fresh_records(levels, np.full(12, 30), beyond.sum(axis=0)))
+        same = fitted(Capacities.of_same_records(levels, ~beyond, beyond))
+        assert (same.median, same.dispersion) == (fresh.median, fresh.dispersion)
+        held += [one.median_interval[0] <= 1.0 <= one.median_interval[1] for one in (fresh, same)]
+    assert held[0] < 75
+    assert held[1] == pytest.approx(95, abs=5)
+
+
+def test_records_that_are_fresh_at_every_level_are_not_stretched():
+    """Each of 24 000 records at one level only: its score varies as the likelihood says, and five percent is plenty."""
+    rng = np.random.default_rng(6)
+    beyond = rng.random((8, 3000)) < norm.cdf(np.log(LEVELS / 0.7) / 0.4)[:, None]
+    own = np.repeat(np.eye(8, dtype=bool), 3000, axis=0)
+    exceeded = own & beyond.reshape(-1)[:, None]
+    same = fitted(Capacities.of_same_records(LEVELS, own & ~exceeded, exceeded))
+    fresh = fitted(fresh_records(LEVELS, np.full(8, 3000), beyond.sum(axis=1)))
+    assert np.ptp(same.median_interval) == pytest.approx(np.ptp(fresh.median_interval), rel=0.05)
+    assert np.ptp(same.dispersion_interval) == pytest.approx(np.ptp(fresh.dispersion_interval), rel=0.05)
+
+
+def test_one_record_that_comes_and_goes_has_a_curve_and_open_intervals():
+    beyond = np.array([[False, True, False, True]])
+    found = fitted(Capacities.of_same_records(np.array([0.1, 0.2, 0.3, 0.4]), ~beyond, beyond))
+    assert found.median_interval == (0.0, math.inf)
+    assert found.dispersion_interval[1] == math.inf
+
+
+def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve():
+    narrow, wide = fitted(STRIPES, 0.68), fitted(STRIPES, 0.95)
+    assert narrow.median == wide.median
+    assert wide.median_interval[0] < narrow.median_interval[0] < narrow.median_interval[1] < wide.median_interval[1]
+
+
+@pytest.mark.parametrize(
+    ("exceeded", "words"),
+    [
+        ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is beyond"),
+        ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),
+        ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3: the median is between"),
+        ([0, 2, 5], "some records exceed the limit at 0.2, none below and all above"),
+        ([3, 2, 1], "does not grow with the intensity"),
+        ([2, 2, 2], "does not grow with the intensity"),
+        ([5, 0, 0], "does not grow with the intensity"),
+    ],
+)
+def test_data_without_a_maximum_are_told_in_words(exceeded, words):
+    found = fit(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
+    assert isinstance(found, str)
+    assert words in found
+
+
+def test_capacities_that_lie_in_one_bracket_are_told_in_words():
+    found = fit(Capacities(np.array([1.0, 0.0]), np.array([1.01, 1.2]), np.ones(2)))
+    assert isinstance(found, str)
+    assert "no record exceeds the limit at 1, every one at 1.01" in found
+    assert fit(Capacities(np.array([]), np.array([]), np.array([]))) == "no record counts"
+
+
+def test_intervals_that_the_data_leave_open_are_infinite():
+    """One exceedance of 15, in the middle: β, and with it θ, may be as large as one likes."""
+    found = fitted(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array([0, 1, 1])))
+    assert found.median_interval[1] == found.dispersion_interval[1] == math.inf
+    assert 0 < found.median_interval[0] < found.median

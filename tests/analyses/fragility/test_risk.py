@@ -1,0 +1,351 @@
+"""Annual rates: against closed forms and other quadratures, intervals against what they promise, and the mistakes of a file."""
+
+import csv
+import json
+import math
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_page import Page
+from scipy.integrate import quad
+from scipy.optimize import minimize
+from scipy.stats import norm
+from studies import SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.analyses.fragility.command import risk_lines
+from rockbatch.analyses.fragility.hazard_curve import HazardCurve
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
+from rockbatch.analyses.fragility.risk import probability, risks
+from rockbatch.analyses.fragility.study import read_fragility
+from rockbatch.cli import main
+from rockbatch.errors import InputError
+from rockbatch.study import load_study
+
+POINTS = [0.05, 0.15, 0.35, 0.7], [1 / 30, 1 / 150, 1 / 700, 1 / 2500]
+TABLE = HazardCurve(*POINTS)
+
+
+def exactly(median, dispersion):
+    """A curve without a region: only its rate is asked."""
+    return Lognormal(
+        median, dispersion, (0, math.inf), (0, math.inf), np.array([[-math.log(median), 1.0]]) / dispersion
+    )
+
+
+def rate_of(curve, hazard):
+    return curve.rate(*hazard.quadrature())[0]
+
+
+# The integral
+
+
+@pytest.mark.parametrize(("k", "median", "dispersion"), [(3, 0.5, 0.4), (2, 1.0, 0.05), (1.5, 2.0, 0.8), (4, 0.1, 0.3)])
+def test_under_a_power_law_the_rate_is_the_closed_form(k, median, dispersion):
+    """λ = ν(θ) exp(k²β²/2), Cornell et al. (2002), J. Struct. Eng. 128(4):526–533; 1e-7 by the quadrature at β = 0.05."""
+    hazard = HazardCurve([0.25], [1 / 475], slope=k)
+    expected = 1 / 475 * (median / 0.25) ** -k * math.exp(0.5 * (k * dispersion) ** 2)
+    assert rate_of(exactly(median, dispersion), hazard) == pytest.approx(expected, rel=1e-7)
+    two = HazardCurve([0.25, 0.5], [1 / 475, 0.5**k / 475])
+    assert rate_of(exactly(median, dispersion), two) == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize(("median", "dispersion"), [(0.5, 0.4), (1.0, 0.1)])
+def test_under_a_parabola_the_rate_is_the_closed_form(median, dispersion):
+    """λ = √φ k0^(1−φ) ν(θ)^φ exp(φ k1² β²/2), φ = 1/(1 + 2 k2 β²), Vamvatsikos (2013), for ν = k0 exp(−k2 ln² x − k1 ln x)."""
+    hazard = HazardCurve(*(values[1:] for values in POINTS), shape="quadratic")
+    k2, k1, k0 = np.polyfit(np.log(POINTS[0][1:]), np.log(POINTS[1][1:]), 2) * (-1, -1, 1)
+    share = 1 / (1 + 2 * k2 * dispersion**2)
+    at_median = float(hazard.rate([median])[0])
+    expected = math.sqrt(share) * math.exp(k0) ** (1 - share) * at_median**share
+    expected *= math.exp(0.5 * share * (k1 * dispersion) ** 2)
+    assert rate_of(exactly(median, dispersion), hazard) == pytest.approx(expected, rel=1e-9)
+    assert hazard.misfit < 1e-12
+
+
+def test_between_points_and_beyond_them_the_rate_is_that_of_another_quadrature():
+    """∫ ν dP by SciPy over ln x, piece by piece; 1e-8 is what it is asked for."""
+
+    def density(log_x):
+        return float(TABLE.rate([math.exp(log_x)])[0]) * norm.pdf((log_x - math.log(0.5)) / 0.4) / 0.4
+
+    edges = [-8.0, *np.log(POINTS[0]), 4.0]
+    expected = sum(quad(density, a, b, epsrel=1e-10)[0] for a, b in pairwise(edges))
+    assert rate_of(exactly(0.5, 0.4), TABLE) == pytest.approx(expected, rel=1e-8)
+
+
+def test_added_dispersion_is_a_capacity_times_an_independent_lognormal():
+    """Mean of P(x/c) over c by Gauss–Hermite; and the rate is that of the closed form with √(β² + 0.3² + 0.4²)."""
+    curve, x = exactly(0.5, 0.3), np.array([0.2, 0.4, 0.9])
+    places, weights = np.polynomial.hermite_e.hermegauss(60)
+    mean = [(weights * curve.probability(each * np.exp(-0.5 * places))).sum() / weights.sum() for each in x]
+    assert curve.widened(0.5).probability(x) == pytest.approx(mean, rel=1e-10)
+    assert curve.widened(0.5).median == curve.median
+    hazard = HazardCurve([0.25], [1 / 475], slope=2.0)
+    expected = 1 / 475 * 2.0**-2 * math.exp(2.0 * (0.3**2 + 0.5**2))
+    assert rate_of(curve.widened(0.5), hazard) == pytest.approx(expected, rel=1e-9)
+    assert curve.widened(0.0) is curve
+
+
+def test_the_probability_is_that_of_one_event_or_more():
+    assert probability(1 / 475, 50) == pytest.approx(0.0999, abs=1e-4)
+    assert probability(1e-12, 50) == pytest.approx(5e-11)
+    assert probability(math.inf, 50) == 1.0
+
+
+# The interval
+
+
+def suite(rng, records=30, median=0.5, dispersion=0.4):
+    return np.exp(rng.normal(math.log(median), dispersion, records))
+
+
+def by_stripes(capacities, levels):
+    beyond = capacities[:, None] <= levels
+    return fit(Capacities.of_same_records(levels, ~beyond, beyond))
+
+
+def by_bisection(capacities, limit):
+    low = np.where(capacities > limit, limit, capacities / 1.005)
+    high = np.where(capacities > limit, np.inf, capacities * 1.005)
+    return fit(Capacities(low, high, np.ones(len(capacities))))
+
+
+def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
+    """Least and greatest rate where ℓ has fallen by half the χ² quantile at most, by SLSQP; 3e-4: between two of 360 rays."""
+    capacities = suite(np.random.default_rng(7))
+    fitted = by_bisection(capacities, 0.8)
+    low = np.where(capacities > 0.8, 0.8, capacities / 1.005)
+    high = np.where(capacities > 0.8, np.inf, capacities * 1.005)
+
+    def likelihood(mu, sigma):
+        brackets = norm.cdf((np.log(high) - mu) / sigma) - norm.cdf((np.log(low) - mu) / sigma)
+        return np.log(np.maximum(brackets, 1e-300)).sum()
+
+    least = likelihood(math.log(fitted.median), fitted.dispersion) - 0.5 * norm.ppf(0.975) ** 2
+    x, rates = TABLE.quadrature()
+
+    def log_rate(at):
+        return math.log(norm.cdf((np.log(x) - at[0]) / math.exp(at[1])) @ rates)
+
+    ends = []
+    for sign in (1.0, -1.0):
+        found = minimize(
+            lambda at, sign=sign: sign * log_rate(at),
+            [math.log(fitted.median), math.log(fitted.dispersion)],
+            constraints={"type": "ineq", "fun": lambda at: likelihood(at[0], math.exp(at[1])) - least},
+            method="SLSQP",
+            options={"ftol": 1e-12, "maxiter": 300},
+        )
+        ends.append(math.exp(log_rate(found.x)))
+    assert fitted.rate(x, rates)[1:] == pytest.approx(ends, rel=3e-4)
+
+
+@pytest.mark.parametrize("added", [0.0, pytest.param(0.4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "through",
+    [
+        pytest.param(lambda capacities: by_bisection(capacities, 0.7), id="ida", marks=pytest.mark.slow),
+        pytest.param(lambda capacities: by_stripes(capacities, np.geomspace(0.2, 1.1, 8)), id="stripes"),
+    ],
+)
+def test_intervals_of_rates_hold_the_truth_about_as_often_as_they_say(through, added):
+    """100 suites of 30 records, the same at eight stripes or bisected: 95 % within 5 % is 2.3 deviations."""
+    rng = np.random.default_rng(8)
+    x, rates = TABLE.quadrature()
+    truth = rate_of(exactly(0.5, 0.4).widened(added), TABLE)
+    held = 0
+    for _ in range(100):
+        fitted = through(suite(rng))
+        assert isinstance(fitted, Lognormal)
+        _, low, high = fitted.widened(added).rate(x, rates)
+        held += low <= truth <= high
+    assert held == pytest.approx(95, abs=5)
+
+
+def test_where_the_dispersion_is_open_the_rate_is_too():
+    beyond = np.array([[False, True, False, True]])
+    fitted = fit(Capacities.of_same_records(np.array([0.1, 0.2, 0.3, 0.4]), ~beyond, beyond))
+    _, low, high = fitted.rate(*TABLE.quadrature())
+    assert 0 <= low < high == math.inf
+
+
+# The study
+
+
+def study(tmp_path, hazard, fragility=None, name="study.toml", **more):
+    levels = {"measure": "PGA", "levels_g": [0.2, 0.3, 0.4, 0.6, 0.8, 1.2]}
+    shapes = [("sine", 0.4), ("sine", 0.6), ("sine", 1.0), ("cosine", 0.5), ("cosine", 0.8), ("ricker", 0.9)]
+    text = study_text(
+        title="Rates of a small pier",
+        pier={"alpha": 0.2, "p": 2.0},
+        motions={},
+        pulses=[
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 4.0}
+            for shape, t in shapes
+        ],
+        cases=({"name": "rigid", "base": "rigid"},),
+        numerics={"tolerance": 1e-3},
+        fragility=(fragility or levels) | ({} if hazard is None else {"hazard": hazard}) | more,
+    )
+    return write_study(tmp_path, text, name)
+
+
+HAZARD = {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], "years": [50, 100], "source": "made up"}
+ADDED = [{"name": "modelling", "value": 0.3, "source": "judgement"}, {"name": "limit", "value": 0.4}]
+
+
+def test_the_command_writes_rates_and_what_they_come_from(tmp_path, capsys):
+    out = tmp_path / "results"
+    assert main(["fragility", str(study(tmp_path, HAZARD, dispersion=ADDED)), "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    with (out / "fragility_risk.csv").open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    info = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
+    (curve,) = info["curves"]
+    assert float(row["dispersion_added"]) == pytest.approx(0.5)
+    assert float(row["dispersion_total"]) == pytest.approx(math.hypot(curve["dispersion"], 0.5))
+    hazard = HazardCurve(HAZARD["levels_g"], [1 / years for years in HAZARD["return_period_years"]])
+    total = exactly(curve["median"], math.hypot(curve["dispersion"], 0.5))
+    rate = rate_of(total, hazard)
+    assert float(row["rate_per_year"]) == pytest.approx(rate, rel=1e-8)
+    assert float(row["p_in_50_years"]) == pytest.approx(1 - math.exp(-50 * rate))
+    assert float(row["rate_least"]) < rate < float(row["rate_most"])
+    assert float(row["rate_low"]) < rate
+    bins = pd.read_csv(out / "fragility_deaggregation.csv")
+    assert bins["rate_per_year"].sum() == pytest.approx(rate, rel=1e-8)
+    assert bins["share"].sum() == pytest.approx(1.0)
+    for where, name in (("above", "rate_above_points"), ("below", "rate_below_points")):
+        assert bins[bins["hazard"] == where]["rate_per_year"].sum() == pytest.approx(float(row[name]), rel=0.02)
+    points = pd.read_csv(out / "fragility.csv")
+    assert points["p_total"].to_numpy() == pytest.approx(total.probability(points["level"].to_numpy()))
+    assert "modelling 0.3, limit 0.4; together 0.5" in printed
+    assert "of the rate comes from above the hazard's highest point" in printed
+    page = Page((out / "analyses.html").read_text(encoding="utf-8"))
+    assert page.headings[:2] == ["Fragility", "Annual rates"]
+    assert "of the rate comes from above the hazard's highest point" in page.text
+    assert "made up" in page.text
+    assert "\\u" not in page.text  # nothing of our own is shown as an escape
+
+
+def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp_path):
+    found = rb.fragility(study(tmp_path, None))
+    assert found.fragility_risk is None
+    assert found.fragility_deaggregation is None
+    assert "p_total" not in found.fragility
+    assert {curve["risk"] for curve in found.info["curves"]} == {None}
+    with pytest.raises(InputError, match="no hazard"):
+        found.risk()
+
+
+def test_a_curve_that_could_not_be_fitted_has_its_reason_in_place_of_a_rate(tmp_path):
+    levels = {"measure": "PGA", "levels_g": [0.01, 0.02]}
+    found = rb.fragility(study(tmp_path, HAZARD, fragility=levels))
+    assert found.fragility_risk["note"].to_list() == ["no record exceeds the limit up to 0.02: the median is beyond"]
+    assert found.fragility_deaggregation is None
+
+
+def test_one_point_and_a_slope_are_said_to_be_that_and_no_curve_no_table(tmp_path, capsys):
+    one = {"levels_g": [0.25], "return_period_years": [475], "slope": 3.0}
+    found = rb.fragility(study(tmp_path, one))
+    assert "all of the rate rests on the slope through one point" in found.fragility_risk["note"].iloc[0]
+    assert "highest point" not in found.fragility_risk["note"].iloc[0]
+    weak = study(tmp_path, one, fragility={"measure": "PGA", "levels_g": [0.01, 0.02]}, name="weak.toml")
+    assert main(["fragility", str(weak), "--out", str(tmp_path / "weak")]) == 0
+    assert "No annual rates: no curve could be fitted" in capsys.readouterr().out
+
+
+def test_rates_under_another_hazard_need_no_run(tmp_path):
+    """Twice the hazard is twice the rate, and the study's own hazard gives the table of the command."""
+    found = rb.fragility(study(tmp_path, HAZARD, dispersion=ADDED))
+    pd.testing.assert_frame_equal(found.risk(), found.fragility_risk, rtol=1e-9, check_dtype=False)
+    twice = HazardCurve(HAZARD["levels_g"], [2 / years for years in HAZARD["return_period_years"]])
+    doubled = found.risk(twice, years=[10])
+    assert doubled["rate_per_year"].to_numpy() == pytest.approx(2 * found.fragility_risk["rate_per_year"].to_numpy())
+    assert "p_in_10_years" in doubled
+    alone = found.risk(added=0.0)
+    assert alone["dispersion_total"].to_numpy() == pytest.approx(alone["dispersion"].to_numpy())
+
+
+def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
+    (tmp_path / "hazard.csv").write_text(
+        "# made up\nlevels_g;return_period_years\n0,05;50\n0,2;475\n0,5;2475\n", encoding="utf-8"
+    )
+    spec = read_fragility(load_study(study(tmp_path, {"file": "hazard.csv"})))
+    assert spec.hazard.curve.levels == (0.05, 0.2, 0.5)
+    assert spec.hazard.curve.rates == pytest.approx((1 / 50, 1 / 475, 1 / 2475))
+    assert spec.hazard.years == (50.0,)
+
+
+@pytest.mark.parametrize(
+    ("hazard", "message"),
+    [
+        ({}, "it has no points; write for example levels_g = "),
+        ({"levels_g": [0.1, 0.2], "rate_per_year": [475, 2475]}, "a rate of 2475 per year: is it a return period"),
+        ({"levels_g": [0.1, 0.2], "rate_per_year": [0.01, 0.02]}, "0.02 per year at 0.2 after 0.01 at 0.1: a stronger motion"),
+        ({"levels_g": [0.2, 0.1], "rate_per_year": [0.02, 0.01]}, "level 0.1 after 0.2: write them in rising order"),
+        ({"levels_g": [0.2, 0.1, 0.3], "rate_per_year": [0.02, 0.01]}, "3 levels and 2 rates"),
+        ({"levels_g": [0.2], "rate_per_year": [0.02]}, "one point says no slope: write a second one, or slope"),
+        ({"levels_g": [0.1, 0.2], "rate_per_year": [0.02, 0.01], "slope": 3.0}, "slope and 2 points"),
+        ({"levels_g": [0.1, 0.2], "rate_per_year": [0.02, 0.01], "shape": "quadratic"}, "a parabola needs three points"),
+        ({"levels_m_s": [0.1, 0.2], "rate_per_year": [0.02, 0.01]}, "levels_m_s: the levels of [fragility] are levels_g"),
+        ({"levels_g": [0.1], "rate_per_year": [0.02], "return_period_years": [50]}, "are given; keep one"),
+        ({"file": "not_there.csv"}, "not_there.csv: no such file"),
+        ({"file": "hazard.csv", "levels_g": [0.1]}, "file and levels_g are given; keep one"),
+        ({"levels_g": [0.1, 0.2, 0.4], "rate_per_year": [0.1, 0.09, 0.0001], "shape": "quadratic"}, "does not fall all over"),
+    ],
+)  # fmt: skip
+def test_mistakes_of_a_hazard_are_named_with_their_line(tmp_path, hazard, message):
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(study(tmp_path, hazard or {"years": [50]})))
+    told = "\n".join(caught.value.problems)
+    assert message in told
+    assert all("study.toml:" in problem for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("levels_g,rate_per_yr\n0.1,0.01\n", '"rate_per_yr": unknown column; did you mean rate_per_year?'),
+        ("levels_g,rate_per_year\n0.1,often\n", 'hazard.csv:2: rate_per_year = "often": expected a number'),
+        ("levels_g,rate_per_year\n0.1\n", "hazard.csv:2: 1 cells below 2 column names"),
+        ("levels_g,rate_per_year\n", "expected a line of column names, and a line for each row"),
+        ("levels_g,rate_per_year\n0.1,nan\n0.2,0.001\n", "both are above 0"),
+        ("rate_per_year,return_period_years\n0.1,10\n", "it needs levels_g and one of rate_per_year"),
+    ],
+)
+def test_mistakes_in_a_file_of_a_hazard_are_named_with_its_line(tmp_path, content, message):
+    (tmp_path / "hazard.csv").write_text(content, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(study(tmp_path, {"file": "hazard.csv"})))
+    assert message in "\n".join(caught.value.problems)
+
+
+def test_mistakes_of_added_dispersions_are_named(tmp_path):
+    wrong = [{"name": "a", "value": 0.3}, {"name": "a", "value": 30}, {"value": 0.1}]
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(study(tmp_path, HAZARD, dispersion=wrong)))
+    told = "\n".join(caught.value.problems)
+    for message in ("above 0 and at most 2", "its name is given twice", "name is missing"):
+        assert message in told
+
+
+def test_a_curve_of_python_names_its_mistakes():
+    with pytest.raises(InputError, match="a stronger motion is rarer"):
+        HazardCurve([0.1, 0.2], [0.1, 0.2])
+    with pytest.raises(InputError, match="levels = 'a': must be a tuple"):
+        HazardCurve("a", [0.1])
+    with pytest.raises(InputError, match="there is no point"):
+        HazardCurve([], [])
+
+
+def test_what_several_exceedances_and_tails_mean_is_said(tmp_path):
+    """A site where the pier overturns every few years, by intensities far below those that were run."""
+    often = {"levels_g": [0.02, 0.05, 0.5], "rate_per_year": [20.0, 5.0, 0.2]}
+    found = rb.fragility(study(tmp_path, often, dispersion=[{"name": "modelling", "value": 0.8}]))
+    said = found.fragility_risk["note"].iloc[0]
+    assert "several exceedances in the longest of the periods" in said
+    assert "comes from below the lowest intensity that was run, 0.2 g" in said
+    assert said in risk_lines(risks(found.curves, found.spec), found.spec)

@@ -1,0 +1,203 @@
+"""Rocking spectra: every size and slenderness, overturned points among them, and the mistakes that a file may hold."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
+from rockbatch.analyses.spectrum.study import read_spectrum
+from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.threads import Threads
+from rockbatch.cli import main
+from rockbatch.errors import InputError
+from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.simulation import run_to_tolerance
+from rockbatch.study import load_study
+from rockbatch.study.suite import ground_motions
+
+STUDY = study_text(
+    title="spectra",
+    pulses=(
+        SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 2.0},
+        SINE | {"name": "long", "amplitude_g": 0.4, "period_s": 1.2, "duration_s": 2.0},
+    ),
+    cases=(RIGID, PADS | {"beta": 40, "epsilon": 0.05}),
+    spectrum={"alpha": [0.1, 0.2], "two_pi_over_p_s": [2.0, 10.0], "points": 9},
+)
+
+
+def written(tmp_path, text=STUDY):
+    return write_study(tmp_path, text)
+
+
+def read(text, tmp_path):
+    return read_spectrum(load_study(written(tmp_path, text)))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Results of the study above."""
+    path = tmp_path_factory.mktemp("spectrum")
+    assert main(["spectrum", str(written(path)), "--out", str(path / "out")]) == 0
+    return path / "out"
+
+
+def test_every_point_is_the_run_of_its_pier(folder, tmp_path):
+    """Four points of either base against a run of their own, to the ten digits of the table."""
+    table = pd.read_csv(folder / "spectrum.csv")
+    assert len(table) == 2 * 2 * 9 * 2
+    study = load_study(written(tmp_path))
+    motions = {motion.name: motion for motion in ground_motions(study).motions}
+    bases = {"rigid": RigidBase(), "pads": YieldingBase(beta=40.0, eta=2.5, epsilon=0.05)}
+    for row in table.iloc[[0, 1, 10, 35, 36, 50, 70, 71]].to_dict("records"):
+        pier = Pier(row["alpha"], 2 * math.pi / row["two_pi_over_p_s"])
+        outcome = run_to_tolerance(pier, bases[row["case"]], motions[row["record"]], 1e-4)
+        assert row["status"] == outcome.status
+        assert row["theta_max_over_alpha"] == pytest.approx(outcome.theta_max / pier.alpha, rel=1e-9)
+        assert row["size_m"] == pytest.approx(pier.size, rel=1e-9)
+
+
+def test_overturned_points_stay_in_the_spectrum_as_infinite(folder, capsys):
+    """Small piers overturn under the long pulse: of two motions one, so the median lies between a value and ∞."""
+    runs = pd.read_csv(folder / "spectrum.csv")
+    suite = pd.read_csv(folder / "spectrum_suite.csv")
+    assert len(suite) == 2 * 2 * 9
+    fallen = runs[runs["status"] == "overturned"].groupby(["case", "alpha", "two_pi_over_p_s"]).size()
+    assert 0 < len(fallen) < len(suite)
+    at = suite.set_index(["case", "alpha", "two_pi_over_p_s"])
+    assert (at.loc[fallen.index, "overturned"] == fallen).all()
+    assert np.isinf(at.loc[fallen.index, "largest"]).all()
+    assert np.isfinite(at.drop(fallen.index)["largest"]).all()
+    report = (folder / "analyses.html").read_text(encoding="utf-8")
+    assert "Rocking spectra and overturning" in report
+    assert "∞" in report
+
+
+def test_larger_piers_of_one_slenderness_rotate_less_in_the_end(folder):
+    """Size protects (Housner 1963): the peak at the right end is the least of those that stand, for all curves."""
+    suite = pd.read_csv(folder / "spectrum_suite.csv")
+    for _, own in suite.groupby(["case", "alpha"]):
+        finite = own[np.isfinite(own["median"])]
+        assert finite["median"].idxmin() == finite["two_pi_over_p_s"].idxmax()
+
+
+def test_quantiles_count_overturned_and_flight_as_infinite_and_failed_not_at_all():
+    rows = [("ok", 0.2), ("ok", 0.4), ("overturned", 15.0), ("failed", 9.0), ("ok", 0.3)]
+    table = pd.DataFrame(rows, columns=["status", "theta_max_over_alpha"]).assign(
+        case="rigid", scale=1.0, alpha=0.1, p=1.0, two_pi_over_p_s=2 * math.pi, size_m=7.0
+    )
+    (row,) = of_suite(table, ("alpha", "p")).to_dict("records")
+    assert (row["count"], row["overturned"], row["failed"]) == (4, 1, 1)
+    assert row["median"] == pytest.approx(0.35)  # between 0.3 and 0.4 of 0.2, 0.3, 0.4, ∞
+    assert row["p16"] == pytest.approx(0.2 + 0.48 * 0.1)
+    assert math.isinf(row["p84"])
+    assert math.isinf(row["largest"])
+
+
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        ("p = [0.5, 2.0]\nspacing = 'log'", [0.5, 1.0, 2.0]),
+        ("size_m = [2, 6]", [2.0, 4.0, 6.0]),
+    ],
+)
+def test_a_spectrum_runs_over_p_or_over_the_size_as_well(tmp_path, axis, values):
+    text = STUDY.replace("two_pi_over_p_s = [2.0, 10.0]\npoints = 9", f"{axis}\npoints = 3")
+    spectrum, maps = read(text, tmp_path)
+    assert maps == ()
+    first = [case for case in spectrum.cases if case.name == "rigid" and case.pier.alpha == 0.1]
+    assert [case.columns[spectrum.axis] for case in first] == pytest.approx(values)
+    found = [case.pier.p if spectrum.axis == "p" else case.pier.size for case in first]
+    assert found == pytest.approx(values)
+    motion = ground_motions(load_study(written(tmp_path, text))).motions[0]
+    row = row_of(PlannedRun(motion, "+", 1.0, first[1]), run_to_tolerance(first[1].pier, RigidBase(), motion, 1e-4))
+    assert row["two_pi_over_p_s"] * row["p"] == pytest.approx(2 * math.pi)
+    assert row["size_m"] * row["p"] ** 2 == pytest.approx(0.75 * 9.81)
+
+
+def test_a_base_given_in_kilonewtons_keeps_its_stiffness_on_every_pier(tmp_path):
+    text = STUDY.replace("beta = 40", "stiffness_kN_m = 2.0e6\nmass_t = 3000.0")
+    spectrum, _ = read(text, tmp_path)
+    pads = [case for case in spectrum.cases if case.name == "pads"]
+    assert len({case.base.beta for case in pads}) == 9
+    assert [case.base.beta * case.pier.p for case in pads] == pytest.approx([math.sqrt(4e6 / 3000)] * len(pads))
+
+
+def test_every_mistake_is_told_with_its_line(tmp_path):
+    text = STUDY.replace("alpha = [0.1, 0.2]", "alpha = [0.1, 0.01, 1.7]").replace("points = 9", "points = 1\npint = 3")
+    text += '[[spectrum.map]]\nname = "a"\nshape = "sin"\nfrequency = [5, 1]\namplitude = [1, 2, 3]\ntolerance = 0\n'
+    with pytest.raises(InputError) as caught:
+        read(text, tmp_path)
+    told = "\n".join(caught.value.problems)
+    for line, words in (
+        (38, "points = 1: expected a whole number, 2 or above"),
+        (39, "pint: unknown key; did you mean points?"),
+        (42, 'did you mean "sine"?'),
+        (43, "frequency = [5, 1]: expected a range; write for example frequency = [1.0, 5.0]"),
+        (44, "amplitude = [1, 2, 3]: expected a range; write for example amplitude = [1.0, 3.0]"),
+        (45, "tolerance = 0: expected a number, 1e-09 or above"),
+    ):
+        assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), told
+
+
+def test_slendernesses_that_cannot_be_are_told_with_the_case(tmp_path):
+    with pytest.raises(InputError) as caught:
+        read(STUDY.replace("alpha = [0.1, 0.2]", "alpha = [0.1, 0.01, 1.7]"), tmp_path)
+    first, second = caught.value.problems
+    assert "study.toml:36: " in first
+    assert "alpha = 1.7: must be below" in first + second
+    assert 'alpha = 0.01, case "pads": beta = 40' in first + second
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("", "[spectrum] is missing"),
+        ("[spectrum]\nalpha = 0.1", "it runs over one range; write two_pi_over_p_s ="),
+        ("[spectrum]\np = [1, 2]\nsize_m = [1, 2]\nalpha = 0.1", "it runs over one range"),
+        ("[spectrum]\np = [1, 2]", "alpha is missing"),
+    ],
+)
+def test_what_is_missing_is_told(tmp_path, lines, words):
+    with pytest.raises(InputError, match=words.replace("[", r"\[")):
+        read(STUDY.split("[spectrum]")[0] + lines, tmp_path)
+
+
+def test_an_interrupted_spectrum_goes_on_and_ends_with_the_same_bytes(folder, tmp_path, monkeypatch, capsys):
+    """Ctrl-C after the first group: what it held is not run again."""
+    outcomes, out = Threads.outcomes, tmp_path / "out"
+    carried = []
+
+    def interrupted(self, runs, *more):
+        yield next(outcomes(self, runs, *more))
+        raise KeyboardInterrupt
+
+    def counted(self, runs, *more):
+        carried.append(len(runs))
+        yield from outcomes(self, runs, *more)
+
+    command = ["spectrum", str(written(tmp_path)), "--out", str(out), "--jobs", "1"]
+    monkeypatch.setattr(Threads, "outcomes", interrupted)
+    assert main(command) == 130
+    assert not (out / "spectrum.csv").exists()
+    monkeypatch.setattr(Threads, "outcomes", counted)
+    assert main(command) == 0
+    assert 0 < carried[0] < 72
+    for name in ("spectrum.csv", "spectrum_suite.csv"):
+        assert (out / name).read_bytes() == (folder / name).read_bytes()
+    assert not (out / "spectrum.csv.part").exists()
+
+
+def test_results_of_the_study_keep_the_spectrum_in_their_report(tmp_path):
+    path, out = written(tmp_path), tmp_path / "out"
+    assert main(["run", str(path), "--out", str(out)]) == 0
+    assert "Rocking spectra" not in (out / "report.html").read_text(encoding="utf-8")
+    assert main(["spectrum", str(path), "--out", str(out)]) == 0
+    assert "Rocking spectra" in (out / "report.html").read_text(encoding="utf-8")
+    assert not (out / "analyses.html").exists()
+    path.write_text(STUDY + "\n# another state\n", encoding="utf-8")
+    assert main(["run", str(path), "--out", str(out)]) == 0
+    assert "Rocking spectra" not in (out / "report.html").read_text(encoding="utf-8")
