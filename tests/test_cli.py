@@ -252,7 +252,7 @@ def test_a_shell_is_told_the_commands_and_options_that_may_come_next(tmp_path):
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
     assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
-    assert "--no-scipy" in completed("rockbatch accuracy --no")
+    assert "--seconds" in completed("rockbatch accuracy --sec")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")

@@ -233,7 +233,6 @@ def test_a_saved_analysis_leaves_no_table_of_an_earlier_one(study, tmp_path):
 
 
 def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypatch):
-    monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "SCIPY_TOLERANCES", ())
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "REPEATS", 1)
     found = rb.accuracy(study, runs=2)
     assert files(nowhere) == []

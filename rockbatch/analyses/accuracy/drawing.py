@@ -14,8 +14,6 @@ LEAST = 1e-14  # smaller errors, of rounding, are drawn there
 METHODS = {  # marker, colour, words, and the side of the notes, so that neighbours do not overlap
     "located": ("disc", 1, "events located inside the step", -1),
     "not located": ("square", 2, "events at the end of the step", 1),
-    "SciPy DOP853": ("up", 3, "SciPy DOP853", 1),
-    "SciPy LSODA": ("down", 4, "SciPy LSODA", -1),
 }
 
 
@@ -63,7 +61,7 @@ def _position(axes: Axes, level: Level) -> tuple[float, float]:
 
 
 def _point(axes: Axes, level: Level, shape: str, class_: str, side: int) -> Markup:
-    """Draw a level's marker with its number of steps per sample, or SciPy's tolerance, beside it."""
+    """Draw a level's marker with its number of steps per sample beside it."""
     x, y = _position(axes, level)
     words = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
     place = text(x + 7 * side, y - 4 * side + 3, words, class_=class_ if side > 0 else f"{class_} e")
