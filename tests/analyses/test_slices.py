@@ -95,8 +95,10 @@ def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
     seen = python(copied, "-c", LOOK)
     assert "census" in seen.splitlines()[0] + seen
     assert " Census" in seen
-    draw = (
-        "from pathlib import Path\nfrom rockbatch.report.finished_analysis import Contents\n"
-        "from rockbatch.report.page import page\nprint(page(Contents(Path('.'), {'title': 't', 'notes': '', 'text': '', 'sha256': 'x', 'path': 'x'})))"
-    )
+    draw = """
+from pathlib import Path
+from rockbatch.report.finished_analysis import Contents
+from rockbatch.report.page import page
+print(page(Contents(Path("."), {"title": "t", "notes": "", "text": "", "sha256": "x", "path": "x"})))
+"""
     assert "one census" in python(copied, "-c", draw)
