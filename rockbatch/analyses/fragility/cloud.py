@@ -215,9 +215,12 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
         )
     if np.ptp(log_x[exact]) < 1e-6:
         return "all records have the same intensity: a line needs a cloud of them"
+    log_demand = np.log(runs.demand[exact])
+    if np.abs(np.polyval(np.polyfit(log_x[exact], log_demand, 1), log_x[exact]) - log_demand).max() < 1e-7:
+        return "all demands are on one line over the intensity, and nothing tells the dispersion"
     censored = stands & ~exact
     bounds = np.log(np.where(runs.within, limit, floor))[censored]
-    line = _line(log_x[exact], np.log(runs.demand[exact]), log_x[censored], bounds)
+    line = _line(log_x[exact], log_demand, log_x[censored], bounds)
     if not line.slope > 0:
         return "the demand does not grow with the intensity"
     return Cloud(limit, line, share, confidence, float(log_x.mean()))
