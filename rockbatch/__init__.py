@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from rockbatch.batch.running import run
     from rockbatch.batch.single import simulate
     from rockbatch.checks import Rule
+    from rockbatch.checks.checking import check
     from rockbatch.errors import InputError
     from rockbatch.motions import Motion, MotionSet, ReadOptions, pair_spectrum, pulse, read_motions, sequence
     from rockbatch.motions.hazard import HazardCurve
     from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Stop, Tendon, YieldingBase
     from rockbatch.pier.statics import Statics, statics
     from rockbatch.report import report
-    from rockbatch.results.checking import check
     from rockbatch.results.opened import open_results
     from rockbatch.simulation.response import Response
     from rockbatch.study import Study, load_study
@@ -33,13 +33,13 @@ _NAMES = {
     "batch.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
+    "checks.checking": "check",
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "report": "report",
-    "results.checking": "check",
     "results.opened": "open_results",
     "simulation.response": "Response",
     "study": "Study load_study",

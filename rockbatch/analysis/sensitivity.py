@@ -20,10 +20,10 @@ from rockbatch.analysis.sampled import INDICES, Point, Points, Suite, indices
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
-from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import opened_text
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
 from rockbatch.study.sensitivity import Input, SensitivitySpec, Value, read_sensitivity
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.pier import Base
+from rockbatch.quantities.demands import DEMANDS
 from rockbatch.study.hazard import Dispersion, Hazard, read_dispersions, read_hazard, root_of_squares
 from rockbatch.study.load import Study
+from rockbatch.study.rules import Rule
 from rockbatch.study.stripes import StripeRecords, read_stripes
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
 from rockbatch.toml.meant import names

@@ -12,14 +12,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rockbatch.checks.reading import SUITE
-from rockbatch.checks.reading import TOP as CHECKS_TOP
-from rockbatch.checks.rules import CHECK
 from rockbatch.motions import manifest
 from rockbatch.study import load, sensitivity
 from rockbatch.study.fragility import FRAGILITY
 from rockbatch.study.hazard import DISPERSION, HAZARD
 from rockbatch.study.release import RELEASE
+from rockbatch.study.rule_files import SUITE
+from rockbatch.study.rule_files import TOP as CHECKS_TOP
+from rockbatch.study.rules import CHECK
 from rockbatch.study.spectrum import MAP, SPECTRUM
 from rockbatch.study.stripes import STRIPE
 from rockbatch.toml.kinds import Schema
