@@ -13,7 +13,6 @@ import numpy as np
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
-from rockbatch.checks.suite import NOT_RUN, counts_as, simulated, with_case
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.report.finished_analysis import Contents
@@ -21,6 +20,7 @@ from rockbatch.report.labels import Key, Series, counted, digits_that_tell, name
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
+from rockbatch.results.rows import NOT_RUN, counts_as, simulated, with_case
 from rockbatch.simulation.response import Response
 from rockbatch.study import PIER_KEYS
 

@@ -16,11 +16,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
-from rockbatch.checks.suite import counts_as, simulated, with_case
 from rockbatch.common.figures import figure, line, marks, styled
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.results.beside_peaks import case_key
+from rockbatch.results.rows import counts_as, simulated, with_case
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 from rockbatch.study import PIER_KEYS
 

@@ -21,10 +21,10 @@ from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
-from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import opened_text
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:

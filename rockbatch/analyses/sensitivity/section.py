@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Entry, key, line, lowered, rectangle, svg, text
 from rockbatch.report.finished import as_dicts

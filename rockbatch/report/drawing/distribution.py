@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rockbatch.checks.suite import counts_as
 from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import COLOURS, curve, key, line, lowered, marker, rectangle, svg, text
 from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, join, tag
+from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import distribution
 
 WIDTH, HEIGHT = 300.0, 190.0

@@ -2,13 +2,13 @@
 
 from itertools import islice
 
-from rockbatch.checks.suite import counts_as
 from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.overview import worst_first
 from rockbatch.report.sections.statistics import RECORDS
 from rockbatch.report.templates import render
+from rockbatch.results.rows import counts_as
 
 MOST_PANELS = 12
 MOST_CURVES = 21
