@@ -281,7 +281,7 @@ def test_the_report_is_called_by_its_name_before_and_after_its_package_is_loaded
 
 
 @pytest.mark.parametrize("name", ["run", *ANALYSES, "accuracy"])
-def test_mistakes_are_told_before_anything_is_written(study, nowhere, name):
+def test_mistakes_are_reported_before_anything_is_written(study, nowhere, name):
     door, out = getattr(rb, name), nowhere / "out"
     broken = nowhere / "broken.toml"
     broken.write_text(STUDY.replace("eta = 2.5", "eta = 0.9\nbeat = 40"), encoding="utf-8")

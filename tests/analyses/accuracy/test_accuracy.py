@@ -233,7 +233,7 @@ def test_a_damaged_table_does_not_keep_the_report_from_being_written(study_file,
     assert "Measured on" not in (out / "report.html").read_text(encoding="utf-8")
 
 
-def test_runs_that_never_settle_are_told(study_file, tmp_path, capsys, monkeypatch):
+def test_runs_that_never_settle_are_counted(study_file, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "ACCEPTED", -1.0)
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2
     assert "settles" in capsys.readouterr().err
