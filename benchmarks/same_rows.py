@@ -3,7 +3,7 @@
     python benchmarks/same_rows.py REVISION [--only near_fault fig7]
 
 Both trees run each study and its analyses in one thread: this one, and a copy of REVISION in a temporary folder. CSV files are
-compared as they are; that of ``rockbatch accuracy`` holds times, and is not made. Ends with 1 if any file differs. Takes half an hour.
+compared as they are; that of ``rockbatch accuracy`` holds times, and is not made. Ends with 1 if any file differs.
 """
 
 import argparse

@@ -168,5 +168,5 @@ def test_tables_that_differ_in_a_byte_or_are_missing_are_named(benchmark, monkey
 
 @pytest.mark.slow
 def test_a_study_has_the_tables_of_the_last_revision(benchmark):
-    """Of a tree whose physics nobody has touched since; where rows are meant to change, the commit brings them along."""
+    """This tree against its last commit, which in a clean clone is the same."""
     assert benchmark("same_rows").main("HEAD", ["fig6"]) == 0
