@@ -237,7 +237,7 @@ class Curve:
     cloud: tuple[CloudPoint, ...] = ()
 
     @property
-    def says_little(self) -> bool:
+    def inconclusive(self) -> bool:
         """Return whether undecided runs leave the median more open than the number of records does."""
         if self.readings is None or isinstance(self.fitted, str):
             return False

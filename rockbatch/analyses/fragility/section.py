@@ -36,7 +36,7 @@ def section(contents: Contents) -> Markup:
     share, curves = f"{100 * info['confidence']:g} %", info["curves"]
     return render(
         "analyses/fragility/section.html", info=info, share=share, panels=_panels(info), table=_table(info, share),
-        little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["says_little"]],
+        little=[f"{entry['limit_state']}, {label(entry)}" for entry in curves if entry["inconclusive"]],
         open=any("open" in entry for entry in curves), looked=any(entry.get("looked") for entry in curves),
         clouds=_clouds(info), factors=_factors(info), own=any(None in row for row in info.get("scales", {}).get("factors", ())),
         capacities=_capacities(analysis), provenance=analysis.provenance(),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rockbatch.analyses.sensitivity import sampled
-from rockbatch.analyses.sensitivity.sampled import INDICES, Point, Points, Suite, indices
+from rockbatch.analyses.sensitivity.sampled import INDICES, Design, Point, Points, indices
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.digests import digests
@@ -115,7 +115,7 @@ def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, A
         **{name: value for name, value in asdict(spec).items() if name != "inputs"},
         "inputs": [asdict(parameter) for parameter in spec.inputs],
     }
-    suite = Suite(study, points, motions.motions)
+    suite = Design(study, points, motions.motions)
     runs = suite.runs()
     digest = digests(
         motions.motions,

@@ -332,7 +332,7 @@ def test_runs_that_flew_or_failed_far_below_their_capacity_do_not_move_the_headl
     assert low < 0.8 * without.fitted.median
     assert high == pytest.approx(without.fitted.median, rel=0.03)
     assert high / low > np.divide(*curve.fitted.median_interval[::-1])
-    assert curve.says_little
+    assert curve.inconclusive
 
 
 def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_path):

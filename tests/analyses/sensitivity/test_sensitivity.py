@@ -13,7 +13,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.sensitivity.analysis import answers, counted_as, tornado, values_of
-from rockbatch.analyses.sensitivity.sampled import Point, Points, Suite, design, indices, low_base_high
+from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design, indices, low_base_high
 from rockbatch.analyses.sensitivity.section import section
 from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity, varied
 from rockbatch.batch.threads import Threads
@@ -162,7 +162,7 @@ def test_the_suite_has_every_motion_turned_and_stripped_as_its_point_says(study)
     spec = read_sensitivity(study)
     points = Points(study, spec)
     motion = Motion("m", 0.01, np.array([0.0, 1.0, 2.0]), vertical=np.array([0.0, 3.0, 4.0]))
-    suite = Suite(study, points, [motion])
+    suite = Design(study, points, [motion])
     runs = suite.runs()
     assert len(runs) == len(points) == (1 + 2 * 5) + 8 * 7 + (1 + 2 * 6) + 8 * 8
     for run, point in zip(runs, points.all, strict=True):
