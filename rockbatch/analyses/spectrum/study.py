@@ -184,7 +184,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     intensities = read.get(INTENSITY, ()) if axis == SELF_SIMILAR else ()
     of_axis = (INTENSITY, axis) if intensities else (axis,)
     varied = ("alpha", *apart, *of_axis, *(name for name in varied if name not in apart))
-    return SpectrumSpec(axis, tuple(case.case(varied) for case in expanded), varied, intensities)
+    return SpectrumSpec(axis, tuple(case.with_columns(varied) for case in expanded), varied, intensities)
 
 
 def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
