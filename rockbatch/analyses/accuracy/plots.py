@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from rockbatch.common.figures import figure, line, marks, styled, with_legend
+from rockbatch.common.figures.style import figure, line, marks, styled, with_legend
 from rockbatch.common.lazy import pd
 
 

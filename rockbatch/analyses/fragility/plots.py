@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rockbatch.analyses.fragility.curves import Curve
-from rockbatch.common.figures import line, marks, panels, styled, with_legend
+from rockbatch.common.figures.style import line, marks, panels, styled, with_legend
 from rockbatch.common.lazy import pd
 
 

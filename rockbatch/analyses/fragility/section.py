@@ -11,10 +11,10 @@ from rockbatch.common.grouping import grouped
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, key, line, marker, style_of, svg, text
 from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, of_files
-from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, interval, join, tag
 from rockbatch.report.table import Head, listed, table
 from rockbatch.report.templates import render
+from rockbatch.results.labels import quantity
 
 WIDTH, HEIGHT = 300.0, 190.0
 STRIP = 4.0

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockbatch.common.figures import line, marks, panels, styled, with_legend
+from rockbatch.common.figures.style import line, marks, panels, styled, with_legend
 from rockbatch.common.lazy import pd
 
 

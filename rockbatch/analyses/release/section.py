@@ -8,10 +8,10 @@ import numpy as np
 from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale
 from rockbatch.report.drawing.svg import curve, line, marker, side_by_side, svg, text
-from rockbatch.report.finished import as_dicts
 from rockbatch.report.finished_analysis import Contents, named, of_files
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import Head, listed
+from rockbatch.results.labelled import as_dicts
 
 WIDTH, HEIGHT = 420.0, 230.0
 FIT = ("case", "parameter", "value", "low", "high", "confidence", "scatter", "over_housner", "remark")

@@ -9,12 +9,12 @@ from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.lazy import pd
 from rockbatch.report.drawing.axes import Axes, Scale, spanning
 from rockbatch.report.drawing.svg import Entry, key, line, lowered, rectangle, svg, text
-from rockbatch.report.finished import as_dicts
 from rockbatch.report.finished_analysis import Contents, named, of_files
-from rockbatch.report.labels import SYMBOLS
 from rockbatch.report.markup import Markup, figure, join, number
 from rockbatch.report.table import Head, listed
 from rockbatch.report.templates import render
+from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labels import SYMBOLS
 
 WIDTH, LEFT, TOP, ROW = 440, 84, 20, 30
 BAR = 12

@@ -11,7 +11,7 @@ from matplotlib.path import Path
 
 from rockbatch.analyses.spectrum import map_drawing as overturning_map
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR
-from rockbatch.common.figures import COLOURS, line, panels, styled, with_legend
+from rockbatch.common.figures.style import COLOURS, line, panels, styled, with_legend
 from rockbatch.common.lazy import pd
 
 _PLACES = {"overturned without impact": 0, "overturned with impact": 1, "flight": 2, "undecided": 3}

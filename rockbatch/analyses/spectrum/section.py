@@ -18,9 +18,10 @@ from rockbatch.report.drawing.svg import (
     text,
 )
 from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, named, of_files
-from rockbatch.report.labels import heading, plain, quantity, symbol
+from rockbatch.report.labels import heading, symbol
 from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import sub
+from rockbatch.results.labels import plain, quantity
 
 WIDTH, HEIGHT = 420.0, 250.0
 ROW = 10.0
