@@ -147,7 +147,7 @@ def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
     if not rows[0][0].framed:
         return [Box(rows[0][0], 0.0, 0.0, width, rows[0][0].height)], rows[0][0].height
     for row in rows:
-        top = height + (20.0 if any(panel.y.label or (panel.caption and len(rows) > 1) for panel in row) else 6.0)
+        top = height + (22.0 if any(panel.y.label or (panel.caption and len(rows) > 1) for panel in row) else 6.0)
         height = top + max(panel.height + 14.0 * panel.x.numbered + 18.0 * bool(panel.x.label) for panel in row) + 3.0
         inner = (width - left - 8.0 - 10.0 * (len(row) - 1)) / len(row)
         boxes += [Box(panel, left + i * (inner + 10.0), top, inner, panel.height) for i, panel in enumerate(row)]
@@ -187,13 +187,13 @@ def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
         yield _readable(box, [_draw(line, box) for line in named])
     yield from (_draw(mark, box) for mark in panel.marks if mark not in behind and mark not in named)
     if panel.y.label:
-        yield text(max(box.left - 34.0, 2.0), box.top - 6.0, *_lettered(panel.y.label), class_="q")
+        yield text(max(box.left - 34.0, 2.0), box.top - 9.0, *_lettered(panel.y.label), class_="q")
     if panel.x.label:
         yield text(
             box.left + box.width / 2, box.foot + 14.0 * panel.x.numbered + 15.0, *_lettered(panel.x.label), class_="m q"
         )
     if captioned and panel.caption:
-        yield text(box.right, box.top - 6.0, panel.caption, class_="e")
+        yield text(box.right, box.top - 9.0, panel.caption, class_="e")
 
 
 def _frame(box: Box) -> Markup:

@@ -139,6 +139,11 @@ def distributions(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence
     )
 
 
+def distributions_of_all(results: Labelled, count: str) -> Figure:
+    """Return the distributions of all piers and scales."""
+    return distributions(list(groups_of(_some(results.runs), results.piers)), results.series, count)
+
+
 def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
     peaks_of_ok = runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(dtype=np.float64)
     top = 1.04 * float(np.nanmax(peaks_of_ok, initial=0.0)) or 1.0

@@ -74,12 +74,9 @@ class Results(Shown, Saved):
         says so.
         """
         from rockbatch.common.figures.paper import drawn
-        from rockbatch.results.figures import distributions
-        from rockbatch.results.labelled import groups_of
+        from rockbatch.results.figures import distributions_of_all
 
-        own = self._labelled
-        groups = list(groups_of(own.runs, own.piers))
-        return drawn(distributions(groups, own.series, str(self.info.get("count", "station"))), width_mm)
+        return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm)
 
     def _beside(self, name: str, key: str) -> "pd.DataFrame":
         path = self.directory / name

@@ -135,8 +135,10 @@ def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
 
 
 def test_without_runs_there_is_no_figure(results):
-    with pytest.raises(rb.InputError, match="no runs to plot"):
-        replace(results, peaks=results.peaks.iloc[:0]).plot()
+    none = replace(results, peaks=results.peaks.iloc[:0])
+    for plot in (none.plot, none.plot_cdf, lambda: none.plot(axes="self-similar")):
+        with pytest.raises(rb.InputError, match="no runs to plot"):
+            plot()
 
 
 def test_results_tell_of_themselves_in_a_few_lines(results):

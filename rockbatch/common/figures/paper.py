@@ -43,8 +43,8 @@ MUTED, PALE = "#5f6a74", "#eef1f3"
 
 MM = 0.25
 """Millimetres of the paper for a pixel of the page."""
-LETTERS = 0.48
-"""Letters in a line of a caption for each millimetre."""
+LETTERS, BESIDE = 0.62, 10.0
+"""Letters in a line of a caption for each millimetre of the axes, and room beside these [mm]."""
 
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 3)), (0, (2, 2)), (0, (8, 2, 2, 2)))
 _MARKERS = {
@@ -80,34 +80,47 @@ def drawn(figure: Figure, width_mm: float) -> MatplotlibFigure:
     """Draw a figure ``width_mm`` wide."""
     with mpl.rc_context(_STYLE):
         rows = list(_rows(figure, width_mm))
-        heights = [max(_height(panel, width_mm / len(row), figure.stacked) for panel in row) for row in rows]
+        columns = [len(row if figure.stacked else rows[0]) for row in rows]
+        heights = [
+            max(_height(panel, width_mm / abreast, figure.stacked) for panel in row)
+            for row, abreast in zip(rows, columns, strict=True)
+        ]
         result = ShownFigure(layout="constrained")
-        grid = result.add_gridspec(len(rows), math.lcm(*map(len, rows)), height_ratios=heights)
-        handles: dict[str, dict[type, Artist]] = {}
-        for place, row in enumerate(rows):
-            columns = (figure.stacked and len(row)) or len(rows[0])
-            each = grid.ncols // columns
+        grid = result.add_gridspec(len(rows), math.lcm(*columns), height_ratios=heights)
+        entries: dict[str, dict[type, Artist]] = {}
+        for place, (row, abreast) in enumerate(zip(rows, columns, strict=True)):
+            each = grid.ncols // abreast
             for column, panel in enumerate(row):
                 axes = result.add_subplot(grid[place, column * each : (column + 1) * each])
-                for mark, artist in _panel(axes, panel, int(LETTERS * width_mm / columns)):
-                    handles.setdefault(mark.label, {}).setdefault(type(mark), artist)
-        handles.pop("", None)
-        shades = [
-            mark.shade[0] for panel in figure.panels for mark in panel.marks if isinstance(mark, Points) and mark.shade
-        ]
-        if shades:
-            scale = ScalarMappable(LogNorm(shades[0].low, shades[0].high), "cividis")
-            result.colorbar(scale, ax=result.axes, label=_label(shades[0]))
-        lines = 0
-        if handles:
-            columns = max(1, min(len(handles), int(width_mm / (8.0 + 1.4 * max(map(len, handles))))))
-            lines = math.ceil(len(handles) / columns)
-            together: Any = [tuple(artists.values()) for artists in handles.values()]
-            result.legend(together, list(map(_text, handles)), loc="outside lower center", ncols=columns)
+                for mark, artist in _panel(axes, panel, int(LETTERS * (width_mm / abreast - BESIDE))):
+                    entries.setdefault(mark.label, {}).setdefault(type(mark), artist)
+        entries.pop("", None)
+        _colour_bar(result, figure)
+        height = sum(heights) + _legend(result, entries, width_mm) + 7.0 * bool(figure.title) + 2.0
         if figure.title:
             result.suptitle(_text(figure.title))
-        result.set_size_inches(width_mm / 25.4, (sum(heights) + 4.0 * lines + 7.0 * bool(figure.title) + 2.0) / 25.4)
+        result.set_size_inches(width_mm / 25.4, height / 25.4)
         return result
+
+
+def _legend(result: MatplotlibFigure, entries: dict[str, dict[type, Artist]], width_mm: float) -> float:
+    """Draw the legend of all panels below them; return its height [mm]."""
+    if not entries:
+        return 0.0
+    columns = max(1, min(len(entries), int(width_mm / (8.0 + 1.4 * max(map(len, entries))))))
+    together: Any = [tuple(artists.values()) for artists in entries.values()]
+    result.legend(together, list(map(_text, entries)), loc="outside lower center", ncols=columns)
+    return 4.0 * math.ceil(len(entries) / columns)
+
+
+def _colour_bar(result: MatplotlibFigure, figure: Figure) -> None:
+    """Draw the scale of tones, if marks have any."""
+    for mark in (mark for panel in figure.panels for mark in panel.marks):
+        if isinstance(mark, Points) and mark.shade:
+            scale = mark.shade[0]
+            tones = ScalarMappable(LogNorm(scale.low, scale.high), "cividis")
+            result.colorbar(tones, ax=result.axes, label=_label(scale))
+            return
 
 
 def _rows(figure: Figure, width_mm: float) -> Iterator[Sequence[Panel]]:

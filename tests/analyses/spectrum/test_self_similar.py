@@ -10,6 +10,7 @@ from slender_block import end_of_pulse
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.spectrum.figures import spectra
 from rockbatch.cli import main
 from rockbatch.common.figures.description import Points
 from rockbatch.errors import InputError
@@ -117,10 +118,10 @@ def test_every_run_has_the_intensity_and_frequency_of_its_point(tmp_path, capsys
 
 def test_the_figure_has_a_panel_for_each_intensity_and_a_median_for_each_slenderness():
     result = rb.spectrum(rb.Study.from_toml(STUDY), jobs=1)
-    panels = [axes for axes in result.plot().axes if axes.get_visible()]
+    panels = spectra(result.spectrum_suite, result.spectrum, result.info).panels
     assert len(panels) == 2
-    labels = set(panels[0].get_legend_handles_labels()[1])
-    assert labels == {"each record", r"median, $\alpha$ = 0.1", r"median, $\alpha$ = 0.2"}
+    labels = {mark.label.replace("\u00a0", " ") for mark in panels[0].marks if mark.label}
+    assert labels == {"each record", "α = 0.1 rad, median", "α = 0.2 rad, median"}
     with pytest.raises(InputError, match="must be omega_g_over_p in this spectrum"):
         result.plot(axis="p")
 
