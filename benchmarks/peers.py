@@ -2,8 +2,7 @@
 
 All are used as their manuals have it: events located by the solver, a restart after each, steps no longer than a
 sample. SciPy and CVODE call the core's right-hand side and event functions, compiled; heyoka compiles its own from expressions.
-Here for first-order kinematics and n = 5. What follows from an event is the core's affair, as in
-``rockbatch.simulation.scipy_solver``, which is easier to read than ``scipy`` here and takes up to twice its time.
+Here for first-order kinematics and n = 5. What follows from an event is the core's affair.
 """
 
 import math

@@ -24,9 +24,9 @@ from mkdocs.structure.pages import Page
 from printing import as_pdf
 
 import rockbatch
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.cli import COMMANDS, main
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.schema import FILES, MANIFEST, STUDY, schema_of
 from rockbatch.toml.kinds import Choice, shown
 from rockbatch.toml.section import Key, Section

@@ -69,7 +69,7 @@ def test_with_three_processes_one_thread_finishes_the_batch(study):
     assert (few / "peaks.csv").read_bytes() == (many / "peaks.csv").read_bytes()
 
 
-def test_whoever_has_no_home_is_told_of_a_path_from_there(study):
+def test_a_path_from_a_missing_home_is_refused(study):
     study.write_text(study.read_text().replace('"records"', '"~/records"'))
     done = rockbatch_as_nobody(300, "run", str(study))
     assert done.returncode == 2

@@ -149,3 +149,24 @@ def test_a_survey_of_the_rigid_base_has_no_wrong_outcome(benchmark):
     assert counts["with flights"] > 0
     assert counts["overturned"] > 0
     assert cells(survey.table(rows))[-1][:2] == ["all", str(len(rows))]
+
+
+def test_tables_that_differ_in_a_byte_or_are_missing_are_named(benchmark, monkeypatch):
+    module = benchmark("same_rows")
+    tables = {
+        "before": {"peaks.csv": b"1.0", "spectrum.csv": b"2", "lost.csv": b""},
+        "after": {"peaks.csv": b"1.0", "spectrum.csv": b"2.0", "added.csv": b""},
+    }
+    monkeypatch.setattr(module, "tables_of", lambda tree, study, out: tables[tree.name])
+    before, after = Path("before"), Path("after")
+    assert list(module.differences(before, after, ["a"])) == [
+        "a: 3 tables, of which differ: spectrum.csv, lost.csv, added.csv"
+    ]
+    assert list(module.differences(before, before, ["a"])) == ["a: 3 tables, all the same"]
+    assert [command[0] for command in module.commands(BENCHMARKS.parent / "configs" / "release.toml")] == ["release"]
+
+
+@pytest.mark.slow
+def test_a_study_has_the_tables_of_the_last_revision(benchmark):
+    """This tree against its last commit, which in a clean clone is the same."""
+    assert benchmark("same_rows").main("HEAD", ["fig6"]) == 0

@@ -163,7 +163,7 @@ def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
     assert "Traceback" not in told
 
 
-def test_a_missing_study_is_told_and_exits_with_2(tmp_path, capsys):
+def test_a_missing_study_is_reported_and_exits_with_2(tmp_path, capsys):
     assert main(["run", str(tmp_path / "none.toml")]) == 2
     assert "none.toml" in capsys.readouterr().err
 
@@ -181,7 +181,7 @@ def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys
         assert capsys.readouterr().err.rstrip().endswith(end)
 
 
-def test_a_study_in_place_of_a_folder_of_results_is_told_the_folder(study, capsys):
+def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, capsys):
     for command in ("check", "report"):
         assert main([command, str(study)]) == 2
         told = capsys.readouterr().err
@@ -241,7 +241,7 @@ def test_help_has_an_example_that_is_understood_and_the_exit_codes(name, capsys)
     assert parser().parse_args(words).command == name
 
 
-def test_a_shell_is_told_the_commands_and_options_that_may_come_next(tmp_path):
+def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path):
     def completed(line):
         asked = {
             "_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "bash", "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "told"),
@@ -252,7 +252,7 @@ def test_a_shell_is_told_the_commands_and_options_that_may_come_next(tmp_path):
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
     assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
-    assert "--no-scipy" in completed("rockbatch accuracy --no")
+    assert "--seconds" in completed("rockbatch accuracy --sec")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
@@ -362,7 +362,7 @@ def test_checks_and_their_report_do_not_need_a_reader(study, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
-def test_an_interrupt_while_modules_are_loaded_is_told_as_any_other(study):
+def test_an_interrupt_while_modules_are_loaded_is_reported_as_any_other(study):
     code = f"""
 import os, signal, sys
 
@@ -382,7 +382,7 @@ sys.exit(main())
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has a home folder always")
-def test_where_nobody_is_at_home_it_runs_and_a_path_from_home_is_told(tmp_path):
+def test_without_a_home_it_runs_and_a_path_from_home_is_refused(tmp_path):
     """As in a container that is started under a number: no HOME, and no entry in the table of users."""
     code = """
 import os, pwd, sys

@@ -35,7 +35,7 @@ def test_commands_print_by_one_door():
     assert {place.partition(":")[0] for place in found} <= {"commands/streams.py"}
 
 
-def test_a_table_of_an_analysis_that_was_edited_is_told_and_left_alone(tmp_path):
+def test_an_edited_table_of_an_analysis_is_reported_and_kept(tmp_path):
     study = load_study(TOP.parent / "configs" / "fig5.toml")
     before = AnalysisFolder(tmp_path, "fragility", study)
     (tmp_path / "runs.csv").write_text("a\n1\n")

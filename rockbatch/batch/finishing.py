@@ -19,6 +19,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.shocks import rows_by_shock, sequences_of
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.checks.checking import verdicts
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.files import legible, read_text
@@ -26,7 +27,6 @@ from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.beside_peaks import SEMICOLONS, write
-from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.estimate import ESTIMATE, estimates
 from rockbatch.results.histories_file import HISTORIES

@@ -10,10 +10,10 @@ import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import PlannedRun
-from rockbatch.checks.demands import FORCES
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.pier import Base, Pier, places, vertical_frequency
+from rockbatch.quantities.demands import FORCES
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories

@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.demands import Case
-from rockbatch.checks.suite import NOT_RUN, rows_of_cases
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import Case
+from rockbatch.results.rows import NOT_RUN, rows_of_cases
 
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
 """Words for runs that do not end standing."""

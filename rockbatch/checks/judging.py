@@ -7,30 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.checks.choices import chooses, unmet
-from rockbatch.checks.demands import BROUGHT, DEMANDS, Case, has_device
-from rockbatch.checks.rules import Rule
-from rockbatch.checks.statistics import STATISTICS, Values
-from rockbatch.checks.suite import (
-    OTHER_LAW,
-    SCATTER,
-    by_other_law,
-    by_record,
-    chaotic,
-    complete,
-    counted,
-    counts_as,
-    creeps,
-    governing,
-    lacking,
-    of_runs,
-    simulated,
-    suites,
-    with_case,
-)
+from rockbatch.checks.bounds import SCATTER, by_other_law, by_record, chaotic, counted, governing, lacking, of_runs
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
+from rockbatch.quantities.demands import BROUGHT, DEMANDS, OTHER_LAW, Case, creeps, has_device
+from rockbatch.quantities.statistics import STATISTICS, Values
+from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
+from rockbatch.study.rule_choices import chooses, unmet
+from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 
 MOST_NAMES = 5
@@ -60,7 +45,7 @@ def judge(
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
-        How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`.
+        How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`.
 
     Raises
     ------

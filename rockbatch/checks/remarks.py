@@ -3,9 +3,9 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from rockbatch.checks.demands import Case
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.demands import Case
 
 MOST_NAMES = 3
 

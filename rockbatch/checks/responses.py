@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.demands import DEMANDS, TILTS, Case
-from rockbatch.checks.suite import OTHER_LAW, creeps, rows_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import DEMANDS, OTHER_LAW, TILTS, Case, creeps
+from rockbatch.results.rows import rows_of_cases
 
 PEAKS = frozenset(
     ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")

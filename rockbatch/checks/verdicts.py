@@ -7,12 +7,12 @@ from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import COUNTS, is_ban
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.study.rules import COUNTS, is_ban
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
@@ -52,7 +52,7 @@ class Verdict:
     note : str
         Reason of an undecided verdict, and remarks.
     count : str
-        The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
+        The way to count records, one of :data:`rockbatch.study.rules.COUNTS`; empty for a demand of the case.
     unit : str
         Of value, bounds, limit and margin; empty for a pure number.
     station, record, polarity : str

@@ -4,10 +4,10 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
+from rockbatch.checks.checking import verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
-from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
@@ -20,9 +20,9 @@ from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
 from rockbatch.report import report as make_report
 from rockbatch.report import write_report
-from rockbatch.results.checking import verdicts
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
+from rockbatch.results.rows import simulated, with_case
 
 WIDTH = 100
 WORST = 10

@@ -8,7 +8,6 @@ from rockbatch.batch.finishing import FinishedBatch
 from rockbatch.batch.listening import count
 from rockbatch.batch.running import merge, run_into
 from rockbatch.batch.threads import cores
-from rockbatch.checks.suite import simulated, with_case
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.commands import check
 from rockbatch.commands.messages import Terminal
@@ -16,6 +15,7 @@ from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import failed_later, flexible, summary, warnings
 from rockbatch.results.beside_peaks import write_semicolons
+from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
 

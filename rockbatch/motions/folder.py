@@ -4,8 +4,7 @@ import difflib
 import os
 import re
 import sys
-from collections.abc import Callable, Container, Iterable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -19,7 +18,6 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
-from rockbatch.motions.bounded import TooLongError, watch
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.finding import MANIFESTS, Found, files_of
@@ -40,15 +38,14 @@ Paths = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _ReadSettings:
     """Settings for all files that are read together."""
 
     manifest: Manifest
     options: ReadOptions
     gravity: float
     offset: Offset
-    numbered: Container[Path]
-    bounded: Callable[[int], AbstractContextManager[None]]
+    numbered: Container[Path]  # files whose names end in a number that is no azimuth
 
 
 @checked
@@ -188,10 +185,9 @@ def read_files(
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *neighbours] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    with watch() as bounded:
-        request = _Asked(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), bounded)
-        records = (file for file in _with_progress(files) if file.path not in manifests)
-        read = [(file, archives.state(file.path), _readings(file, request)) for file in records]
+    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files))
+    records = (file for file in _with_progress(files) if file.path not in manifests)
+    read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
     readings = [reading for file, state, of_file in read for reading in _unless_changed(of_file, file, state)]
     companions = _without_companions(_without_renamed(readings, files))
@@ -269,18 +265,18 @@ def _numbered(files: Sequence[Found]) -> set[Path]:
     return {file.path for file in files if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
-def _readings(file: Found, request: _Asked) -> list[Reading]:
+def _readings(file: Found, settings: _ReadSettings) -> list[Reading]:
     """Return the readings of one file: components, and what its manifest leaves out, or the one reason why there are none.
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
     """
     path = archives.bare(file.path)
-    site = _site(path, path.stem if file.path in request.numbered else split_stem(path.stem)[0])
+    site = _site(path, path.stem if file.path in settings.numbered else split_stem(path.stem)[0])
     lacks: tuple[str, ...] = ()
     companion = None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
-            readings = _used(file, request)
+            readings = _used(file, settings)
         at_site = (r if isinstance(r, Component) else replace(r, station=site) for r in readings)
         return [with_legible_texts(reading) for reading in at_site]
     except InputError as error:
@@ -289,27 +285,26 @@ def _readings(file: Found, request: _Asked) -> list[Reading]:
         companion = error.station if isinstance(error, NoRecordError) else None
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
-    except TooLongError:
-        reason = (
-            "its reading was ended, after a time in which other files of its size are read twenty times: it is damaged"
-        )
     except Exception as error:  # the type tells that a reader is at fault
         reason = f"its reader failed: {type(error).__name__}: {error}"
     unusable = Unusable(path.stem, file.source, reason, lacks=lacks, companion=companion, station=site)
     return [with_legible_texts(unusable)]
 
 
-def _used(file: Found, job: _Asked) -> list[Reading]:
+def _used(file: Found, settings: _ReadSettings) -> list[Reading]:
     """Return the readings of one file, as a manifest describes them; raises what comes up in its reading."""
     path = archives.bare(file.path)
-    entries = job.manifest.entries_for(file.path)
+    entries = settings.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
         return [LeftOut(path.stem, file.source, entries[0].unused, named=True)]
     if file.companion:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
-    read = [replace(r, number=i) for i, r in enumerate(_read(file, options_of(entries, job.options), job), start=1)]
+    read = [
+        replace(r, number=i)
+        for i, r in enumerate(_read(file, options_of(entries, settings.options), settings), start=1)
+    ]
     refused = [reading for reading in read if isinstance(reading, Unusable)]
     readings: list[Reading] = []
     for item in refused:
@@ -320,24 +315,23 @@ def _used(file: Found, job: _Asked) -> list[Reading]:
             reason = unwanted[0].unused if unwanted else ""
             readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
     components = [
-        _placed(reading, path, file.path in job.numbered) for reading in read if isinstance(reading, Component)
+        _placed(reading, path, file.path in settings.numbered) for reading in read if isinstance(reading, Component)
     ]
-    for component, used in described(components, entries, job.gravity, refused):
+    for component, used in described(components, entries, settings.gravity, refused):
         if used:
-            readings.append(_finished(component, job))
+            readings.append(_finished(component, settings))
         else:
             readings.append(LeftOut(component.name, component.source, entries[0].unused, named=True))
     return readings
 
 
-def _read(file: Found, options: ReadOptions, request: _Asked) -> Sequence[Component | Unusable]:
-    """Return components of one file, read within a bound."""
+def _read(file: Found, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
+    """Return components of one file."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    with request.bounded(len(data)):
-        return read_record(RecordFile(path, file.source, data, options, request.gravity, file.root))
+    return read_record(RecordFile(path, file.source, data, options, settings.gravity, file.root))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
@@ -356,14 +350,14 @@ def _site(path: Path, site: str) -> str:
     return f"RSN{rsn[1]}" if rsn else site or path.parent.name
 
 
-def _finished(component: Component, request: _Asked) -> Component | Unusable:
+def _finished(component: Component, settings: _ReadSettings) -> Component | Unusable:
     """Return a component without its offset, and with the role that is stated for all of unknown direction: "horizontal"."""
-    role = request.options.role
+    role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)
         notes = (*component.notes, f"direction not known: {role}, as stated")
         component = replace(component, orientation=orientation, notes=notes)
     try:
-        return usable(corrected(component, request.offset))
+        return usable(corrected(component, settings.offset))
     except InputError as error:
         return Unusable(component.name, component.source, str(error))

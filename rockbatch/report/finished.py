@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
-from rockbatch.checks.suite import NOT_RUN, counts_as, simulated
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.report.finished_analysis import Contents
@@ -20,6 +19,7 @@ from rockbatch.results.labelled import by_pga, foundation, groups_of, labelled, 
 from rockbatch.results.labels import Key, Series
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
+from rockbatch.results.rows import NOT_RUN, counts_as, simulated
 from rockbatch.simulation.response import Response
 
 if TYPE_CHECKING:

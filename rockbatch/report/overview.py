@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from rockbatch.checks import wording
-from rockbatch.checks.demands import DEMANDS
 from rockbatch.checks.responses import PEAKS
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.report import dots
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, figure, join, tag

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.checks.suite import simulated, with_case
 from rockbatch.common.files import csv_text, opened_text, replacing, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.results.columns import PEAKS, TEXTS
+from rockbatch.results.rows import simulated, with_case
 from rockbatch.study import Study
 
 NAMING = ("record", "case", "polarity", "scale")

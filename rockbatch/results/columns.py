@@ -10,11 +10,10 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Any, Literal, NamedTuple
 
-from rockbatch.checks.demands import DEVICES_ERROR, IN_MOTION, IN_MOTION_ERROR, ROCKING
-from rockbatch.checks.suite import MIRROR_OF, OTHER_LAW
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Pier
+from rockbatch.quantities.demands import DEVICES_ERROR, IN_MOTION, IN_MOTION_ERROR, MIRROR_OF, OTHER_LAW, ROCKING
 from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study import Case, Study
 

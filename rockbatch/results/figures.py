@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.checks.suite import counts_as
 from rockbatch.common.figures.description import (
     COLOURS,
     DASHES,
@@ -31,6 +30,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
+from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 
 THETA = "θ_max/α"

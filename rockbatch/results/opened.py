@@ -7,7 +7,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockbatch.checks.suite import simulated, with_case
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
@@ -20,6 +19,7 @@ from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.shocks import SHOCKS, read_shocks
 from rockbatch.simulation.response import Response
 from rockbatch.toml.kinds import shown

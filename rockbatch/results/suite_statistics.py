@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.statistics import Values, quantiles
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import Values, quantiles
 
 NO_PEAK = ("overturned", "flight")
 """Outcomes without a largest rotation: they count as larger than any."""

@@ -147,15 +147,14 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
 
 def test_an_accuracy_has_its_errors_over_times_and_steps_beside_the_marks():
     table = pd.DataFrame({
-        "method": ["located", "located", "SciPy DOP853"], "machine": "", "substeps": pd.array([1, 2, None], "Int64"),
-        "tolerance": [np.nan, np.nan, 1e-4], "seconds_per_run": [1e-3, 2e-3, 0.1], "error_95": [1e-5, 1e-6, 1e-7],
-        "error_max": [2e-5, 2e-6, 2e-7],
+        "method": ["located", "located", "not located"], "machine": "", "substeps": pd.array([1, 2, 4], "Int64"),
+        "seconds_per_run": [1e-3, 2e-3, 0.1], "error_95": [1e-5, 1e-6, 1e-7], "error_max": [2e-5, 2e-6, 2e-7],
     })  # fmt: skip
-    for name in ("runs", "error_median", "status_differs", "reference_change"):
+    for name in ("tolerance", "runs", "error_median", "status_differs", "reference_change"):
         table[name] = 1.0
     (panel,) = error_and_time(of_table(table)).panels
     lines = {line.label: line for line in of_kind(panel.marks, Line)}
     assert lines["error that 95 % of the runs keep"].x == pytest.approx([1.0, 2.0])
     assert lines["error that 95 % of the runs keep"].y == pytest.approx([1e-5, 1e-6])
     assert lines["largest error"].y == pytest.approx([2e-5, 2e-6])
-    assert [words.text for words in of_kind(panel.marks, Words)] == ["k = 1", "k = 2", "1e-04"]
+    assert [words.text for words in of_kind(panel.marks, Words)] == ["k = 1", "k = 2", "k = 4"]

@@ -208,7 +208,7 @@ def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study,
     assert sum(calls) == 7
 
 
-def test_what_rows_depend_on_is_told_apart_and_the_rest_is_not(study):
+def test_digests_differ_by_what_rows_depend_on_and_by_nothing_else(study):
     """Runs that are finished stay good when a title, a comment or a check is changed."""
 
     def changed(*replaced):

@@ -161,7 +161,7 @@ main(["ADDRESS", "--no-nanny", "--nthreads", "1", "--no-dashboard"])
 """
 
 
-def test_a_worker_without_rockbatch_is_told_before_anything_waits_for_it(file, tmp_path, capsys):
+def test_a_worker_without_rockbatch_is_reported_before_anything_waits_for_it(file, tmp_path, capsys):
     """It would end at the first task, and whoever waits for that would wait for ever."""
     pytest.importorskip("distributed")
     scheduler = subprocess.Popen(
@@ -193,7 +193,7 @@ def address_of(file):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
-def test_a_scheduler_that_goes_or_falls_silent_is_told_in_a_sentence(file, tmp_path, how):
+def test_a_scheduler_that_stops_or_falls_silent_is_reported_in_a_sentence(file, tmp_path, how):
     """And soon; in a process of its own, because distributed logs to the real stderr."""
     pytest.importorskip("distributed")
     file.write_text(file.read_text().replace("[0.5, 0.75, 1.0]", str([0.5 + 0.001 * i for i in range(60)])))
@@ -289,7 +289,7 @@ def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file,
     assert (tmp_path / "dask/peaks.csv").read_bytes() == (tmp_path / "threads/peaks.csv").read_bytes()
 
 
-def test_a_scheduler_that_does_not_answer_is_told(file, tmp_path, capsys, monkeypatch):
+def test_a_scheduler_that_does_not_answer_is_reported(file, tmp_path, capsys, monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr(rockbatch.batch.dask, "PATIENCE_S", 0.2)
     out = tmp_path / "out"

@@ -105,5 +105,5 @@ def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):
     ("seconds", "words"),
     [(0.3, "less than 1 s"), (40.4, "about 40 s"), (600.0, "about 10 min"), (12600.0, "about 3.5 h")],
 )
-def test_times_are_told_in_words(seconds, words):
+def test_times_are_in_words(seconds, words):
     assert in_words(seconds) == words

@@ -109,7 +109,7 @@ def reopened(path, runs=12):
     return found, told
 
 
-def test_a_flipped_bit_costs_the_rows_of_its_line_alone_and_is_told_once(path):
+def test_a_flipped_bit_costs_the_rows_of_its_line_alone_and_is_reported_once(path):
     """Never a wrong row, wherever it is; and not the rows behind it, nor all of them where the first line is hit."""
     interrupted(path, ROWS)
     whole = path.read_bytes()
@@ -129,7 +129,7 @@ def test_a_flipped_bit_costs_the_rows_of_its_line_alone_and_is_told_once(path):
         assert reopened(path) == (found, [])
 
 
-def test_damaged_rows_are_told_dropped_alone_and_run_again(path):
+def test_damaged_rows_alone_are_reported_dropped_and_run_again(path):
     interrupted(path, ROWS)
     lines = path.read_bytes().splitlines(keepends=True)
     lines[2] = lines[2].replace(b"zce", b"zca")
@@ -148,7 +148,7 @@ def test_a_row_of_a_run_that_the_plan_does_not_have_is_none(path):
     assert "1 line is damaged" in told[0]
 
 
-def test_rows_of_no_study_that_can_be_told_are_refused_as_those_of_another(path):
+def test_rows_of_an_unknown_study_are_refused_as_those_of_another(path):
     """A first line that is gone, with rows that do not belong to this study; and a journal without checksums."""
     interrupted(path, ROWS)
     lines = path.read_bytes().splitlines(keepends=True)
@@ -208,7 +208,7 @@ def test_finished_rows_are_read_back_as_the_texts_of_the_table(path):
             journal[10]
 
 
-def test_other_runs_are_not_mixed_in_and_what_has_changed_is_told(path):
+def test_other_runs_are_not_mixed_in_and_the_change_is_named(path):
     interrupted(path, ROWS)
     before = path.read_bytes()
     changed = Journal(path, COLUMNS, DIGEST | {"motions": "ffff"})

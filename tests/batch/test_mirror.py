@@ -14,10 +14,10 @@ from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
-from rockbatch.checks.suite import simulated
 from rockbatch.cli import main
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.results.columns import columns
+from rockbatch.results.rows import simulated
 from rockbatch.results.suite_statistics import suite
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study

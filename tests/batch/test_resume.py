@@ -197,7 +197,7 @@ def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkey
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="small file systems are mounted in a namespace of their own")
-def test_a_full_disk_is_told_and_when_there_is_room_the_same_command_goes_on(study, tmp_path, undisturbed):
+def test_a_full_disk_is_reported_and_with_room_the_same_command_continues(study, tmp_path, undisturbed):
     """The disk is full in the middle of the runs, then in the middle of the table, and then there is room."""
     disk, kept = tmp_path / "disk", tmp_path / "kept"
     disk.mkdir()
@@ -271,7 +271,7 @@ def another_number(text):
 
 
 @pytest.mark.parametrize("change", [without_the_tail, sorted_rows, another_number])
-def test_a_finished_table_that_was_changed_is_told_left_alone_and_only_replaced_when_asked(
+def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(
     study, tmp_path, finished, undisturbed, capsys, change
 ):
     out = finished
@@ -307,7 +307,7 @@ def test_a_folder_with_a_file_that_cannot_be_used_counts_as_finished_too(study, 
     assert "nothing is left to run" in capsys.readouterr().err
 
 
-def test_damaged_rows_of_a_journal_are_told_and_run_again(study, tmp_path, undisturbed, capsys):
+def test_damaged_rows_of_a_journal_are_reported_and_run_again(study, tmp_path, undisturbed, capsys):
     out = tmp_path / "out"
     assert main(["run", str(study), "--out", str(out), "--shard", "1/1"]) == 0
     part = out / "peaks.csv.part"
@@ -410,7 +410,7 @@ def test_what_merge_is_missing_can_be_carried_out_where_the_shares_were_joined(s
     assert (tmp_path / "peaks.csv").read_bytes() == undisturbed
 
 
-def test_shares_of_another_study_are_told_all_at_once(study, tmp_path, capsys):
+def test_shares_of_another_study_are_reported_all_at_once(study, tmp_path, capsys):
     other = write(tmp_path / "other.toml", last_scale=1.3)
     assert main(["run", str(other), "--out", str(tmp_path / "1"), "--shard", "1/2"]) == 0
     capsys.readouterr()
@@ -424,7 +424,7 @@ def test_shares_of_another_study_are_told_all_at_once(study, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("text", ["0/2", "3/2", "2", "1/0", "a/b", "-1/2"])
-def test_a_share_that_cannot_be_is_told(study, text, capsys):
+def test_an_impossible_share_is_refused(study, text, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["run", str(study), "--shard", text])
     assert ended.value.code == 2

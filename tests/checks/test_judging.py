@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.checks import Rule, judge
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.statistics import STATISTICS, quantile
-from rockbatch.checks.suite import suites
 from rockbatch.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon, YieldingBase
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS, quantile
+from rockbatch.results.rows import suites
 
 INF = math.inf
 

@@ -15,13 +15,13 @@ from check_samples import RECORD, RIGID, case, folder, runs
 from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.checks import load_rules, read_verdicts, write_verdicts
-from rockbatch.checks.demands import DEMANDS, listed
-from rockbatch.checks.reading import CHECK
+from rockbatch.checks import read_verdicts, write_verdicts
+from rockbatch.checks.checking import verdicts
 from rockbatch.cli import main
 from rockbatch.commands import check
 from rockbatch.errors import InputError
-from rockbatch.results.checking import verdicts
+from rockbatch.quantities.demands import DEMANDS, listed
+from rockbatch.study.rule_files import CHECK, load_rules
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 MARGIN = """

@@ -11,10 +11,11 @@ from check_samples import RECORD, case, folder, runs
 from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.checks import Rule, judge, load_rules, read_verdicts
+from rockbatch.checks import Rule, judge, read_verdicts
+from rockbatch.checks.checking import verdicts
 from rockbatch.cli import main
 from rockbatch.errors import InputError, MissingColumns
-from rockbatch.results.checking import verdicts
+from rockbatch.study.rule_files import load_rules
 
 INF = math.inf
 

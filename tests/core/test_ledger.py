@@ -7,8 +7,8 @@ import pytest
 from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.checks.suite import OTHER_LAW
 from rockbatch.core.observe.ledger import Energies
+from rockbatch.quantities.demands import OTHER_LAW
 from rockbatch.results.columns import TERMS
 
 PIER = rb.Pier(0.2, 1.0)

@@ -67,7 +67,7 @@ def test_sine_is_odd_and_cosine_even_to_the_bit():
 
 
 @pytest.mark.parametrize(("angle", "error"), [(2.5, 1e-13), (math.pi, 1e-9), (1.5 * math.pi, 1e-4)])
-def test_beyond_three_quarters_of_pi_the_error_grows_as_told(angle, error):
+def test_beyond_three_quarters_of_pi_the_error_grows_as_documented(angle, error):
     found = sine_and_cosine(angle)
     apart = max(abs(found[0] - math.sin(angle)), abs(found[1] - math.cos(angle)))
     assert 0.01 * error < apart < error

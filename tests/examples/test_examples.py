@@ -10,11 +10,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockbatch.checks import load_rules
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.examples import FIRST, copy, examples
 from rockbatch.study import load_study
+from rockbatch.study.rule_files import load_rules
 from rockbatch.study.suite import ground_motions
 
 CHECKOUT = Path(__file__).parents[2]

@@ -1,8 +1,6 @@
 """Files that would cost their folder: for ever to read, more memory than there is, words that rule a terminal, links out."""
 
 import struct
-import threading
-import time
 import tracemalloc
 
 import numpy as np
@@ -11,14 +9,12 @@ from bounds import bounds
 from damaged_files import traced
 from fixed_column_files import csmip_channel
 from motion_files import at2_text, wiggle, write_at2
-from waveform_files import channel_xml, station_xml, trace, write_mseed
+from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.errors import InputError
-from rockbatch.motions import bounded, read_motions
-from rockbatch.motions.bounded import TooLongError
+from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import FORMATS, ReadOptions
-from rockbatch.motions.formats import sac as sac_format
+from rockbatch.motions.formats import ReadOptions, columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
 from rockbatch.motions.manifest_draft import write_draft
 
@@ -90,58 +86,52 @@ def test_the_words_of_a_reader_are_the_same_each_time(tmp_path):
     assert "0x" not in file.reason
 
 
-def test_every_format_that_obspy_reads_has_a_check_before(monkeypatch):
-    from rockbatch.motions.formats import with_obspy
-
+def test_every_format_that_obspy_reads_has_a_check_before():
     with pytest.raises(KeyError):
         with_obspy.read_stream(b"", "PICKLE")
     assert set(CHECKS) == {"SAC", "MSEED"}
 
 
-def test_a_reader_that_does_not_end_is_ended_and_costs_no_other_file(tmp_path, monkeypatch):
-    def for_ever(file):
-        while True:
-            pass
-
-    changed = [(sac_format.read_sac, for_ever)]
-    formats = tuple(
-        type(known)(
-            known.name, known.suffixes, known.matches, dict(changed).get(known.read, known.read), known.anywhere
-        )
-        for known in FORMATS
-    )
-    monkeypatch.setattr("rockbatch.motions.formats.FORMATS", formats)
-    monkeypatch.setattr(bounded, "_LEAST", 0.3)
-    (tmp_path / "bad.sac").write_bytes(traced("SAC"))
-    write_at2(tmp_path, "good090.AT2", wiggle())
-    with bounds(20, 500):
-        found = read_motions(tmp_path)
-    assert names(found) == ["good090"]
-    assert [one.source for one in found.unusable] == ["bad.sac"]
-    assert "ended" in found.unusable[0].reason
+LINES_OF_BLANKS = [
+    "a" * 150 + " " * 148 + "b",
+    "a(" + " " * 296 + "b",
+    "column 1: a" + " " * 280 + "b",
+    "dt" + " " * 297 + "b",
+]
 
 
-def test_a_bound_ends_the_thread_that_it_is_in_and_leaves_nothing_behind():
-    ended = []
+@pytest.mark.parametrize("line", [*LINES_OF_BLANKS, "a," * 150, "acc " * 75, "from " * 55 + "dt = 1"])
+def test_no_line_of_a_header_is_tried_again_from_each_of_its_signs(tmp_path, line):
+    """A pattern that is takes the cube of a line's length: a minute for such a header."""
+    (tmp_path / "x_HNE.csv").write_text(f"{line}\n" * 300 + "0.1\n-0.2\n" * 50)
+    with bounds(10, 300):
+        assert names(read_motions(tmp_path, options=ReadOptions(unit="m/s2", dt=0.01), confirmed=["*"])) == ["x_HNE"]
 
-    def reader() -> None:
-        try:
-            with bounded.watch() as limit, limit(0):
-                while True:
-                    pass
-        except TooLongError:
-            ended.append(True)
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bounded, "_LEAST", 0.2)
-        thread = threading.Thread(target=reader)
-        thread.start()
-        thread.join(20)
-        assert ended == [True]
-        with bounded.watch() as limit, limit(0):
-            pass
-        time.sleep(0.5)  # nothing comes after its end
-    assert not [each for each in threading.enumerate() if each.name == "rockbatch-bounded"]
+@pytest.mark.parametrize("line", LINES_OF_BLANKS)
+def test_obspy_asks_whether_a_file_is_bbp_at_no_cost(line):
+    with bounds(2, 300):
+        assert not columns.is_bbp(b"#" + line.replace(" ", " " * 12).encode())
+
+
+def test_touching_numbers_are_parted_in_one_way_only(tmp_path):
+    """Of ".11.1" either number may have the second 1: thirty of them are a thousand million ways to fail."""
+    (tmp_path / "x.csv").write_text("1.0 2.0\n" * 5 + "1.1-1" + ".11" * 60 + "x\n")
+    with bounds(5, 300):
+        (file,) = read_motions(tmp_path).unusable
+    assert "line 6" in file.reason
+
+
+def test_a_file_of_more_pieces_than_a_network_has_is_refused(tmp_path, monkeypatch):
+    """Each is a component, which is compared with all others of its folder."""
+    monkeypatch.setattr(miniseed, "_MOST_PIECES", 3)
+    write_mseed(tmp_path / "x.mseed", *(trace("HNN", start=START + 1e5 * day) for day in range(4)))
+    write_mseed(tmp_path / "y.mseed", *(trace("HNN", start=START + 1e5 * day) for day in range(3)))
+    found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
+    assert [(file.source, file.reason) for file in found.unusable] == [
+        ("x.mseed", "holds 4 pieces of channels; 3 are the most: divide it by stations")
+    ]
+    assert found.motions
 
 
 @pytest.mark.parametrize("dt", ["1e200", "1E6", "10.", "1E-7", "1e-300", "1E-30"])

@@ -54,7 +54,7 @@ def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(t
 FELL = {"status": "overturned", "theta_max_over_alpha": 9.0}
 
 
-def test_a_case_without_a_check_is_counted_and_its_overturning_told(tmp_path):
+def test_a_case_without_a_check_is_counted_and_its_overturning_named(tmp_path):
     checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
     fell = {(record, "rigid"): FELL for record, _ in FIG7[:2]}
     shown = page(tmp_path, *checked, cases=("rigid", "1", "2"), changes=fell)
@@ -72,7 +72,7 @@ def test_a_station_that_could_not_be_used_takes_the_green_from_what_passes(tmp_p
     assert 'leave_out = ["RSN1633"]' in shown.text
 
 
-def test_a_station_that_is_left_out_by_name_is_told_beside_the_green(tmp_path):
+def test_a_station_left_out_by_name_stands_beside_the_green(tmp_path):
     checked = [verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING]
     file = {"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "use = false in motions.toml"}
     spectra = {"name": "x", "source": "x.txt", "reason": "no record: a spectrum"}
@@ -134,7 +134,7 @@ def test_an_event_that_no_record_may_do_reads_as_words(tmp_path):
     assert not re.search(r"at most 0(?![.\d])", shown.text)  # but of an error
 
 
-def test_many_verdicts_are_summed_up_and_the_worst_of_them_told(tmp_path):
+def test_many_verdicts_are_summed_up_and_the_worst_named(tmp_path):
     some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(40)]
     shown = page(tmp_path, *some, *(verdict(f"c{i}", "pass") for i in range(5)))
     rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]

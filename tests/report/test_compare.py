@@ -46,7 +46,7 @@ def test_runs_of_one_record_and_case_stand_side_by_side_with_their_ratio(tmp_pat
     assert {row[4] for row in rows[1:]} == {"1.000"}
 
 
-def test_a_case_without_a_check_and_a_missing_station_are_told_of_each_study(tmp_path):
+def test_each_study_names_its_case_without_a_check_and_its_missing_station(tmp_path):
     lost = [{"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}]
     a, b = two(tmp_path, {"changes": {("SYL360", "rigid"): {"status": "overturned"}}}, {"unusable": lost})
     for folder in (a, b):
@@ -61,7 +61,7 @@ def test_a_case_without_a_check_and_a_missing_station_are_told_of_each_study(tmp
     assert "? 6 of 7 stations; RSN1633 could not be used: ABBAR--L.AT2: the file is cut." in of_both
 
 
-def test_what_both_studies_lose_is_told_beside_the_better_one(tmp_path):
+def test_failures_of_both_studies_stand_beside_the_better_one(tmp_path):
     fell = {("SYL360", "rigid"): {"status": "overturned"}}
     a, b = two(tmp_path, {"changes": fell}, {"changes": fell})
     text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
@@ -110,7 +110,7 @@ def test_piers_of_both_are_matched_by_their_values(tmp_path):
     pd.testing.assert_series_equal(first["pier"], second["pier"], check_index=False)
 
 
-def test_statistics_are_over_the_pairs_and_told_apart_by_the_vertical_component(tmp_path):
+def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tmp_path):
     horizontal = [
         {
             "record": name, "dt_s": 0.005, "npts": 6000, "duration_s": 29.995, "pga_g": pga, "pga_v_g": None,

@@ -59,7 +59,7 @@ def test_of_hundreds_of_records_the_worst_have_a_row_and_the_others_share_one(tm
     assert path.stat().st_size < 3e6
 
 
-def test_what_has_no_peak_is_told_by_foundation_or_by_number(tmp_path):
+def test_runs_without_a_peak_are_named_by_foundation_or_counted(tmp_path):
     changes = {("RRS228", "2"): {"status": "overturned"}, ("RRS228", "rigid"): {"status": "overturned"},
                ("RRS228", "3"): {"status": "failed", "theta_max_over_alpha": ""}}  # fmt: skip
     write_results(tmp_path, changes=changes)

@@ -400,7 +400,7 @@ def test_fifty_records_on_five_foundations_stay_below_two_megabytes(tmp_path):
     assert len(re.findall("PGA = ", text)) == 50
 
 
-def test_both_directions_and_scales_are_told_apart(tmp_path):
+def test_both_directions_and_scales_are_distinguished(tmp_path):
     text = report(tmp_path, polarities=("+", "-"), scales=(1.0, 2.0))
     page = Page(text)
     assert len(panels(text)) == 2 * len(FIG7)
@@ -511,7 +511,7 @@ def test_of_a_big_study_the_worst_is_shown_and_the_page_says_so(tmp_path):
     assert ">R7</span>" in text
 
 
-def test_a_damaged_table_is_told_with_every_line_at_once(tmp_path):
+def test_every_line_of_a_damaged_table_is_reported_at_once(tmp_path):
     changes = {("ERZ-NS", "1"): {"impacts": "2.5"}, ("SYL360", "2"): {"settlement_m": "x"}}
     write_results(tmp_path, changes=changes)
     path = tmp_path / "peaks.csv"
@@ -597,7 +597,7 @@ def test_what_is_odd_about_a_record_and_whether_it_is_processed_stand_in_the_tab
     assert "displacement 0.30 m" in text
 
 
-def test_what_was_left_out_is_told_apart_from_what_could_not_be_used(tmp_path):
+def test_files_left_out_are_separate_from_unusable_ones(tmp_path):
     left_out = [{"name": "meta", "source": "a/<meta>.json", "reason": "no record: text about the records"}]
     write_results(tmp_path, left_out=left_out)
     text = write_report(tmp_path).read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import pytest
 from report_page import Page
 from report_samples import FIG7, write_results
 
-from rockbatch.checks.statistics import quantile
+from rockbatch.quantities.statistics import quantile
 from rockbatch.report import write_report
 from rockbatch.results.suite_statistics import records, suite, suites
 
@@ -103,7 +103,7 @@ def test_the_table_says_how_many_stood_and_which_percentiles_fall_on_overturned_
     assert "counts as larger than any (∞)" in page.text
 
 
-def test_settlements_are_told_in_millimetres_and_the_rigid_base_has_none(tmp_path):
+def test_settlements_are_in_millimetres_and_the_rigid_base_has_none(tmp_path):
     write_results(tmp_path)
     page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
     with (tmp_path / "peaks.csv").open(encoding="utf-8", newline="") as file:

@@ -61,14 +61,14 @@ def test_too_few_motions_have_no_distribution(tmp_path):
     assert "predicts no earthquake" in page.text
 
 
-def test_more_groups_than_panels_are_told(tmp_path):
+def test_more_groups_than_panels_are_counted(tmp_path):
     write_results(tmp_path, scales=tuple(0.1 * i for i in range(1, 15)))
     section = distribution.section(read(tmp_path, ()))
     assert section.count("<figcaption><span>motions scaled") == 12
     assert "The first 12 of 14 groups are shown." in Page(section).text
 
 
-def test_of_more_foundations_than_can_be_told_apart_the_best_are_drawn(tmp_path):
+def test_of_too_many_foundations_the_best_are_drawn(tmp_path):
     pier = Pier(alpha=0.13, p=0.38)
     etas = [2.0 + 0.1 * i for i in range(25)]
     cases = [case_entry("soil", {"eta": eta}, pier, YieldingBase(beta=40.0, eta=eta)) for eta in etas]
@@ -181,7 +181,7 @@ def test_pulses_and_distances_are_counted(asked, tmp_path):
     assert "Of 3 components with a known distance 2 were recorded within 15 km; of the other 3 it is not known" in text
 
 
-def test_stations_without_a_pair_are_told_where_pairs_are_asked_for(asked, tmp_path):
+def test_stations_without_a_pair_are_named_if_pairs_are_requested(asked, tmp_path):
     info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
     info["target"] |= {"pairs": "srss", "alone": 6}
     (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")

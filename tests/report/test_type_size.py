@@ -62,7 +62,7 @@ def report(tmp_path_factory):
     study, out = str(write_study(folder, STUDY)), str(folder / "out")
     for command in ("run", "spectrum", "fragility", "sensitivity"):
         main([command, study, "--out", out])
-    assert main(["accuracy", study, "--out", out, "--no-scipy", "--runs", "1"]) == 0
+    assert main(["accuracy", study, "--out", out, "--runs", "1"]) == 0
     return write_report(folder / "out")
 
 

@@ -15,9 +15,9 @@ from report_samples import write_results
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.checks.demands import DEMANDS
 from rockbatch.cli import main
 from rockbatch.errors import InputError, MissingColumns
+from rockbatch.quantities.demands import DEMANDS
 from rockbatch.report import write_comparison, write_report
 from rockbatch.results.columns import (
     ASKED,

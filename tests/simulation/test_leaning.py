@@ -110,7 +110,7 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
 
 
 @pytest.mark.parametrize("requested", [False, True])
-def test_many_runs_are_told_apart_as_one_is(requested):
+def test_many_runs_are_classified_as_one_is(requested):
     """Piers that lean, swing, stand on strong pads or overturn, at two sampling intervals, side by side and each alone."""
     runs = [
         Run(PIER, replace(PADS, eta=eta), replace(pulse_and_vibration(vertical), dt=dt))

@@ -6,10 +6,10 @@ import tomllib
 import pytest
 from studies import write_study
 
-from rockbatch.checks.reading import load_rules
 from rockbatch.errors import InputError
 from rockbatch.motions.manifest import Manifest
 from rockbatch.study import Study, load_study
+from rockbatch.study.rule_files import load_rules
 
 STUDY = """\
 title = "Pier 4"
@@ -433,7 +433,7 @@ def test_advice_followed_to_the_letter_leads_to_what_was_meant(folder, whole, lo
 
 
 @pytest.mark.parametrize(("meant", "written", "says", "never"), TOLD)
-def test_what_has_no_equal_is_told_and_nothing_else_suggested(folder, meant, written, says, never):
+def test_a_word_without_an_equal_is_refused_and_nothing_suggested(folder, meant, written, says, never):
     messages = problems(folder, STUDY.replace(meant, written, 1))
     (message,) = (each.removeprefix(str(folder)) for each in messages if says in each)
     assert never not in message

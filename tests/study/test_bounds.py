@@ -81,7 +81,7 @@ def test_more_runs_than_a_table_holds_are_refused_before_the_first(tmp_path, mon
     )
 
 
-def test_as_many_cases_as_there_may_be_are_told_to_the_end(tmp_path, monkeypatch, capsys):
+def test_the_greatest_number_of_cases_is_checked_to_the_end(tmp_path, monkeypatch, capsys):
     """Stages after the runs say what they are if they take long; a case is a line of run.json, and the page stays small."""
     monkeypatch.setattr("rockbatch.batch.listening.PATIENCE_S", 0.0)
     monkeypatch.setattr(lists, "MOST_CASES", 360)

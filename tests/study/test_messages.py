@@ -36,12 +36,12 @@ def said(folder, text):
         ),
     ],
 )
-def test_a_misspelt_key_is_told_alone_and_not_as_missing_too(tmp_path, tables, message):
+def test_a_misspelt_key_is_reported_once_and_not_as_missing_too(tmp_path, tables, message):
     (problem,) = said(tmp_path, study_text(**tables).replace("case = []\n", ""))
     assert problem.partition(": ")[2] == message
 
 
-def test_a_misspelt_pier_is_told_alone_though_its_mass_is_not_read(tmp_path):
+def test_a_misspelt_pier_is_reported_once_though_its_mass_is_not_read(tmp_path):
     devices = {"damper": [{"kind": "friction", "force_kN": 40.0}]}
     text = study_text(pier=HEAVY, cases=[PADS | devices]).replace("[pier]", "[peir]")
     (problem,) = said(tmp_path, text)
@@ -58,12 +58,12 @@ def test_a_misspelt_pier_is_told_alone_though_its_mass_is_not_read(tmp_path):
         ({"numerics": {"mass_t": 2.0}}, "mass_t: unknown key; it belongs under [pier] or [[pier.part]] or [[case]]"),
     ],
 )  # fmt: skip
-def test_a_table_or_key_in_another_place_is_told_where_it_belongs(tmp_path, tables, message):
+def test_the_message_on_a_misplaced_table_or_key_names_its_place(tmp_path, tables, message):
     (problem,) = said(tmp_path, study_text(**tables))
     assert message in problem
 
 
-def test_a_table_of_a_case_before_the_case_is_told_to_go_below_it(tmp_path):
+def test_the_message_on_a_table_before_its_case_says_to_move_it_below(tmp_path):
     damper = '[[case.damper]]\nkind = "friction"\nf = 0.1\n'
     (problem,) = said(tmp_path, damper + study_text())
     assert "[[case.damper]] in line 1 stands before it: write it below the [[case]] that it belongs to" in problem
@@ -83,7 +83,7 @@ def test_a_device_is_called_by_its_case_and_number_and_its_kind_by_all_there_are
         ({"tendon": [{"psi": 0.1, "at": "left"}, {"prestress_kN": 500e3, "at": "right"}]}, "prestress_kN", "psi = 22.1602"),
     ],
 )  # fmt: skip
-def test_a_force_in_newtons_is_told_at_its_own_key_in_kilonewtons(tmp_path, device, key, meaning):
+def test_a_force_in_newtons_is_reported_at_its_own_key_in_kilonewtons(tmp_path, device, key, meaning):
     text = study_text(pier=HEAVY, cases=[PADS | device])
     (problem,) = said(tmp_path, text)
     what = next(iter(device))
@@ -91,7 +91,7 @@ def test_a_force_in_newtons_is_told_at_its_own_key_in_kilonewtons(tmp_path, devi
     assert text.splitlines()[int(problem.partition(":")[0]) - 1].startswith(key)
 
 
-def test_gravity_in_cm_s2_is_told_at_its_key_and_nowhere_else(tmp_path):
+def test_gravity_in_cm_s2_is_reported_at_its_key_and_nowhere_else(tmp_path):
     pads = {"base": "yielding", "stiffness_kN_m": 2e6, "yield_kN": 4e4}
     (problem,) = said(tmp_path, study_text(pier=HEAVY | {"gravity": 981}, cases=[pads]))
     assert "[pier]: gravity = 981: more than 30 m/s²: on Earth it is 9.81; check the unit" in problem
@@ -102,7 +102,7 @@ def test_gravity_in_cm_s2_is_told_at_its_key_and_nowhere_else(tmp_path):
 @pytest.mark.parametrize(
     ("spectrum", "meant"), [("EC8", "EN 1998-1"), ("Eurocode 8", "EN 1998-1"), ("ASCE 7-16", "ASCE 7")]
 )
-def test_another_name_of_a_code_is_told_alone_and_its_keys_are_not(tmp_path, spectrum, meant):
+def test_another_name_of_a_code_is_reported_alone_without_its_keys(tmp_path, spectrum, meant):
     (problem,) = said(tmp_path, study_text(motions={"target": EN_1998 | {"spectrum": spectrum}}))
     assert f'spectrum = "{spectrum}": no such file' in problem
     assert problem.endswith(f'did you mean "{meant}"?')
@@ -116,7 +116,7 @@ def test_another_name_of_a_code_is_told_alone_and_its_keys_are_not(tmp_path, spe
         ("alpha = 0.2", "alpha = −0.2", "write alpha = -0.2"),
     ],
 )
-def test_marks_of_a_word_processor_are_told(tmp_path, old, new, advice):
+def test_marks_of_a_word_processor_are_reported(tmp_path, old, new, advice):
     (problem,) = said(tmp_path, study_text().replace(old, new, 1))
     assert advice in problem
 
@@ -135,7 +135,7 @@ WHOLE = study_text(
 
 @pytest.mark.parametrize("header", [line for line in WHOLE.splitlines() if line.startswith("[")])
 @pytest.mark.parametrize("number", [MOST_TOLD - 1, MOST_TOLD, MOST_TOLD + 1])
-def test_as_many_mistakes_as_are_told_in_any_table_end_in_words(tmp_path, header, number):
+def test_the_greatest_number_of_reported_mistakes_ends_in_words(tmp_path, header, number):
     """Nothing is made of tables that were then not read to their end."""
     mistakes = "".join(f"k{n} = 1\n" for n in range(number))
     for text in (mistakes + WHOLE, WHOLE.replace(f"{header}\n", f"{header}\n{mistakes}", 1)):

@@ -149,7 +149,7 @@ def test_a_frame_on_springs_is_refused_where_the_case_stands(tmp_path):
 # From the study to its results
 
 
-def test_drift_is_read_at_the_top_and_kilonewtons_are_told(tmp_path):
+def test_drift_is_read_at_the_top_and_forces_in_kilonewtons(tmp_path):
     """θ times top_m; 2 h where no top is known; F_y and K as they were given; a rigid base has neither."""
     checks = "".join(
         f'[[check]]\nname = "{demand}"\ndemand = "{demand}"\n{sense} = {limit}\nreason = "r"\n'

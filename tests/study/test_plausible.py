@@ -155,7 +155,7 @@ def test_a_limit_is_odd_only_where_it_is_so_for_all_its_cases(tmp_path):
         ("numerics", "1e-4", "0", "tolerance = 0: expected a number above 0"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_confirmed_or_met_is_told(tmp_path, part, old, new, said):
+def test_values_that_cannot_be_confirmed_or_met_are_reported(tmp_path, part, old, new, said):
     with pytest.raises(InputError) as caught:
         load_study(written(tmp_path, **{part: PARTS[part].replace(old, new)}))
     (problem,) = caught.value.problems
@@ -304,7 +304,7 @@ def test_a_viscous_damper_in_newtons_is_a_thousand_times_that_in_kilonewtons():
         assert (unlikely_devices(TALL, (damper,)) != []) == refused
 
 
-def test_an_empty_tendon_is_told(tmp_path):
+def test_an_empty_tendon_is_refused(tmp_path):
     (problem,) = problems_of(written_with(tmp_path, case='[[case]]\nname = "a"\nbase = "rigid"\n[[case.tendon]]\n'))
     assert '[[case]] "a", tendon 1: it has neither prestress nor stiffness, so that it is not there' in problem
 

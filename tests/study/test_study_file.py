@@ -224,7 +224,7 @@ def test_a_file_of_another_system_reads_the_same(tmp_path):
 # What is said about a bad one
 
 
-def test_all_mistakes_are_told_at_once_each_with_its_line(tmp_path):
+def test_all_mistakes_are_reported_at_once_each_with_its_line(tmp_path):
     text = """\
 title = 5
 titel = "x"
@@ -318,7 +318,7 @@ theta_max_over_alpha = 0.1
 
 
 @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.toml")), ids=lambda path: path.stem)
-def test_a_hundred_mistakes_ahead_of_all_else_are_told_and_nothing_is_made_of_the_rest(tmp_path, path):
+def test_a_hundred_mistakes_come_first_and_the_rest_is_not_read(tmp_path, path):
     """No more than a hundred are noted: a pier without its keys is then no sound one."""
     for number in (MOST_TOLD - 1, MOST_TOLD, MOST_TOLD + 1):
         many = "".join(f"k{n} = 1\n" for n in range(number))
@@ -327,7 +327,7 @@ def test_a_hundred_mistakes_ahead_of_all_else_are_told_and_nothing_is_made_of_th
         assert ("there may be more" in last) == (len(others) >= MOST_TOLD)
 
 
-def test_an_empty_file_is_told_what_it_lacks(tmp_path):
+def test_the_message_on_an_empty_file_names_what_it_lacks(tmp_path):
     problems = problems_of(tmp_path, "")
     assert [problem.split(";")[0] for problem in problems] == [
         "[motions]: there are no ground motions",
@@ -535,7 +535,7 @@ def test_a_reference_to_a_value_that_no_case_has_is_refused(tmp_path):
     ]
 
 
-def test_missing_given_motions_are_told_beside_the_mistakes_of_the_file(tmp_path):
+def test_missing_given_motions_are_reported_beside_the_mistakes_of_the_file(tmp_path):
     with pytest.raises(InputError) as caught:
         study_of(tmp_path, PIER, PULSE, RIGID, "bse = 1\n", motions=tmp_path / "nowhere")
     first, second = caught.value.problems
@@ -731,7 +731,7 @@ def test_zeta_takes_the_place_of_epsilon(tmp_path):
     assert [only.columns for only in study.cases] == [{"zeta": 0.02}, {"zeta": 0.05}]
 
 
-def test_epsilon_beside_zeta_is_told_once_with_its_line(tmp_path):
+def test_epsilon_beside_zeta_is_reported_once_with_its_line(tmp_path):
     keys = case('name = "a"', "beta = 40", "epsilon = 0.1", "zeta = 0.05", base="elastic")
     with pytest.raises(InputError) as error:
         study_of(tmp_path, PIER, PULSE, keys)
@@ -774,7 +774,7 @@ def test_dampers_and_tendons_by_kilonewtons_and_by_ratios(tmp_path):
         ('kind = "viscous"\nnu = 0.1\nat = "middle"', "an offset"),
     ],
 )
-def test_what_is_wrong_about_a_damper_is_told(tmp_path, keys, told):
+def test_mistakes_of_a_damper_are_reported(tmp_path, keys, told):
     with pytest.raises(InputError) as error:
         study_of(tmp_path, PIER, PULSE, f'[[case]]\nbase = "rigid"\n[[case.damper]]\n{keys}\n')
     assert told in str(error.value)

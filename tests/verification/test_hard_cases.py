@@ -255,7 +255,7 @@ def test_where_flight_ends_the_run_it_says_when():
 
 @pytest.mark.parametrize("steps", [160.0, 160.5], ids=["on-a-sample", "within-a-step"])
 @pytest.mark.parametrize(("excess", "status"), [(-1e-6, "ok"), (1e-6, "flight")])
-def test_flight_by_a_hair_is_told_from_none(excess, status, steps):
+def test_flight_by_a_hair_is_distinguished_from_none(excess, status, steps):
     """Elastic springs under a constant v̈_g = −c g from rest just unload at c = ½: v = −(g/ω_v²)(1 − c (1 − cos ω_v t)).
 
     The minimum of −z sits on a sample, or in the middle of a step, of which the flight lasts a third. RK4 at

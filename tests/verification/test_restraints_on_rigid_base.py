@@ -466,7 +466,7 @@ def test_without_force_the_block_is_that_of_the_lanes():
     assert (tied.status, tied.impacts) == (bare.status, bare.impacts)
 
 
-def test_what_cannot_be_is_told():
+def test_impossible_devices_are_refused():
     wrong = [
         Damper("friction", f=-0.1), Damper("hysteretic", f=0.1), Damper("viscous", nu=1.0, exponent=5.0), Damper("rubber"),
         Tendon(psi=-1.0), Tendon(psi=0.5, strength=0.4), Tendon(at="middle"), Damper("friction", f=0.1, at=99.0),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from rockbatch.analyses.accuracy import RUNS, SECONDS
 from rockbatch.analyses.accuracy.error_and_time import Clock, measure, references
 from rockbatch.batch.analysis import Analysis
 from rockbatch.batch.compiling import make_ready
@@ -22,12 +23,6 @@ from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-RUNS = 24
-"""Default number of runs that are measured."""
-
-SECONDS = 60.0
-"""Default time that it takes at most, or little more [s]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -85,11 +80,11 @@ def accuracy(
     *,
     runs: int = RUNS,
     seconds: float = SECONDS,
-    scipy: bool = True,
+    scipy: bool = False,
     motions: Motions = None,
     progress: Progress = None,
 ) -> Accuracy:
-    """Measure the error of θ_max/α against time per run, for this study on this machine, beside SciPy's solvers.
+    """Measure the error of θ_max/α against time per run, for this study on this machine.
 
     Parameters
     ----------
@@ -102,9 +97,9 @@ def accuracy(
         Number of runs measured, spread over the study; fewer if there is no time for more.
     seconds : float
         Time allowed [s], once the kernels are compiled. What does not fit is left out: runs, the longest of
-        the fixed steps, repetitions, the tightest of SciPy's tolerances.
+        the fixed steps, repetitions.
     scipy : bool
-        Measure SciPy's solvers too, on springs without dampers and tendons; they are slow.
+        Without effect, for earlier scripts: ``benchmarks/solvers.py`` compares SciPy's solvers.
 
     Returns
     -------
@@ -118,7 +113,7 @@ def accuracy(
 
     Examples
     --------
-    >>> result = rb.accuracy("pier4.toml", runs=2, scipy=False)
+    >>> result = rb.accuracy("pier4.toml", runs=2)
     >>> result
     <accuracy of 'Pier 4'>
       tables  accuracy (13 rows)
@@ -143,7 +138,7 @@ def accuracy(
         study=loaded,
         info={},
         unusable=tuple(suite.unusable),
-        accuracy=measure(loaded, chosen, scipy, listener, clock),
+        accuracy=measure(loaded, chosen, listener, clock),
         records=tuple(motion.name for motion in suite.motions),
     )
     return measured if out is None else replace(measured, files=measured.save(out))

@@ -1,4 +1,4 @@
-"""``rockbatch accuracy``: error against time per run for a study on this machine, beside SciPy's solvers."""
+"""``rockbatch accuracy``: error against time per run for a study on this machine."""
 
 import argparse
 
@@ -18,7 +18,6 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
         folder(arguments),
         runs=arguments.runs,
         seconds=arguments.seconds,
-        scipy=not arguments.no_scipy,
         progress=Terminal(),
     )
     show(shown(result.accuracy))

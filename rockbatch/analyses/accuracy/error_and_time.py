@@ -1,4 +1,4 @@
-"""Error of θ_max/α against time per run, on this machine: what a step, the location of events and SciPy cost."""
+"""Error of θ_max/α against time per run, on this machine: what a step and the location of events cost."""
 
 import hashlib
 import math
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.listening import Advance, Listener, count, silent
+from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.common.lazy import pd
@@ -24,9 +24,9 @@ from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
 from rockbatch.study import Study
 
 COLUMNS = (
-    "method",  # located, not located, study, SciPy DOP853, SciPy LSODA
+    "method",  # located, not located, study
     "substeps",  # steps per sample, if given
-    "tolerance",  # if given: on θ_max/α, or SciPy's rtol
+    "tolerance",  # on θ_max/α, if given
     "runs",
     "error_median",  # of θ_max/α, over the runs that end as the reference does and do not overturn
     "error_95",
@@ -39,9 +39,6 @@ COLUMNS = (
 )
 
 SUBSTEPS = (1, 2, 4, 8, 16, 32)
-SCIPY = ("DOP853", "LSODA")
-SCIPY_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
-SCIPY_RUNS = 2
 REPEATS = 5
 
 CONVERGED = 1e-12
@@ -52,8 +49,8 @@ ACCEPTED = 1e-9
 
 HALVINGS = 10
 
-REFERENCES, STEPS = 0.4, 0.7
-"""Shares of the time by which the references, and then the steps, are to be finished; the rest is SciPy's."""
+REFERENCES = 0.5
+"""Share of the time by which the references are to be finished; the rest is for the settings."""
 
 Setting = dict[str, Any]
 Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
@@ -153,25 +150,20 @@ def _scattered(i: int) -> float:
 def measure(
     study: Study,
     references: Sequence[Reference],
-    scipy: bool = True,
     listener: Listener | None = None,
     clock: Clock | None = None,
 ) -> "pd.DataFrame":
-    """Measure time and error of fixed steps, with and without the location of events, of the study's own setting, and of SciPy.
+    """Measure time and error of fixed steps, with and without the location of events, and of the study's own setting.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
-    :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so. SciPy: one pass over at most :data:`SCIPY_RUNS`
-    runs, on springs, until ours end; the tolerances for which there is time.
+    :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so.
 
     Returns
     -------
     DataFrame with the columns :data:`COLUMNS`, one row per method and setting.
     """
     listener, clock = listener or Listener(), clock or Clock()
-    rows = _of_steps(study, references, listener, clock)
-    if scipy:
-        rows += _of_scipy(references, listener, clock)
-    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    table = pd.DataFrame(_of_steps(study, references, listener, clock), columns=list(COLUMNS))
     table["substeps"] = table["substeps"].astype("Int64")
     table["tolerance"] = table["tolerance"].astype("float64")
     table["machine"] = f"{platform.system()} {platform.machine()}, {cores()} processors"
@@ -206,7 +198,7 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
                 listener.say(f"left out, for want of time: from {setting['substeps']} steps per sample on")
                 break
             started, share = time.monotonic(), (place + 1) / len(settings)
-            deadline = clock.remaining(REFERENCES + share * (STEPS - REFERENCES))
+            deadline = clock.remaining(REFERENCES + share * (1.0 - REFERENCES))
             rows.append(setting | _measured(references, simulate, REPEATS, deadline))
             took = time.monotonic() - started
             advance(len(references))
@@ -216,51 +208,6 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
 
 def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
-
-
-def _of_scipy(references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
-    """Return rows of SciPy's solvers, from the loosest tolerance on; one that takes half of the time left goes no further."""
-    from rockbatch.simulation.scipy_solver import OutOfTimeError, solve
-
-    bases = [ref.run.case.base for ref in references]
-    if any(base.restraints for base in bases):
-        listener.say("SciPy's solvers know no dampers and tendons: runs with them are left out there")
-    chosen = [
-        ref
-        for ref, base in zip(references, bases, strict=True)
-        if base.on_springs and not base.restraints and ref.outcome.status == "ok"
-    ]
-    if len(chosen) > SCIPY_RUNS:  # from the middle of the study's halves
-        chosen = [chosen[(2 * i + 1) * len(chosen) // (2 * SCIPY_RUNS)] for i in range(SCIPY_RUNS)]
-    if not chosen:
-        return []
-
-    tails = {id(ref.run): ref.outcome.t_end - ref.run.motion.duration for ref in chosen}
-
-    def solver(method: str, tolerance: float, advance: Advance = silent) -> Simulate:
-        def solved(run: PlannedRun) -> tuple[str, float]:
-            pier, base, seconds = run.case.pier, run.case.base, 0.5 * clock.remaining()
-            outcome = solve(pier, base, run.motion, method, tolerance, tails[id(run)], seconds)  # type: ignore[arg-type]
-            advance(1)
-            return outcome
-
-        return lambda runs: list(map(solved, runs))
-
-    listener.say("SciPy's solvers on the same equations (--no-scipy leaves them out)")
-    rows: list[dict[str, Any]] = []
-    methods = list(SCIPY)
-    with listener.progress(len(SCIPY) * len(SCIPY_TOLERANCES) * len(chosen)) as advance:
-        for tolerance in SCIPY_TOLERANCES:
-            for method in tuple(methods):
-                setting = {"method": f"SciPy {method}", "substeps": None, "tolerance": tolerance}
-                try:
-                    if not rows:  # compiles what is called from Python
-                        solver("LSODA", 1e-3)([chosen[0].run])
-                    rows.append(setting | _measured(chosen, solver(method, tolerance, advance), 1))
-                except OutOfTimeError:
-                    methods.remove(method)
-                    listener.say(f"left out, for want of time: SciPy {method} from rtol {tolerance:.0e} on")
-    return sorted(rows, key=lambda row: row["method"])
 
 
 def _measured(

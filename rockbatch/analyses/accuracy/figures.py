@@ -12,8 +12,6 @@ LEAST = 1e-14  # smaller errors, of rounding, are drawn there
 METHODS = {  # colour and marker, words, and the side of the notes, so that neighbours do not overlap
     "located": (Look("", 1, shape="disc"), "events located inside the step", -1),
     "not located": (Look("", 2, shape="square"), "events at the end of the step", 1),
-    "SciPy DOP853": (Look("", 3, shape="up"), "SciPy DOP853", 1),
-    "SciPy LSODA": (Look("", 4, shape="down"), "SciPy LSODA", -1),
 }
 ERRORS = {
     "error_max": ("largest error", 0),
@@ -40,7 +38,7 @@ def error_and_time(levels: Sequence[Level]) -> Figure:
 
 
 def _of_method(method: str, levels: Sequence[Level]) -> Iterator[Mark]:
-    """Yield a method's errors, with the numbers of steps per sample, or SciPy's tolerance, beside the markers."""
+    """Yield a method's errors, with the numbers of steps per sample beside the markers."""
     look, words, side = METHODS[method]
     times = np.array([level.time for level in levels])
     for name, (kind, dash) in ERRORS.items() if len(levels) > 1 else ():
@@ -51,8 +49,7 @@ def _of_method(method: str, levels: Sequence[Level]) -> Iterator[Mark]:
         at = np.array([level.time for level, _ in shown]), np.array([error for _, error in shown])
         yield Points(*at, None, [_label(level) for level, _ in shown], look=look, label=words)
     for level, error in shown:
-        setting = f"k = {level.substeps:.0f}" if level.substeps else f"{level.tolerance:.0e}"
-        yield Words(level.time, error, setting, side, look=Look("", look.colour))
+        yield Words(level.time, error, f"k = {level.substeps:.0f}", side, look=Look("", look.colour))
 
 
 def _label(level: Level) -> str:

@@ -11,7 +11,7 @@ from rockbatch.report.templates import render
 HEADS = (
     Head("method", value="method"),
     Head("k", ".0f", "substeps: steps per sample", value="substeps"),
-    Head("tolerance", ".0e", "on θ_max/α; SciPy's rtol", value="tolerance"),
+    Head("tolerance", ".0e", "on θ_max/α", value="tolerance"),
     Head("runs", ".0f", value="runs"),
     Head("median error", ".1e", value="error_median"),
     Head("95 %", ".1e", "error that 95 % of the runs keep", value="error_95"),

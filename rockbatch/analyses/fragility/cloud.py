@@ -41,7 +41,7 @@ _WIDEST = 12.0
 
 
 @dataclass(frozen=True)
-class Line:
+class Regression:
     """ln D = intercept + slope ln x, deviation sigma; ``draws``, shape (m, 3), of all three."""
 
     intercept: float
@@ -67,7 +67,7 @@ class Cloud:
     ----------
     limit : float
         d, in the unit of the demand; 1 of an event.
-    line : Line or None
+    line : Regression or None
         Demands of those that stand; None for an event, such as overturning itself.
     overturning : Logistic or None
         Share that overturns, or has the event; None if no record did, and it counts as 0.
@@ -79,7 +79,7 @@ class Cloud:
     """
 
     limit: float
-    line: Line | None
+    line: Regression | None
     overturning: Logistic | None
     confidence: float
     centre: float
@@ -215,9 +215,12 @@ def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> 
         )
     if np.ptp(log_x[exact]) < 1e-6:
         return "all records have the same intensity: a line needs a cloud of them"
+    log_demand = np.log(runs.demand[exact])
+    if np.abs(np.polyval(np.polyfit(log_x[exact], log_demand, 1), log_x[exact]) - log_demand).max() < 1e-7:
+        return "all demands are on one line over the intensity, and nothing tells the dispersion"
     censored = stands & ~exact
     bounds = np.log(np.where(runs.within, limit, floor))[censored]
-    line = _line(log_x[exact], np.log(runs.demand[exact]), log_x[censored], bounds)
+    line = _line(log_x[exact], log_demand, log_x[censored], bounds)
     if not line.slope > 0:
         return "the demand does not grow with the intensity"
     return Cloud(limit, line, share, confidence, float(log_x.mean()))
@@ -249,7 +252,7 @@ def _share(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic | str | N
     return share if share.slope > 0 else "the share of records that overturn does not grow with the intensity"
 
 
-def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> Line:
+def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> Regression:
     """Return the censored regression by maximum likelihood, by Newton's method.
 
     In δ = β/σ and γ = 1/σ the likelihood is concave (Olsen 1978, Econometrica 46(5):1211–1215).
@@ -287,7 +290,7 @@ def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> L
     spread = rng.standard_normal((DRAWS, 2)) @ np.linalg.cholesky(covariance * grown).T
     betas = beta + spread * (sigmas / sigma)[:, None]
     draws = np.column_stack((betas[:, 0] - betas[:, 1] * centre, betas[:, 1], sigmas))
-    return Line(float(beta[0] - beta[1] * centre), float(beta[1]), float(sigma), draws)
+    return Regression(float(beta[0] - beta[1] * centre), float(beta[1]), float(sigma), draws)
 
 
 def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Values) -> tuple[Values, Values]:

@@ -10,8 +10,8 @@ from rockbatch.analyses.fragility.curves import CloudPoint, Curve
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, threshold
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
-from rockbatch.checks.demands import DEMANDS
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import DEMANDS
 
 CLOUD = "fragility_cloud.csv"
 

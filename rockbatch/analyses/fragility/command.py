@@ -60,7 +60,7 @@ def table(curves: Sequence[Curve], spec: FragilitySpec) -> str:
     limits = [f"{limit.name}: {words(limit)}" for limit in spec.limits if words(limit)]
     method = {"ida": "incremental dynamic analysis", "cloud": "cloud analysis"}.get(spec.method, spec.method)
     title = f"Fragility for {spec.label}, {method}"
-    if little := sum(curve.says_little for curve in curves):
+    if little := sum(curve.inconclusive for curve in curves):
         share = f"{little} of {count(len(curves), 'curve')} {'says' if little == 1 else 'say'} little"
         title += f"; {share}: too many runs are undecided"
     lines = [

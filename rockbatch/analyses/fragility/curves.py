@@ -28,15 +28,15 @@ from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, samples, windows
 from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made, PlannedRun, scaled
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import Rule
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.quantities.demands import DEMANDS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
+from rockbatch.study.rules import Rule
 
 
 class Point(NamedTuple):
@@ -237,7 +237,7 @@ class Curve:
     cloud: tuple[CloudPoint, ...] = ()
 
     @property
-    def says_little(self) -> bool:
+    def inconclusive(self) -> bool:
         """Return whether undecided runs leave the median more open than the number of records does."""
         if self.readings is None or isinstance(self.fitted, str):
             return False

@@ -4,11 +4,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
-from rockbatch.checks.choices import chooses
-from rockbatch.checks.demands import DEMANDS, Case, has_device
-from rockbatch.checks.rules import Rule
-from rockbatch.checks.suite import of_runs
+from rockbatch.checks.bounds import of_runs
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import DEMANDS, Case, has_device
+from rockbatch.study.rule_choices import chooses
+from rockbatch.study.rules import Rule
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
 """States of a run with respect to a limit.

@@ -17,11 +17,11 @@ from rockbatch.analyses.fragility.hazard import (
     root_of_squares,
 )
 from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.pier import Base
+from rockbatch.quantities.demands import DEMANDS
 from rockbatch.study.load import Study
+from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table

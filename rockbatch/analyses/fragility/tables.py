@@ -177,7 +177,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "dispersion": None,
         "note": note(curve, spec),
         "undecided": curve.undecided._asdict(),
-        "says_little": curve.says_little,
+        "inconclusive": curve.inconclusive,
         "median_undecided": _finite(readings.medians) if readings else None,
         "points": [stripe._asdict() for stripe in curve.stripes],
         "capacities": [_finite(cap.decided) for _, cap in curve.capacities],
@@ -277,4 +277,4 @@ def _about_undecided(curve: Curve) -> str:
         f"no curve ({fit})" if isinstance(fit, str) else f"a median of {fit.median:.4g}" for fit in curve.readings
     )
     remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
-    return f"says little: {remark}" if curve.says_little else remark
+    return f"says little: {remark}" if curve.inconclusive else remark

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rockbatch.analyses.sensitivity import sampled
-from rockbatch.analyses.sensitivity.sampled import INDICES, Point, Points, Suite, indices
+from rockbatch.analyses.sensitivity.sampled import INDICES, Design, Point, Points, indices
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
-from rockbatch.checks.statistics import STATISTICS, Values
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import opened_text
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, A
         **{name: value for name, value in asdict(spec).items() if name != "inputs"},
         "inputs": [asdict(parameter) for parameter in spec.inputs],
     }
-    suite = Suite(study, points, motions.motions)
+    suite = Design(study, points, motions.motions)
     runs = suite.runs()
     digest = digests(
         motions.motions,

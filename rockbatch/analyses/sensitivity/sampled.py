@@ -71,7 +71,7 @@ class Points:
         return len(self.all)
 
 
-class Suite:
+class Design:
     """The motions that count at every point: all of the study, in its scales, and in one polarity unless it is an input."""
 
     def __init__(self, study: Study, points: Points, motions: Sequence[Motion]) -> None:

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rockbatch.analyses.sensitivity.figures import bars, symbol, written
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.report.finished_analysis import Contents, of_files
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.svg import drawn

@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields, replace
 from itertools import product
 from typing import Any
 
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.errors import InputError
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.cases import CASE
 from rockbatch.study.load import Study
 from rockbatch.study.motions import MOTIONS

@@ -25,15 +25,16 @@ _STEP_UNITS = "|".join(re.escape(unit) for unit in sorted((*SECONDS, *_RATE_UNIT
 _STEP = re.compile(
     rf"(?<![A-Za-z])(?:(?P<interval>{_INTERVAL}|{_SPACED})|(?P<rate>{_RATE}))(?![A-Za-z])"
     rf"(?:[ _]?(?:[(\[]\s*(?P<before>{_STEP_UNITS})\.?\s*[)\]]|(?P<suffix>s|sec|ms|hz)(?=\s*[:=])))?"
-    r"\s*[:=]?\s*(?P<number>[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[ed][-+]?\d+)?)"
+    r"\s*+[:=]?\s*+(?P<number>[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[ed][-+]?\d+)?)"
     rf"(?:\s*[(\[]?\s*(?P<behind>{_STEP_UNITS})(?![A-Za-z]))?",
     re.IGNORECASE,
 )
 _OF_ANOTHER = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE)
 
-_UNIT = r"[(\[]\s*(?P<unit>[^()\[\]]+?)\s*[)\]]"
-_NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>.*?)\s*{_UNIT}", re.IGNORECASE)
-_LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]][^,;\t()\[\]]*?)\s*{_UNIT}")
+# possessive (*+): a line of a header takes the square of its length at most, whatever it holds
+_UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
+_NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\S)??)\s*+{_UNIT}", re.IGNORECASE)
+_LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
 _FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
 _VALUE = re.compile(r"[:=]|\d\.\d|(?<!\w)\.\d")

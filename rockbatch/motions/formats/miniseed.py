@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError
@@ -16,7 +17,8 @@ from rockbatch.motions.orientation import Orientation, is_clock, not_acceleratio
 from rockbatch.motions.origin import origin_of
 
 _YEARS = 1900, 2100
-_TOLD = 5  # of the .xml files that could not be read
+_MOST_NAMED = 5  # of the .xml files that could not be read
+_MOST_PIECES = 1000  # of channels in a file: a network of three hundred stations
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
 
 
@@ -42,11 +44,12 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
         )
-    segments: dict[str, list[obspy.Trace]] = {}
-    for trace in stream:
-        segments.setdefault(trace.id, []).append(trace)
-    channels, refused = stationxml.channels_beside(file.path.parent, file.root)
-    unread = f" (not read: {', '.join(refused[:_TOLD])})" if refused else ""
+    if len(stream) > _MOST_PIECES:
+        raise InputError(f"holds {len(stream)} pieces of channels; {_MOST_PIECES} are the most: divide it by stations")
+    segments = grouped(stream, lambda trace: str(trace.id))
+    entries, refused = stationxml.channels_beside(file.path.parent, file.root)
+    channels = grouped(entries, lambda channel: channel.id)
+    unread = f" (not read: {', '.join(refused[:_MOST_NAMED])})" if refused else ""
     readings: list[Component | Unusable] = []
     for channel_id, traces in segments.items():
         events = _events(traces)
@@ -59,7 +62,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
-                readings.append(_component(name, source, file, pieces[0], channels, unread))
+                readings.append(_component(name, source, file, pieces[0], channels.get(channel_id, []), unread))
             except InputError as error:
                 readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
     return readings
@@ -80,16 +83,18 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
 
 
 def _component(
-    name: str, source: str, file: RecordFile, trace: "obspy.Trace", channels: list[stationxml.Channel], unread: str
+    name: str, source: str, file: RecordFile, trace: "obspy.Trace", entries: list[stationxml.Channel], unread: str
 ) -> Component:
-    """Return one channel as a component, by its StationXML entry or by what the study states; ``unread``: which were not read."""
+    """Return one channel as a component, by its StationXML ``entries`` or by what the study states.
+
+    ``unread`` names files of StationXML that were not read.
+    """
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
     if is_clock(stats.channel):
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
-    entries = [channel for channel in channels if channel.id == trace.id]
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
     orientation = orientation_of(stats.channel) or unknown(stats.channel)
     if entry is not None and entry.sensitivity:

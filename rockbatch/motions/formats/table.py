@@ -20,7 +20,9 @@ WRAPPED = (
 )
 _LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
 _PIECE = 10_000  # lines that are read at once
-_TOUCHING = re.compile(r"\s*(?:[-+]?\d*\.\d+(?:[EDed][-+]?\d+)?\s*)+")  # with points, unlike a date such as 2010-11-14
+_TOUCHING = re.compile(  # with points, unlike a date such as 2010-11-14; possessive: digits may end one number or begin the next
+    r"\s*+(?:[-+]?\d*+\.\d++(?:[EDed][-+]?\d++)?+\s*+)++"
+)
 _SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
-from rockbatch.checks.suite import NOT_RUN
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
@@ -15,6 +14,7 @@ from rockbatch.report.overview import by_record
 from rockbatch.report.sections import verdicts
 from rockbatch.report.table import alarm
 from rockbatch.report.templates import render
+from rockbatch.results.rows import NOT_RUN
 from rockbatch.results.suite_statistics import reasons_of_failure
 
 MOST_COMPARED = 4

@@ -2,7 +2,6 @@
 
 from itertools import islice
 
-from rockbatch.checks.suite import counts_as
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.overview import worst_first
@@ -10,6 +9,7 @@ from rockbatch.report.sections.statistics import RECORDS
 from rockbatch.report.svg import drawn
 from rockbatch.report.templates import render
 from rockbatch.results.figures import distributions
+from rockbatch.results.rows import counts_as
 
 MOST_PANELS = 12
 MOST_CURVES = 21

@@ -3,9 +3,8 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.checks.demands import IN_MOTION, IN_MOTION_ERROR
-from rockbatch.checks.suite import OTHER_LAW, creeps
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, creeps
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag

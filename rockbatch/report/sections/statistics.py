@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.checks.suite import counts_as
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
 from rockbatch.results.columns import COLUMNS
+from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import Suite, suites
 
 Row = tuple[Hashable, ...]
@@ -74,7 +74,7 @@ def tables(
     names : mapping
         Texts of the first cells of each row, by its values of ``keys``, which stand under ``heads``. Other runs do not count.
     count : str
-        What counts as one record, one of :data:`rockbatch.checks.rules.COUNTS`.
+        What counts as one record, one of :data:`rockbatch.study.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
     index = pd.MultiIndex.from_tuples(list(names), names=keys)

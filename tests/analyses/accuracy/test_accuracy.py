@@ -15,10 +15,8 @@ from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
 from rockbatch.errors import InputError
-from rockbatch.motions import Motion, pulse
-from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.simulation import run_fixed, scipy_solver
-from rockbatch.simulation.scipy_solver import solve
+from rockbatch.pier import YieldingBase
+from rockbatch.simulation import run_fixed
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -43,12 +41,12 @@ def study_file(tmp_path):
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
-    """The study, the references of its runs, and the table without SciPy."""
+    """The study, the references of its runs, and the table."""
     path = write_study(tmp_path_factory.mktemp("accuracy"), STUDY)
     study = load_study(path)
     references = [reference(run, study.numerics.quiet_s) for run in Plan(study, ground_motions(study))]
     assert None not in references
-    return study, references, measure(study, references, scipy=False)
+    return study, references, measure(study, references)
 
 
 def order(table, method, column):
@@ -80,7 +78,7 @@ def test_the_setting_of_the_study_keeps_its_tolerance(measured):
 def test_a_fixed_number_of_substeps_is_its_own_setting(measured):
     study, references, _ = measured
     fixed = replace(study, numerics=replace(study.numerics, tolerance=None, substeps=4))
-    (row,) = measure(fixed, references[:2], scipy=False).tail(1).to_dict("records")
+    (row,) = measure(fixed, references[:2]).tail(1).to_dict("records")
     assert row["method"] == "study"
     assert row["substeps"] == 4
     assert math.isnan(row["tolerance"])
@@ -101,17 +99,17 @@ def test_references_are_finer_than_what_is_measured_against_them(measured):
 def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
     study, references, _ = measured
     over = [replace(one, outcome=replace(one.outcome, status="overturned")) for one in references[:2]]
-    table = measure(study, [*over, references[2]], scipy=False)
+    table = measure(study, [*over, references[2]])
     assert set(table["status_differs"]) == {2}
     assert (table["error_max"] == table["error_median"]).all()  # of the one that is left
-    assert measure(study, over, scipy=False)["error_max"].isna().all()
+    assert measure(study, over)["error_max"].isna().all()
 
 
 def test_steps_that_are_too_long_to_be_run_have_neither_error_nor_time(measured):
     study, _, _ = measured
     run = Plan(study, ground_motions(study))[1]
     stiff = replace(run, case=replace(run.case, base=YieldingBase(beta=500.0, eta=2.5)))
-    table = measure(study, [reference(stiff, 2.0)], scipy=False).set_index(["method", "substeps"])
+    table = measure(study, [reference(stiff, 2.0)]).set_index(["method", "substeps"])
     assert table.loc[("located", 1), "status_differs"] == 1  # ω_v h = 10
     assert table.loc[("located", 1), ["error_max", "seconds_per_run"]].isna().all()
     assert table.loc[("located", 32), "status_differs"] == 0
@@ -123,41 +121,6 @@ def test_runs_are_spread_over_the_study(measured):
     places = {id(run): place for place, run in enumerate(runs)}
     for most, kept in ((12, list(range(12))), (99, list(range(12))), (5, [0, 3, 6, 8, 11]), (1, [0])):
         assert [places[id(run)] for run in spread(runs, most)] == kept
-
-
-@pytest.mark.parametrize(
-    "base",
-    [
-        YieldingBase(beta=30.0, eta=2.5, epsilon=0.1),
-        YieldingBase(beta=30.0, eta=2.0, epsilon=0.3, spring="epp", kinematics="finite", flight="guided"),
-        ElasticBase(beta=30.0, epsilon=0.2, flight="guided"),
-    ],
-    ids=["bouc-wen", "epp-finite-guided", "elastic-guided"],
-)
-def test_scipys_solver_solves_the_same_equations(base):
-    """SciPy adapts its step over the corners of the ground motion: asked for 1e-9, it comes within 1e-6."""
-    pier = Pier(alpha=0.15, p=1.0)
-    motion = pulse("sine", name="sine", amplitude=0.6 * 9.81, period=0.8, dt=0.02, duration=3.0)
-    ours = run_fixed(pier, base, motion, 64, quiet_s=0.5)
-    status, theta_max = solve(pier, base, motion, "LSODA", 1e-9, quiet_s=0.5)
-    assert ours.impacts > 0
-    assert status == ours.status
-    assert theta_max / pier.alpha == pytest.approx(ours.theta_max / pier.alpha, abs=1e-6)
-
-
-def test_scipys_solver_reports_flight():
-    """Thrown up by 3 g of vertical acceleration, the pier leaves the ground; its rotation then is the largest."""
-    pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.1, flight="stop")
-    sides = [
-        pulse("sine", name="sine", amplitude=share * 9.81, period=0.8, dt=0.02, duration=3.0).horizontal
-        for share in (0.5, 3.0)
-    ]
-    motion = Motion("thrown", 0.02, *sides)
-    ours = run_fixed(pier, base, motion, 64, quiet_s=0.0, wait=False)
-    assert ours.status == "flight"
-    status, theta_max = solve(pier, base, motion, "LSODA", 1e-9, quiet_s=0.0)
-    assert status == "flight"
-    assert theta_max / pier.alpha == pytest.approx(ours.theta_max / pier.alpha, abs=1e-6)
 
 
 class Heard(Listener):
@@ -211,45 +174,12 @@ def test_without_time_the_setting_of_the_study_is_measured_and_nothing_else(meas
     assert table["error_max"][0] <= study.numerics.tolerance
     assert [told for told in heard.said if told.startswith("left out")] == [
         "left out, for want of time: from 1 steps per sample on",
-        "left out, for want of time: SciPy DOP853 from rtol 1e-04 on",
-        "left out, for want of time: SciPy LSODA from rtol 1e-04 on",
     ]
-
-
-def test_a_solver_that_takes_too_long_is_not_asked_for_more(measured, monkeypatch):
-    study, every, _ = measured
-    asked = []
-
-    def solved(pier, base, motion, method, tolerance, quiet_s, seconds):
-        asked.append((method, tolerance))
-        if method == "DOP853" and tolerance < 1e-4:
-            raise scipy_solver.OutOfTimeError
-        return "ok", 0.0
-
-    monkeypatch.setattr(scipy_solver, "solve", solved)
-    heard = Heard()
-    table = measure(study, every, listener=heard)
-    scipy = table[table["method"].str.startswith("SciPy")]
-    assert list(zip(scipy["method"], scipy["tolerance"], strict=True)) == [
-        ("SciPy DOP853", 1e-4), *(("SciPy LSODA", tolerance) for tolerance in (1e-4, 1e-6, 1e-8, 1e-10)),
-    ]  # fmt: skip
-    assert [pair for pair in asked if pair[0] == "DOP853"] == [("DOP853", 1e-4)] * 2 + [("DOP853", 1e-6)]
-    assert "left out, for want of time: SciPy DOP853 from rtol 1e-06 on" in heard.said
-    assert [total for _, total in heard.counts] == [13 * 12, 16]
-    assert heard.counts[0][0] == 13 * 12
-
-
-def test_scipys_solver_stops_in_time():
-    pier, base = Pier(alpha=0.15, p=1.0), ElasticBase(beta=30.0, epsilon=0.2)
-    motion = pulse("sine", name="sine", amplitude=0.6 * 9.81, period=0.8, dt=0.02, duration=3.0)
-    with pytest.raises(scipy_solver.OutOfTimeError):
-        solve(pier, base, motion, "LSODA", 1e-9, seconds=0.0)
 
 
 @pytest.fixture
 def brief(monkeypatch):
-    """One loose tolerance of SciPy's and one pass: the rows are what matters."""
-    monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "SCIPY_TOLERANCES", (1e-3,))
+    """One pass: the rows are what matters."""
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "REPEATS", 1)
 
 
@@ -262,9 +192,8 @@ def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_pa
         rows = list(csv.DictReader(file))
     assert tuple(rows[0]) == COLUMNS
     fixed = [("located", str(k)) for k in SUBSTEPS] + [("not located", str(k)) for k in SUBSTEPS]
-    rest = [("study", ""), ("SciPy DOP853", ""), ("SciPy LSODA", "")]
-    assert [(row["method"], row["substeps"]) for row in rows] == fixed + rest
-    assert [row["runs"] for row in rows] == ["5"] * 13 + ["2"] * 2
+    assert [(row["method"], row["substeps"]) for row in rows] == [*fixed, ("study", "")]
+    assert [row["runs"] for row in rows] == ["5"] * 13
     assert f"{float(rows[0]['error_max']):.1e}" in capsys.readouterr().out
 
     assert ">Histories<" in (out / "report.html").read_text(encoding="utf-8")
@@ -285,13 +214,11 @@ def test_without_results_there_is_a_table_but_no_report(study_file, tmp_path, br
     assert [file.name for file in out.iterdir()] == ["accuracy.csv"]
     with open(out / "accuracy.csv", encoding="utf-8", newline="") as file:
         methods = {row["method"] for row in csv.DictReader(file)}
-    assert methods == {"located", "not located", "study"}  # the run is on the rigid base: nothing for SciPy's solvers
+    assert methods == {"located", "not located", "study"}
 
 
-def test_the_command_leaves_scipy_out_where_it_is_told_to(study_file, tmp_path, brief, capsys):
-    out = tmp_path / "out"
-    assert main(["accuracy", str(study_file), "--out", str(out), "--runs", "3", "--no-scipy"]) == 0
-    assert "SciPy" not in (out / "accuracy.csv").read_text(encoding="utf-8")
+def test_an_earlier_option_is_taken_and_a_time_of_zero_refused(study_file, tmp_path, brief, capsys):
+    assert main(["accuracy", str(study_file), "--out", str(tmp_path), "--runs", "1", "--no-scipy"]) == 0
     with pytest.raises(SystemExit) as ended:
         main(["accuracy", str(study_file), "--seconds", "0"])
     assert ended.value.code == 2
@@ -306,18 +233,8 @@ def test_a_damaged_table_does_not_keep_the_report_from_being_written(study_file,
     assert "Measured on" not in (out / "report.html").read_text(encoding="utf-8")
 
 
-def test_runs_that_never_settle_are_told(study_file, tmp_path, capsys, monkeypatch):
+def test_runs_that_never_settle_are_counted(study_file, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "ACCEPTED", -1.0)
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2
     assert "settles" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-
-
-def test_solvers_that_know_no_dampers_are_asked_for_the_runs_without(tmp_path, capsys, brief):
-    tied = PADS | {"name": "tied", "damper": [{"kind": "friction", "f": 0.1}]}
-    study = write_study(tmp_path, study_text(pulses=[SINE], cases=[tied]))
-    assert main(["accuracy", str(study), "--runs", "1", "--seconds", "2", "--out", str(tmp_path / "out")]) == 0
-    assert "know no dampers and tendons" in capsys.readouterr().err
-    with open(tmp_path / "out" / "accuracy.csv", newline="", encoding="utf-8") as file:
-        methods = {row["method"] for row in csv.DictReader(file)}
-    assert methods == {"located", "not located", "study"}

@@ -124,7 +124,7 @@ def test_every_run_has_the_intensity_of_its_level(tmp_path, fragility, measure):
     assert {polarity for _, polarity, _, _ in seen} == {"+"}  # the other would be their mirror image
 
 
-def test_a_motion_without_intensity_is_told(tmp_path):
+def test_a_motion_without_intensity_is_refused(tmp_path):
     study = load_study(written(tmp_path, STRIPES))
     still = rb.Motion("still", 0.01, np.zeros(10))
     with pytest.raises(InputError, match="still: its horizontal component has PGA = 0"):
@@ -332,7 +332,7 @@ def test_runs_that_flew_or_failed_far_below_their_capacity_do_not_move_the_headl
     assert low < 0.8 * without.fitted.median
     assert high == pytest.approx(without.fitted.median, rel=0.03)
     assert high / low > np.divide(*curve.fitted.median_interval[::-1])
-    assert curve.says_little
+    assert curve.inconclusive
 
 
 def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_path):
@@ -381,7 +381,7 @@ def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided
     assert list(states(half, runs, {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
 
 
-def test_undecided_runs_are_told_first_in_the_table_the_files_and_the_report(tmp_path):
+def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_path):
     """Every second record fails at two of four levels."""
     (curve,), spec, study = made_up(
         tmp_path, STRIPES, lambda m, x: "failed" if m % 2 and x < 0.5 else stands_or_falls(m, x)
@@ -445,7 +445,7 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
         (f"{STRIPES}\nconfidence = 1.0", ["confidence = 1.0: expected a number, 0 or above and below 1"]),
     ],
 )
-def test_mistakes_in_the_settings_are_told_with_their_line(tmp_path, capsys, fragility, words):
+def test_mistakes_in_the_settings_are_reported_with_their_line(tmp_path, capsys, fragility, words):
     path = written(tmp_path, fragility)
     assert main(["fragility", str(path), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
@@ -456,7 +456,7 @@ def test_mistakes_in_the_settings_are_told_with_their_line(tmp_path, capsys, fra
     assert not (tmp_path / "out").exists()
 
 
-def test_a_study_without_the_table_is_told_what_to_write(tmp_path, capsys):
+def test_for_a_study_without_the_table_the_message_says_what_to_write(tmp_path, capsys):
     path = written(tmp_path, STRIPES)
     path.write_text(path.read_text(encoding="utf-8").replace("[fragility]", "[output]\n[other]"), encoding="utf-8")
     text = path.read_text(encoding="utf-8").replace("[other]\n" + STRIPES, "")
@@ -547,7 +547,7 @@ def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):
     assert not (out / "fragility_capacities.csv").exists()
 
 
-def test_what_an_analysis_says_is_told_where_it_was_edited_or_damaged(tmp_path):
+def test_an_edited_or_damaged_analysis_is_reported(tmp_path):
     """Medians stand in fragility.json only: a digit that flipped would be a wrong curve."""
     _, out = page_of(tmp_path, STRIPES)
     path, points_csv = out / "fragility.json", out / "fragility.csv"

@@ -206,13 +206,13 @@ def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve
         ([5, 0, 0], "does not grow with the intensity"),
     ],
 )
-def test_data_without_a_maximum_are_told_in_words(exceeded, words):
+def test_data_without_a_maximum_give_the_reason(exceeded, words):
     found = fit(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
     assert isinstance(found, str)
     assert words in found
 
 
-def test_capacities_that_lie_in_one_bracket_are_told_in_words():
+def test_capacities_in_one_bracket_give_the_reason():
     found = fit(Capacities(np.array([1.0, 0.0]), np.array([1.01, 1.2]), np.ones(2)))
     assert isinstance(found, str)
     assert "no record exceeds the limit at 1, every one at 1.01" in found

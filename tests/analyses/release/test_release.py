@@ -126,7 +126,7 @@ def test_intervals_hold_the_truth_in_many_tests(block, spread, reading):
     assert 0.90 <= share <= (0.98 if spread else 1.0)
 
 
-def test_scatter_of_the_restitution_is_told_from_errors_of_reading():
+def test_scatter_of_the_restitution_is_distinguished_from_errors_of_reading():
     exact = passages(0.9 + 0.02 * np.array([1, -1, 0.5, -0.5, 1.5, -1.5, 0.2, -0.2, 0.8, -0.8]))
     (row,) = rb.release(study_of(lists(exact))).release.to_dict("records")
     assert row["scatter"] == pytest.approx(0.02, rel=0.2)
@@ -175,7 +175,7 @@ def test_damping_of_springs_is_found_again(case):
 
 
 @pytest.mark.parametrize("factor", [1.03, 0.97])
-def test_times_of_another_pier_are_told_from_losses(factor):
+def test_times_of_another_pier_are_distinguished_from_losses(factor):
     """All times longer by 3 %, as of a pier that is larger by 6 %, with errors of reading of 1 ms and 0.2 mrad."""
     random, exact = np.random.default_rng(4), passages([0.9] * IMPACTS)
     measured = Passages(

@@ -13,7 +13,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.sensitivity.analysis import answers, counted_as, tornado, values_of
-from rockbatch.analyses.sensitivity.sampled import Point, Points, Suite, design, indices, low_base_high
+from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design, indices, low_base_high
 from rockbatch.analyses.sensitivity.section import section
 from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity, varied
 from rockbatch.batch.threads import Threads
@@ -162,7 +162,7 @@ def test_the_suite_has_every_motion_turned_and_stripped_as_its_point_says(study)
     spec = read_sensitivity(study)
     points = Points(study, spec)
     motion = Motion("m", 0.01, np.array([0.0, 1.0, 2.0]), vertical=np.array([0.0, 3.0, 4.0]))
-    suite = Suite(study, points, [motion])
+    suite = Design(study, points, [motion])
     runs = suite.runs()
     assert len(runs) == len(points) == (1 + 2 * 5) + 8 * 7 + (1 + 2 * 6) + 8 * 8
     for run, point in zip(runs, points.all, strict=True):
@@ -344,7 +344,7 @@ TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind":
         ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon", "epsilon: zeta takes its place; leave it out"),
     ],
 )
-def test_inputs_of_dampers_and_tendons_that_cannot_be_are_told_at_their_line(tmp_path, uniform, more, line, words):
+def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp_path, uniform, more, line, words):
     path = written(tmp_path, varying(uniform, **more))
     with pytest.raises(InputError) as caught:
         read_sensitivity(load_study(path))
@@ -392,7 +392,7 @@ def test_a_swing_holds_the_answer_of_the_study_itself():
 # The study file and the command
 
 
-def test_every_mistake_is_told_with_its_line(tmp_path):
+def test_every_mistake_is_reported_with_its_line(tmp_path):
     text = STUDY.replace("samples = 8", "samples = 10\nstatistics = 1").replace('= ["+", "-"]', '= ["+"]')
     text = text.replace("mu = [2.0, 4.0]", "mu = [4.0, 2.0]\nkinematics = 1\np = [0.5, 2]")
     with pytest.raises(InputError) as caught:
@@ -430,7 +430,7 @@ def test_every_mistake_is_told_with_its_line(tmp_path):
         (STUDY[STUDY.index("[sensitivity]") :], "", "[sensitivity] is missing"),
     ],
 )
-def test_what_cannot_be_varied_so_is_told(tmp_path, old, new, words):
+def test_inputs_that_cannot_be_varied_so_are_refused(tmp_path, old, new, words):
     assert old in STUDY
     with pytest.raises(InputError) as caught:
         read_sensitivity(load_study(written(tmp_path, STUDY.replace(old, new))))

@@ -159,7 +159,7 @@ def test_other_spectra_are_drawn_over_each_of_their_axes_and_not_over_this_one()
         ),
     ],
 )
-def test_what_does_not_fit_is_told_with_its_line(tmp_path, change, line, words):
+def test_keys_that_do_not_fit_are_reported_with_their_line(tmp_path, change, line, words):
     text = STUDY.replace(*change, 1)
     with pytest.raises(InputError) as caught:
         rb.spectrum(write_study(tmp_path, text))
@@ -183,7 +183,7 @@ def test_bases_given_in_kilonewtons_have_no_place_on_piers_of_many_sizes(tmp_pat
         assert f'case "{name}" has another base for each size; give its ratios: beta, eta, nu instead of' in problem
 
 
-def test_ground_that_does_not_move_is_told():
+def test_still_ground_is_refused():
     still = rb.Motion("still", 0.01, np.zeros(100))
     with pytest.raises(InputError, match="still: PGA/PGV has no value"):
         rb.spectrum(rb.Study.from_toml(STUDY), motions=[still], jobs=1)

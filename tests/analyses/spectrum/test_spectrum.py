@@ -126,7 +126,7 @@ def test_a_base_given_in_kilonewtons_keeps_its_stiffness_on_every_pier(tmp_path)
     assert [case.base.beta * case.pier.p for case in pads] == pytest.approx([math.sqrt(4e6 / 3000)] * len(pads))
 
 
-def test_every_mistake_is_told_with_its_line(tmp_path):
+def test_every_mistake_is_reported_with_its_line(tmp_path):
     text = STUDY.replace("alpha = [0.1, 0.2]", "alpha = [0.1, 0.01, 1.7]").replace("points = 9", "points = 1\npint = 3")
     text += '[[spectrum.map]]\nname = "a"\nshape = "sin"\nfrequency = [5, 1]\namplitude = [1, 2, 3]\ntolerance = 0\n'
     with pytest.raises(InputError) as caught:
@@ -143,7 +143,7 @@ def test_every_mistake_is_told_with_its_line(tmp_path):
         assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), told
 
 
-def test_slendernesses_that_cannot_be_are_told_with_the_case(tmp_path):
+def test_impossible_slendernesses_are_reported_with_the_case(tmp_path):
     with pytest.raises(InputError) as caught:
         read(STUDY.replace("alpha = [0.1, 0.2]", "alpha = [0.1, 0.01, 1.7]"), tmp_path)
     first, second = caught.value.problems
@@ -161,7 +161,7 @@ def test_slendernesses_that_cannot_be_are_told_with_the_case(tmp_path):
         ("[spectrum]\np = [1, 2]", "alpha is missing"),
     ],
 )
-def test_what_is_missing_is_told(tmp_path, lines, words):
+def test_missing_keys_are_reported(tmp_path, lines, words):
     with pytest.raises(InputError, match=words.replace("[", r"\[")):
         read(STUDY.split("[spectrum]")[0] + lines, tmp_path)
 

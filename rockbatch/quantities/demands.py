@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.statistics import Values
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.pier import MOST_ETA, tilt_over_residual
+from rockbatch.pier.bases import RATCHETING
 from rockbatch.pier.restraints import KINDS, what_of
+from rockbatch.quantities.statistics import Values
 
 MOST_DUCTILITY = 100.0
 """Greatest over yield deflection of a support: soils bear some 2 to 10."""
@@ -111,6 +112,10 @@ _OVERTURNS = "is past the edge of overturning"
 
 FORCES = "base_shear_m_s2"
 """A column that every run with forces has."""
+
+OTHER_LAW = "settlement_other_law_m"
+MIRROR_OF = "mirror_of"
+"""Column of the polarity of the run whose mirror image a row is; only where a study has both polarities."""
 
 ROCKING = "theta_rocking_over_alpha"
 """A column that every run with rocking has."""
@@ -279,6 +284,11 @@ def _in_kilonewtons(device: str) -> Demand:
 def has_device(case: Case, device: str) -> bool:
     """Return True if the pier has a device of this kind."""
     return any(what_of(restraint) == device for restraint in _devices(case))
+
+
+def creeps(case: Case) -> bool:
+    """Return True if the springs of a case settle cyclically, so that another law gives its settlement a range."""
+    return case["parameters"].get("spring") in RATCHETING
 
 
 def _devices(case: Case) -> Iterable[Mapping[str, Any]]:

@@ -1,20 +1,22 @@
-"""Design checks on finished results by :mod:`rockbatch.checks`."""
+"""Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockbatch.checks import Rule, Verdict, as_table, judge, load_rules, read_checks
-from rockbatch.checks.choices import implausible
-from rockbatch.checks.reading import Checks
-from rockbatch.checks.suite import with_case
+from rockbatch.checks.judging import judge
 from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.study import Study, load_study
+from rockbatch.study.rule_choices import implausible
+from rockbatch.study.rule_files import Checks, load_rules, read_checks
+from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
 

@@ -4,9 +4,9 @@ import fnmatch
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from rockbatch.checks.demands import DEMANDS, Case
-from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
+from rockbatch.quantities.demands import DEMANDS, Case
+from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 
 LEAST_MM = 1.0

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.errors import InputError
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.study.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.toml.kinds import choice, shown, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
@@ -67,7 +67,7 @@ def read_checks(
     ----------
     file : TomlFile
     unmet : function, optional
-        Returns the choices of a rule that the study lacks, as :func:`rockbatch.checks.choices.unmet` does.
+        Returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does.
     opened : function, optional
         Opens the file that [suite] names, or raises ``InputError``.
     """

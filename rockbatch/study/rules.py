@@ -3,10 +3,10 @@
 import math
 from dataclasses import dataclass
 
-from rockbatch.checks.demands import DEMANDS
-from rockbatch.checks.statistics import STATISTICS
 from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
+from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import (
     Choice,
     KindError,
@@ -60,11 +60,11 @@ class Rule:
     name : str
         What it is called in the table.
     demand : str
-        A key of :data:`rockbatch.checks.demands.DEMANDS`.
+        A key of :data:`rockbatch.quantities.demands.DEMANDS`.
     at_most, at_least : float or None
         The limit, one of the two; ``at_least`` is for properties of the case, such as eta.
     statistic : str
-        A key of :data:`rockbatch.checks.statistics.STATISTICS`; "max" unless given.
+        A key of :data:`rockbatch.quantities.statistics.STATISTICS`; "max" unless given.
     above : float or None
         With "count", what a record has to exceed to count; 0 unless given for events such as flight.
     least : int or None
@@ -88,7 +88,7 @@ class Rule:
         Whether the settlement by the other spring law has to be there: where both were run the worse counts in any case, and with
         this a run that did not go through by the other one is unknown.
     confirm : tuple of str
-        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.choices`).
+        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.study.rule_choices`).
 
     Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
 

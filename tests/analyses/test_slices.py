@@ -1,0 +1,104 @@
+"""An analysis is one folder and one name in a tuple: each is taken away, and another added, in a copy of the package."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from studies import PIER, RIGID, SINE, study_text, write_study
+
+import rockbatch
+from rockbatch.common.analyses import ANALYSES
+
+TOP = Path(rockbatch.__file__).parent
+
+LOOK = """
+import sys
+import rockbatch
+from rockbatch.cli import parser
+from rockbatch.report.page import PARTS
+from rockbatch.study.schema import FILES, schema_of
+print(parser().format_help())
+print(*rockbatch.__all__)
+print(*(part.heading for part in PARTS), sep=" | ")
+for name, sections in FILES.items():
+    print(schema_of(sections, name))
+"""
+"""Prints what users see of analyses: commands, public names, parts of the report, tables of the study."""
+
+
+@pytest.fixture
+def copied(tmp_path):
+    shutil.copytree(TOP, tmp_path / "rockbatch", ignore=shutil.ignore_patterns("__pycache__"))
+    return tmp_path
+
+
+def python(place, *arguments):
+    """What Python prints with the copy; it has to end well."""
+    done = subprocess.run(
+        [sys.executable, *arguments], cwd=place, env=os.environ | {"PYTHONPATH": str(place)}, text=True,
+        capture_output=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def write_tuple(place, names):
+    """Write the one line that lists the analyses."""
+    path = place / "rockbatch" / "common" / "analyses.py"
+    text = path.read_text(encoding="utf-8")
+    line = next(line for line in text.splitlines() if line.startswith("ANALYSES = "))
+    path.write_text(text.replace(line, f"ANALYSES = {tuple(names)!r}"), encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_an_analysis_is_deleted_with_its_folder_and_its_name(copied, name):
+    before = python(copied, "-c", LOOK)
+    assert name in before
+    shutil.rmtree(copied / "rockbatch" / "analyses" / name)
+    write_tuple(copied, [other for other in ANALYSES if other != name])
+    after = python(copied, "-c", LOOK)
+    assert f"\n  {name} " not in after
+    assert f", by `rockbatch {name}`: " not in after
+    assert name not in after.splitlines()[-5].split()
+    assert all(other in after for other in ANALYSES if other != name)
+    study = write_study(copied, study_text(pier=PIER, pulses=[SINE], cases=[RIGID]))
+    assert "rigid" in python(copied, "-m", "rockbatch", "statics", str(study))
+
+
+def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
+    folder = copied / "rockbatch" / "analyses" / "census"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(
+        "from rockbatch.common.analyses import Door, ReportPart\n"
+        'DOOR = Door(help="count cases", example="rockbatch census pier.toml", writes="",\n'
+        '            parts=(ReportPart("Census", "census", "section.section"),), tables=("census",))\n'
+    )
+    (folder / "study.py").write_text(
+        "from rockbatch.toml.kinds import boolean\n"
+        "from rockbatch.toml.section import Key, Section\n"
+        'SECTIONS = (Section(("census",), "A count.", {"all": Key(boolean, "true", "Whether all are counted.")}),)\n'
+    )
+    (folder / "analysis.py").write_text("def census(study):\n    return len(study.cases)\n")
+    (folder / "command.py").write_text(
+        'def main(arguments, study):\n    import rockbatch\n    print(rockbatch.census(study), "cases")\n    return 0\n'
+    )
+    (folder / "section.py").write_text(
+        "from rockbatch.report.markup import tag\ndef section(contents):\n    return tag('p', 'one census')\n"
+    )
+    write_tuple(copied, [*ANALYSES, "census"])
+    text = study_text(pier=PIER, pulses=[SINE], cases=[RIGID], census={"all": True})
+    study = write_study(copied, text)
+    assert python(copied, "-m", "rockbatch", "census", str(study)) == "1 cases\n"
+    seen = python(copied, "-c", LOOK)
+    assert "census" in seen.splitlines()[0] + seen
+    assert " Census" in seen
+    draw = """
+from pathlib import Path
+from rockbatch.report.finished_analysis import Contents
+from rockbatch.report.page import page
+print(page(Contents(Path("."), {"title": "t", "notes": "", "text": "", "sha256": "x", "path": "x"})))
+"""
+    assert "one census" in python(copied, "-c", draw)
