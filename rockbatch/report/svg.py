@@ -327,7 +327,7 @@ def _(mark: Span, box: Box) -> Markup:
 @_draw.register
 def _(mark: Words, box: Box) -> Markup:
     anchor = {-1: "e", 0: "m", 1: ""}[mark.side]
-    x, y = float(box.across(mark.x)) + 5.0 * mark.side, float(box.down(mark.y)) + 3.5
+    x, y = float(box.across(mark.x)) + 5.0 * mark.side, float(box.down(mark.y)) + 3.5 - mark.lift
     return text(x, y, mark.text, class_=" ".join(filter(None, (classes(mark.look), anchor))))
 
 

@@ -36,6 +36,8 @@ QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "ü_g/g")
 SEPARATE = ("separation", "lift-off")
 MOST_DEVICES = 3
 """Most dampers and tendons of a run whose loops are drawn."""
+LOADED = 1e-3
+"""Share of the largest force below which a spring is not loaded: that of Bouc-Wen tends to nothing as its pivot rises."""
 OVER = 1.5
 """Rotation over α beyond which the picture of a pier that overturns ends."""
 
@@ -174,7 +176,8 @@ def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
     forces = [response.z_left, response.z_right] if base.yields else [
         response.history[f"force_{side}"].to_numpy(dtype=np.float64) / pier.gravity for side in sides
     ]  # fmt: skip
-    forces = [np.where(force < 0.0, force, np.nan) for force in forces]
+    least = LOADED * max(float(np.abs(force).max(initial=0.0)) for force in forces)
+    forces = [np.where(force < -least, force, np.nan) for force in forces]
     v = [response.history[f"v_{side}"].to_numpy(dtype=np.float64) / unit for side in sides]
     # As in the paper, the axis ends where the spring unloads: a lifted pivot may be far above
     loaded = np.concatenate([own[~np.isnan(force)] for own, force in zip(v, forces, strict=True)])

@@ -49,7 +49,7 @@ def _of_method(method: str, levels: Sequence[Level]) -> Iterator[Mark]:
         at = np.array([level.time for level, _ in shown]), np.array([error for _, error in shown])
         yield Points(*at, None, [_label(level) for level, _ in shown], look=look, label=words)
     for level, error in shown:
-        yield Words(level.time, error, f"k = {level.substeps:.0f}", side, look=Look("", look.colour))
+        yield Words(level.time, error, f"k = {level.substeps:.0f}", side, 5.0 * side, look=Look("", look.colour))
 
 
 def _label(level: Level) -> str:

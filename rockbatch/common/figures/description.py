@@ -116,12 +116,13 @@ class Span(Mark):
 
 @dataclass(frozen=True, eq=False)
 class Words(Mark):
-    """Text beside a point: to its right with ``side`` 1, to its left with -1, on it with 0."""
+    """Text beside a point: to its right with ``side`` 1, to its left with -1, on it with 0; ``lift`` px above it."""
 
     x: float
     y: float
     text: str
     side: int = 1
+    lift: float = 0.0
     look: Look = field(default=Look(), kw_only=True)
 
 
@@ -204,10 +205,10 @@ def log_spanning(label: str, *arrays: Array, margin: float = 0.15, about: int = 
 
 
 def decades(label: str, values: Iterable[float], about: int = 6) -> Axis:
-    """Return a logarithmic axis over whole powers of ten that holds the values."""
+    """Return a logarithmic axis over whole powers of ten that holds the values, the highest below its end."""
     powers = [math.log10(value) for value in values] or [0.0]
     low = math.floor(min(powers))
-    return Axis(label, 10.0**low, 10.0 ** max(math.ceil(max(powers)), low + 1), log=True, about=about)
+    return Axis(label, 10.0**low, 10.0 ** (math.floor(max(powers)) + 1), log=True, about=about)
 
 
 def written(ticks: Sequence[float]) -> list[str]:

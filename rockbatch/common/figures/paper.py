@@ -245,6 +245,6 @@ def _(mark: Span, axes: Axes) -> Artist:
 @_draw.register
 def _(mark: Words, axes: Axes) -> Artist:
     return axes.annotate(
-        _text(mark.text), (mark.x, mark.y), (4.0 * mark.side, 0.0), textcoords="offset points", fontsize=6.0,
+        _text(mark.text), (mark.x, mark.y), (4.0 * mark.side, 0.7 * mark.lift), textcoords="offset points", fontsize=6.0,
         color=_style(mark.look)["color"], va="center", ha={-1: "right", 0: "center", 1: "left"}[mark.side],
     )  # fmt: skip
