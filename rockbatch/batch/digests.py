@@ -9,7 +9,7 @@ from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
-SHOW = ("commands", "examples", "report", "cli.py", "__init__.py", "__main__.py", "_version.py")
+SHOW = ("commands", "report", "cli.py", "__init__.py", "__main__.py", "_version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
 _TOP = Path(__file__).parents[1]

@@ -7,9 +7,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.commands.example_studies import FIRST
 from rockbatch.commands.values import address, flag, shard, value, whole
 from rockbatch.common.analyses import Door, doors
-from rockbatch.examples import FIRST
 
 if TYPE_CHECKING:
     from rockbatch.study import Study

@@ -6,8 +6,8 @@ import shutil
 import sys
 from pathlib import Path
 
+from rockbatch.commands.example_studies import CHECKS, FIRST, copy, examples
 from rockbatch.commands.streams import show
-from rockbatch.examples import CHECKS, FIRST, copy, examples
 
 
 def init(arguments: argparse.Namespace) -> int:

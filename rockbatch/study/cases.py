@@ -129,22 +129,8 @@ class _Read(NamedTuple):
     grid: Grid
 
 
-class Expanded(NamedTuple):
-    """One pier on one base, and the values of all keys that apply, defaults included."""
-
-    name: str
-    pier: Pier
-    base: Base
-    values: Values
-
-    def case(self, varied: Iterable[str]) -> Case:
-        """Return the case, with those of the varied keys that apply to it."""
-        columns = {name: self.values[name] for name in varied if name in self.values}
-        return Case(self.name, self.pier, self.base, columns)
-
-
-def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Expanded], tuple[str, ...]]:
-    """Return every [[case]] on every pier, and which keys are lists in any of them."""
+def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[list[Case], tuple[str, ...]]:
+    """Return every [[case]] on every pier, its columns all keys that apply, and which keys are lists in any of them."""
     tables = file.tables("case", title="name")
     if file.data.get("case", []) == [] and ("case",) not in file.misspelt:
         file.complain(("case",), '[[case]] is missing; write at least one, for example with base = "rigid"')
@@ -173,7 +159,7 @@ def read_cases(file: TomlFile, piers: Sequence[tuple[Pier, Values]]) -> tuple[li
     return expanded, tuple(varied)
 
 
-def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Expanded:
+def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Case:
     values = {key: setting.value for key, setting in chosen.items()}
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
@@ -200,7 +186,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Exp
         applying.pop("epsilon", None)
     if not base.has_exponent:
         applying.pop("n", None)
-    return Expanded(case.name, pier, base, pier_values | applying)
+    return Case(case.name, pier, base, pier_values | applying)
 
 
 def _base(name: str, values: Mapping[str, Any], pier: Pier) -> Base:

@@ -19,7 +19,7 @@ from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
 from rockbatch.quantities.demands import BROUGHT
-from rockbatch.study.cases import BASE_KEYS, CASE, Expanded, read_cases
+from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
@@ -308,7 +308,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         text=file.text,
         motions=motion_spec,
         numerics=numerics,
-        cases=tuple(case.case(varied) for case in cases),
+        cases=tuple(case.with_columns(varied) for case in cases),
         references=references,
         varied=varied,
         output=output,
@@ -332,7 +332,7 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(cases: Sequence[Expanded], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
+def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
     """Return the choices of a check that the study lacks, and limits that are implausible for its piers."""
     yield from unmet(
         rule,
@@ -365,7 +365,7 @@ def _complain_about_friction(file: TomlFile) -> None:
             )
 
 
-def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]) -> tuple[Reference, ...]:
+def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
     named = [table.data.get("name", table.data.get("base")) for table in file.tables("case", title="name")]
     names = choice(*dict.fromkeys(name for name in named if isinstance(name, str)))
     of_parts = {name: Key(not_negative, "0.0") for name in varied if name not in REFERENCE}
@@ -374,7 +374,7 @@ def _references(file: TomlFile, cases: Sequence[Expanded], varied: Iterable[str]
     for table in file.tables("reference", title="record"):
         read = table.read(keys)
         columns = {name: value for name, value in read.items() if name not in OF_REFERENCE}
-        alike = [case.values for case in cases if case.name == read.get("case")]
+        alike = [case.columns for case in cases if case.name == read.get("case")]
         for name, value in columns.items():
             options = dict.fromkeys(values[name] for values in alike if name in values)
             if alike and value not in options:

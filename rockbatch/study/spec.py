@@ -1,6 +1,7 @@
 """Parts of a study, once checked."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -127,6 +128,10 @@ class Case:
     pier: Pier
     base: Base
     columns: dict[str, float | str]
+
+    def with_columns(self, varied: Iterable[str]) -> "Case":
+        """Return the case with those of its columns that are ``varied``."""
+        return replace(self, columns={name: self.columns[name] for name in varied if name in self.columns})
 
 
 @dataclass(frozen=True)

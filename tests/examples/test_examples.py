@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from rockbatch.cli import main
+from rockbatch.commands.example_studies import FIRST, copy, examples
 from rockbatch.errors import InputError
-from rockbatch.examples import FIRST, copy, examples
 from rockbatch.study import load_study
 from rockbatch.study.rule_files import load_rules
 from rockbatch.study.suite import ground_motions

@@ -49,9 +49,10 @@ class Example:
 
 
 def folder() -> Path:
-    """Return the folder of ``configs`` and ``motions``: in an installed package beside this module, in a checkout at its top."""
-    here = Path(__file__).parent
-    return here if (here / "configs").is_dir() else here.parent.parent
+    """Return the folder of ``configs`` and ``motions``: ``rockbatch/examples`` of an installed package, the top of a checkout."""
+    package = Path(__file__).parents[1]
+    installed = package / "examples"
+    return installed if (installed / "configs").is_dir() else package.parent
 
 
 def examples() -> list[Example]:
