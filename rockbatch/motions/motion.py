@@ -389,10 +389,11 @@ class Motion(Shown):
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the acceleration of its components against time: a matplotlib Figure of this width."""
-        from rockbatch.motions.plots import plot
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.motions.figures import record
 
         components = {"horizontal": self.horizontal} | ({} if self.vertical is None else {"vertical": self.vertical})
-        return plot(components, self.dt, self.label, width_mm)
+        return drawn(record(components, self.dt, self.label), width_mm)
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":

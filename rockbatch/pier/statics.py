@@ -198,10 +198,11 @@ class Statics(Shown):
         })  # fmt: skip
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Return the moment–rotation curve and the periods as a matplotlib figure ``width_mm`` wide."""
-        from rockbatch.pier import plots
+        """Return the moment and the steady acceleration over the rotation, and the periods, as a matplotlib figure."""
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.pier.figures import Sheet, statics
 
-        return plots.statics(self.pier, self.equilibria, self.swings_at, width_mm)
+        return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at)]), width_mm)
 
     def _at_amplitude(self, values: Array) -> float | None:
         """Return the value at :data:`COMPARED`; None if there is none."""

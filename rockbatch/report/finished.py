@@ -1,6 +1,5 @@
 """Finished results as the report reads them: every run with its pier, its foundation and its ground motion."""
 
-import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,21 +7,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rockbatch.checks import Verdict, read_verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.report.finished_analysis import Contents
-from rockbatch.report.labels import Key, Series, counted, digits_that_tell, named, quantity
+from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.results.labelled import by_pga, foundation, groups_of, labelled, pier_of
+from rockbatch.results.labels import Key, Series
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
-from rockbatch.results.rows import NOT_RUN, counts_as, simulated, with_case
+from rockbatch.results.rows import NOT_RUN, counts_as, simulated
 from rockbatch.simulation.response import Response
-from rockbatch.study import PIER_KEYS
 
 if TYPE_CHECKING:
     from pandas.core.groupby import DataFrameGroupBy
@@ -123,7 +121,7 @@ class Finished(Contents):
         """Return the places in ``series`` and ``piers`` of a case with the given varied values."""
         varied = self.info["varied"]
         try:
-            return self.places[foundation(case, columns, varied)], self.pier_places[_pier(columns, varied)]
+            return self.places[foundation(case, columns, varied)], self.pier_places[pier_of(columns, varied)]
         except KeyError:
             raise InputError(
                 f"{self.saved.directory}: there is a history of case {case} that peaks.csv or run.json does not list; the "
@@ -132,7 +130,7 @@ class Finished(Contents):
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
         """Return ``names`` of records in order of peak ground acceleration, the weakest first."""
-        return sorted(names, key=lambda name: (self.records.get(name, {}).get("pga_g", math.inf), name))
+        return by_pga(names, self.info)
 
     @cached_property
     def grouped(self) -> "DataFrameGroupBy":
@@ -140,15 +138,8 @@ class Finished(Contents):
         return self.runs.groupby(["scale", "pier", "with_vertical"])
 
     def groups(self) -> "Iterator[tuple[str, pd.DataFrame]]":
-        """Yield each group of runs, with the words that identify it; one at a time, as together they are a second table."""
-        rows: dict[Any, Any] = self.grouped.indices
-        scaled = self.runs["scale"].nunique() > 1
-        for group in sorted(rows):
-            runs = self.runs.iloc[rows[group]] if len(rows) > 1 else self.runs
-            first = runs.iloc[0]
-            scale = f"motions scaled by {number(float(first['scale']))}" if scaled else ""
-            words = [self.piers[first["pier"]], scale, first["with_vertical"]]
-            yield ", ".join(filter(None, words)), runs
+        """Return each group of runs, with the words that identify it."""
+        return groups_of(self.runs, self.piers)
 
     def case_of(self, run: "pd.Series[Any] | dict[str, Any]") -> str:
         """Describe a run among those of the same record: its foundation, and whatever else identifies it."""
@@ -185,68 +176,11 @@ def read(directory: Path, responses: Sequence[Response] | None = None, saved: Re
     ``InputError`` if the results are missing, damaged or do not belong together.
     """
     saved = saved or open_results(directory)
-    responses = saved.responses if responses is None else responses
-    info, varied = saved.info, saved.info["varied"]
-    grouped: dict[Key, list[dict[str, Any]]] = {}
-    entries: dict[tuple[Key, Key], dict[str, Any]] = {}
-    for case in info["cases"]:
-        key = foundation(case["case"], case["columns"], varied)
-        grouped.setdefault(key, []).append(case)
-        entries[key, _pier(case["columns"], varied)] = case
-    series = named(grouped, [key for key in varied if _of_foundation(key)], _given(info["study"]["text"]))
-    places = {key: place for place, key in enumerate(series)}
-
-    runs = simulated(with_case(saved.peaks)).copy(deep=False)
-    kinds = runs.groupby(["case", *varied], sort=False, dropna=False).ngroup() if len(runs) else runs["scale"]
-    piers: dict[Key, int] = {}
-    facts: dict[int, tuple[int, int, float]] = {}
-    cases: dict[tuple[int, int], dict[str, Any]] = {}
-    unknown = set()
-    for row in as_dicts(runs.assign(kind=kinds).drop_duplicates("kind")):
-        pair = foundation(row["case"], row, varied), _pier(row, varied)
-        if pair not in entries:
-            unknown.add(str(row["case"]))
-            continue
-        place = places[pair[0]], piers.setdefault(pair[1], len(piers))
-        cases[place] = entries[pair]
-        facts[row["kind"]] = *place, float(entries[pair]["pier"]["alpha"])
-    if unknown:
-        raise InputError(
-            f"{saved.directory}: peaks.csv has runs of case {', '.join(sorted(unknown))} that run.json does not list; "
-            "the two files belong to different runs; start `rockbatch run` again"
-        )
-    for column, name in enumerate(("series", "pier", "alpha")):
-        runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
-    pga = {record["record"]: record["pga_g"] for record in info["records"]}
-    runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
-    runs["with_vertical"] = _with_vertical(runs)
-    keys = [key for key in varied if key in PIER_KEYS]
-    digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]
-    words = [", ".join(map(quantity, keys, values, digits)) for values in piers] or [""]
+    own = labelled(saved.peaks, saved.info, saved.directory)
     return Finished(
-        saved.directory, info["study"], saved, runs, list(series.values()), words, places, piers, cases,
-        responses, read_verdicts(saved.directory),
+        saved.directory, saved.info["study"], saved, own.runs, own.series, own.piers, own.places, own.pier_places, own.cases,
+        saved.responses if responses is None else responses, read_verdicts(saved.directory),
     )  # fmt: skip
-
-
-def _given(text: str) -> dict[str, set[str]]:
-    """Return the keys that a study's text gives for each case, by the case's name; empty if the text is no study."""
-    try:
-        cases = tomllib.loads(text).get("case", [])
-        return {str(case.get("name", case.get("base"))): set(case) for case in cases}
-    except (tomllib.TOMLDecodeError, AttributeError, TypeError):
-        return {}
-
-
-def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
-    """Return the rows of ``runs``, each as a mapping from column names to values."""
-    columns = {
-        str(name): column.tolist()
-        if isinstance(column.dtype, np.dtype) and column.dtype.kind in "fib"
-        else column.to_numpy(object, na_value=math.nan).tolist()
-        for name, column in runs.items()
-    }
-    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":
@@ -254,31 +188,3 @@ def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":
     place = runs["status"].map({"overturned": 0, "flight": 1, "failed": 3}).fillna(2)
     keys = place.to_frame("place").assign(theta=-runs["theta_max_over_alpha"])
     return runs.loc[keys.sort_values(["place", "theta"], kind="stable").index[:most]]
-
-
-def foundation(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
-    """Return the key that identifies a foundation; ``columns`` maps varied keys to values."""
-    return (case, *(_plain(columns.get(key)) for key in varied if _of_foundation(key)))
-
-
-def _of_foundation(key: str) -> bool:
-    return key not in PIER_KEYS and key != "vertical"
-
-
-def _pier(columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
-    return tuple(_plain(columns.get(key)) for key in varied if key in PIER_KEYS)
-
-
-def _plain(value: object) -> object:
-    """Return a value as in peaks.csv: ten digits, and "" for a key that run.json omits."""
-    if value is None or value != value:
-        return ""
-    return float(f"{value:.10g}") if isinstance(value, float | int) else value
-
-
-def _with_vertical(runs: "pd.DataFrame") -> "pd.Series[str] | str":
-    """Return words for each run if the study was run with and without the vertical component; else ""."""
-    if "vertical" not in runs or runs["vertical"].nunique() < 2:
-        return ""
-    yes = runs["vertical"].astype(str).str.lower().isin(["true", "1", "1.0", "yes", "with"])
-    return yes.map({True: "with vertical", False: "without vertical"})

@@ -14,8 +14,9 @@ import numpy as np
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.errors import EditedTable, InputError
-from rockbatch.report.labels import counted, quantity
+from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, tag
+from rockbatch.results.labels import quantity
 
 MOST_NAMES = 60
 

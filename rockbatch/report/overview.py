@@ -8,11 +8,12 @@ from rockbatch.checks.responses import PEAKS
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.demands import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.report.drawing import dots
-from rockbatch.report.drawing.panels import said_of
+from rockbatch.report import dots
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, figure, join, tag
 from rockbatch.report.table import THETA
+from rockbatch.results.figures import said_of
+from rockbatch.results.labelled import ceiling
 
 MOST_ROWS = 14
 """Rows that fit on the first screen."""
@@ -98,13 +99,6 @@ def by_foundation(finished: Finished) -> Markup:
     return join(
         figure(dots.draw(rows, words, top, marks), join(CAPTION, order, _all(finished))), tag("details", summary, drawn)
     )
-
-
-def ceiling(runs: "pd.DataFrame") -> float:
-    """Return the top of the axis [θ_max/α] that holds all of ``runs`` that stood."""
-    stood = runs[runs["status"] == "ok"]
-    highest = (stood["theta_max_over_alpha"] + stood["theta_max_error"].fillna(0)).max()
-    return 1.1 * float(highest) if highest > 0 else 1.0
 
 
 def _columns(finished: Finished) -> "list[tuple[str, pd.DataFrame]]":

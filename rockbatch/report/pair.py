@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import quantity
+from rockbatch.results.labels import quantity
 from rockbatch.study import PIER_KEYS
 
 SIDES = ("A", "B")

@@ -19,7 +19,7 @@ from rockbatch.pier import (
     restraint_of,
 )
 from rockbatch.pier.plausibility import wrong_restraints
-from rockbatch.report.labels import plain
+from rockbatch.results.labels import plain
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (

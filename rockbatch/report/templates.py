@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rockbatch._version import __version__
 from rockbatch.common.files import legible
-from rockbatch.report.drawing.svg import markers
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, escape, number
+from rockbatch.report.svg import markers
 from rockbatch.report.table import THETA
 
 if TYPE_CHECKING:

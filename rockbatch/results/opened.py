@@ -17,6 +17,7 @@ from rockbatch.results.columns import in_words
 from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
+from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.shocks import SHOCKS, read_shocks
@@ -65,15 +66,17 @@ class Results(Shown, Saved):
         return read_shocks(path, self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the distribution of θ_max/α over the records, a curve for each case, pier and scale: a matplotlib Figure.
+        """Draw the distribution of θ_max/α over the records, a panel for each pier and scale, a curve for each case: a matplotlib
+        Figure.
 
         A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
         which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
         says so.
         """
-        from rockbatch.results.plots import plot_cdf
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.results.figures import distributions_of_all
 
-        return plot_cdf(self.peaks, self.info["varied"], str(self.info.get("count", "station")), width_mm)
+        return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm)
 
     def _beside(self, name: str, key: str) -> "pd.DataFrame":
         path = self.directory / name
@@ -138,16 +141,22 @@ class Results(Shown, Saved):
         """Draw the peaks of every run, a matplotlib Figure: ``results.plot().savefig("peaks.pdf")``.
 
         With ``axes="records"`` as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the rigid
-        base, a colour for each pier and scale. With ``axes="self-similar"`` a panel for each foundation, and in it each run of
-        every pier, record and scale at PGA/(g tan α) over ω_g/p with ω_g = PGA/PGV, in the colour of its θ_max/α: on these axes
-        slender blocks of all sizes and slendernesses are one (Dimitrakopoulos & DeJong 2012). Raises ``InputError`` for others.
+        base; other piers, scales and directions have open marks, or colours of their own. With ``axes="self-similar"`` a panel
+        for each foundation, and in it each run of every pier, record and scale at PGA/(g tan α) over ω_g/p with
+        ω_g = PGA/PGV, in the tone of its θ_max/α: on these axes slender blocks of all sizes and slendernesses are one
+        (Dimitrakopoulos & DeJong 2012). Raises ``InputError`` for others.
         """
-        from rockbatch.results import plots
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.results.figures import peaks_of_all, self_similar
 
         if axes not in ("records", "self-similar"):
             raise InputError(f'axes = "{axes}": must be "records" or "self-similar"')
-        draw = plots.plot if axes == "records" else plots.plot_self_similar
-        return draw(self.peaks, self.info, width_mm)
+        figure = peaks_of_all if axes == "records" else self_similar
+        return drawn(figure(self._labelled, self.info), width_mm)
+
+    @property
+    def _labelled(self) -> Labelled:
+        return labelled(self.peaks, self.info, self.directory)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

@@ -217,11 +217,12 @@ class Response(Shown):
         )
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw rotation, angular velocity, energy and ground motion against time, impacts as strokes, and the loops of supports,
+        """Draw rotation, angular velocity, energy and ground motion against time, events as strokes, and the loops of supports,
         dampers and tendons: a matplotlib Figure of this width, ``response.plot().savefig("pier.pdf")``."""
-        from rockbatch.simulation.plots import plot
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.simulation.figures import of_one
 
-        return plot((self.history, self.events, self.restraints), self.pier, self.base, self._title, width_mm)
+        return drawn(of_one(self, self._title), width_mm)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

@@ -1,14 +1,11 @@
 """Names of foundations: by what distinguishes them, in the study's own keys and units, with no more digits than necessary."""
 
-import math
-
 import pytest
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.report.drawing import pier as drawing
 from rockbatch.report.finished import read
-from rockbatch.report.labels import digits_that_tell, quantity
+from rockbatch.results.labels import digits_that_tell, quantity
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
@@ -58,37 +55,3 @@ def test_each_case_is_called_in_its_own_way(tmp_path):
     stiff = {"name": "other", "base": "elastic", "stiffness_kN_m": 1.5e6}
     names = labels(tmp_path, soft, stiff)
     assert [label.replace("\u00a0", " ") for label in names] == ["one: β = 30", "other: K = 1.5 × 10⁶ kN/m"]
-
-
-def test_the_pier_is_drawn_to_scale():
-    """Read widths and heights of the outline back from the picture: they are in the ratio of the pier's."""
-    piers = [
-        {"alpha": 0.2, "half_width_m": 4.0, "height_m": 20.0, "top_m": 30.0},
-        {"alpha": 0.1, "half_width_m": 1.0, "height_m": 10.0},
-    ]
-    outlines = []
-    for drawn in drawing.piers(piers, {"rigid", "yielding"}):
-        move = str(drawn).split('<path d="M')[1].split("z")[0]
-        left, rest = move.split(" ", 1)
-        ground, rest = rest.split("V", 1)
-        top, rest = rest.split("H")
-        right = rest.split("V")[0]
-        outlines.append((float(right) - float(left), float(ground) - float(top)))
-    (wide, tall), (narrow, low) = outlines
-    assert wide / tall == pytest.approx(8.0 / 30.0, rel=0.01)
-    assert narrow / low == pytest.approx(2.0 / 20.0, rel=0.02)
-    assert tall / low == pytest.approx(30.0 / 20.0, rel=0.01)
-
-
-def test_no_more_piers_are_drawn_than_can_be_taken_in():
-    pier = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
-    assert len(drawing.piers([pier] * 20, {"rigid"})) == drawing.MOST
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"height_m": 0.0}, {"half_width_m": -1.0}, {"height_m": 1e300}, {"top_m": -3.0}, {"alpha": 0}]
-)
-def test_a_pier_that_cannot_be_is_not_drawn(wrong):
-    pier = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
-    assert drawing.piers([pier | wrong], {"rigid"}) == []
-    assert len(drawing.piers([pier | wrong, pier], {"rigid"})) == 1

@@ -135,9 +135,9 @@ def test_limits_of_rotations_are_drawn_where_they_are_and_named_in_the_legend(tm
     theta = 0.05
     write_verdicts(tmp_path, [drift(theta * PIER.alpha * 2.0 * PIER.height)])
     text = of_the_answer(write_report(tmp_path, []))
-    limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit d0"', text)}
+    limits = {float(x) for x in re.findall(r'<line x1="([\d.]+)%"[^>]*class="limit"', text)}
     (row,) = (strip for strip in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if 'data-of="ERZ-NS"' in strip)
-    dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid d0"', row)[1])
+    dot = float(re.search(r'<line x1="([\d.]+)%"[^>]*class="rigid"', row)[1])
     (limit,) = limits
     assert limit == pytest.approx(1.5 + (dot - 1.5) * theta / 0.1, abs=0.2)
     assert f"limit of bearings, {theta * PIER.alpha * 2 * PIER.height:.4g} m (median) (rigid)" in Page(text).text
@@ -161,10 +161,10 @@ def test_cases_that_differ_by_dampers_differ_in_mark_and_colour(tmp_path):
         damped["parameters"]["restraints"] = [{"kind": kind, "f": 0.02, "nu": 0.1, "yield_m": 0.005, "exponent": 1.0}]
     write_results(tmp_path, cases=cases)
     legend = re.findall(r"<li>(.*?)</li>", of_the_answer(write_report(tmp_path, [])).split('class="key">')[1])
-    drawn = [re.search(r'class="(rigid d0|s\d)"', entry)[1] for entry in legend]
+    drawn = [re.search(r'class="(rigid|s\d)"', entry)[1] for entry in legend]
     shapes = [re.search(r"#m-(\w+)|<line", entry)[0] for entry in legend]
     assert len(set(drawn)) == len(set(shapes)) == 3
-    assert (drawn[0], shapes[0]) == ("rigid d0", "<line")
+    assert (drawn[0], shapes[0]) == ("rigid", "<line")
 
 
 @needs_chromium

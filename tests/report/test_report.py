@@ -16,12 +16,13 @@ from jinja2 import Environment
 from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
+from rockbatch.common.figures.description import COLOURS, SHAPES, marks_of, thin
 from rockbatch.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.report import templates, write_report
-from rockbatch.report.drawing.svg import COLOURS, MARKERS, curve, style_of, thin
 from rockbatch.report.finished import read
 from rockbatch.report.markup import escape, tag
+from rockbatch.report.svg import curve
 from rockbatch.report.templates import document
 
 NASTY = ["<script>alert(1)</script>", "$x_1$ & a&b", '"><img src=x onerror=alert(1)>', r"\frac{1}{2} </title></svg>"]
@@ -110,10 +111,9 @@ def test_values_of_a_list_become_labels_and_foundations_differ_in_shape_and_colo
     text = report(tmp_path, cases=cases, varied=("beta", "eta"))
     head = [cell.replace("\u00a0", " ") for cell in Page(text).tables["figure"][0]]
     assert head[2:] == [f"soil: β = {beta:g}, η = {eta:g}" for beta, eta in grid]
-    styles = [style_of(index) for index in range(len(MARKERS) * COLOURS)]
-    assert len(set(styles)) == len(styles)
-    first = styles[:7]
-    assert len({marker for marker, _ in first}) == len({colour for _, colour in first}) == 7
+    looks = [marks_of(index) for index in range(len(SHAPES) * COLOURS)]
+    assert len(set(looks)) == len(looks)
+    assert len({look.shape for look in looks[:7]}) == len({look.colour for look in looks[:7]}) == 7
 
 
 def test_beta_of_a_given_stiffness_is_not_taken_for_a_constant_of_the_foundation(tmp_path):
@@ -206,7 +206,7 @@ def test_histories_have_a_column_per_foundation_with_the_rigid_base_behind(tmp_p
     assert "thin line: rigid base" in Page(text).text
     for svg in drawn:
         texts = svg_texts(svg)
-        assert {"t [s]", "θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g", "F/Fy", "L", "R"} <= set(texts)
+        assert {"t [s]", "θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g", "F/Fy", "left", "right"} <= set(texts)
         names = [node.get("data-name") for node in svg.iter() if node.get("data-name")]
         own = ["θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
         assert names == [
@@ -268,7 +268,7 @@ def test_a_lone_rigid_response_is_drawn_without_loops(tmp_path):
     text = write_report(tmp_path, [response("ERZ-NS", "rigid", RigidBase())]).read_text(encoding="utf-8")
     drawn = next(svg for svg in figures(text) if "readings" in svg.attrib["class"])
     assert "θ/α" in svg_texts(drawn)
-    assert "L" not in svg_texts(drawn)
+    assert "left" not in svg_texts(drawn)
 
 
 def test_loops_of_devices_are_in_kn_within_their_column_and_columns_line_up(tmp_path):

@@ -11,9 +11,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.cli import main
 from rockbatch.report import write_report
-from rockbatch.report.drawing.history import QUANTITIES, History
-from rockbatch.report.markup import Markup
-from rockbatch.report.sections.histories import picture
+from rockbatch.simulation.figures import QUANTITIES, History, history
 
 STUDY = study_text(
     title="Every picture",
@@ -138,18 +136,8 @@ def test_a_pier_that_overturns_leaves_the_picture_and_does_not_flatten_how_it_ro
     theta = np.where(t < 10.0, 0.4 * np.sin(t), 0.4 * np.sin(10.0) - np.expm1(t - 10.0))
     none = np.array([])
     fell = History(
-        True,
-        "overturned",
-        [(t, theta)] * len(QUANTITIES),
-        none,
-        none,
-        none,
-        (20.0, 1e4),
-        (20.0, theta[-1]),
-        0.0,
-        Markup(""),
-    )
-    drawn = picture(fell, None, [], "record")
-    ranges = [[float(end) for end in limits.split()] for limits in re.findall(r'data-y="([^"]*)"', drawn)]
-    assert len(ranges) == len(QUANTITIES)
-    assert all(-2.0 < low < -0.4 < 0.4 < high < 2.0 for low, high in ranges)
+        True, "overturned", [(t, theta)] * len(QUANTITIES), none, none, none, (20.0, 1e4), (20.0, theta[-1]), 0.0
+    )  # fmt: skip
+    scales = [panel.y for panel in history(fell, None, [fell], "record").panels]
+    assert len(scales) == len(QUANTITIES)
+    assert all(-2.0 < scale.low < -0.4 < 0.4 < scale.high < 2.0 for scale in scales)

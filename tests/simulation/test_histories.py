@@ -5,6 +5,8 @@ import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.common.figures.description import Rule, Words
+from rockbatch.simulation.figures import of_one
 
 PIER = rb.Pier(0.2, 1.0)
 PULSE = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=6.0)
@@ -85,35 +87,42 @@ def test_an_impossible_pier_is_refused_with_the_limit():
     assert len(error.value.problems) == 3
 
 
-def test_a_plot_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):
-    figure = response.plot()
-    axes = {ax.get_ylabel(): ax for ax in figure.axes}
-    assert list(axes)[:4] == [r"$\theta/\alpha$", r"$\dot\theta/(\alpha p)$", "energy [J/kg]", r"$\ddot u_g/g$"]
-    t, rotation = figure.axes[0].lines[0].get_data()
-    assert (t == response.t).all()
-    assert rotation == pytest.approx(response.theta / PIER.alpha)
-    assert len(figure.axes[0].lines) == 1 + (response.events["kind"] == "impact").sum()
-    loops = figure.axes[4:]
+def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):
+    panels = of_one(response, "title").panels
+    assert [panel.y.plain for panel in panels[:4]] == ["θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
+    rotation, *events = panels[0].marks
+    expected = response.theta / PIER.alpha
+    assert (rotation.y.min(), rotation.y.max()) == (expected.min(), expected.max())
+    assert np.interp(rotation.x, response.t, expected) == pytest.approx(rotation.y)
+    strokes = {mark.label: len(mark.at) for mark in events if isinstance(mark, Rule)}
+    assert strokes.get("impact", 0) == (response.events["kind"] == "impact").sum()
+    assert f"{np.abs(expected).max():.4f}" in [mark.text for mark in events if isinstance(mark, Words)]
+    loops = panels[4:]
     assert len(loops) == (0 if isinstance(response.base, rb.RigidBase) else 2)
-    for ax in loops:
-        assert np.nanmax(ax.lines[0].get_ydata()) < 0
-        least = [line.get_ydata()[0] for line in ax.lines if line.get_label() == "$-F_y$"]
-        assert least == ([-0.5 * response.base.eta] if isinstance(response.base, rb.YieldingBase) else [])
-    figure.savefig(tmp_path / "response.png")
+    for loop in loops:
+        line, *limit = loop.marks
+        assert np.nanmax(line.y) < 0.0
+        assert [mark.at.tolist() for mark in limit] == ([[-1.0]] if isinstance(response.base, rb.YieldingBase) else [])
+    response.plot().savefig(tmp_path / "response.png")
     assert (tmp_path / "response.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("width", [160.0, 88.0])
-def test_a_plot_shows_the_loop_of_every_damper_and_tendon(width):
+def test_the_figure_shows_the_loop_of_every_damper_and_tendon(width):
     devices = (rb.Damper("hysteretic", f=0.05, yield_m=0.005), rb.Tendon(psi=0.2, lam=0.3))
     response = rb.simulate(PIER, rb.RigidBase(restraints=devices), PULSE)
-    figure = response.plot(width)
-    loops = {axes.get_title(): axes.lines[0].get_data() for axes in figure.axes[4:]}
-    assert list(loops) == ["damper 1 left", "damper 1 right", "tendon 1"]
-    elongation, force = loops["tendon 1"]
-    assert elongation == pytest.approx(1000.0 * response.restraints["tendon 1 elongation"])
-    assert force == pytest.approx(response.restraints["tendon 1 force"] / PIER.gravity)
-    assert figure.get_figwidth() == pytest.approx(width / 25.4)
+    loops = {panel.caption: panel.marks for panel in of_one(response, "title").panels[4:]}
+    assert {name: [mark.name for mark in marks] for name, marks in loops.items()} == {
+        "damper 1": ["F/(M g) right", "F/(M g) left"], "tendon 1": ["F/(M g)"],
+    }  # fmt: skip
+    (tendon,) = loops["tendon 1"]
+    rows = np.isin(1000.0 * response.restraints["tendon 1 elongation"].to_numpy(), tendon.x)
+    assert rows.sum() >= len(tendon.x) > 100
+    force = response.restraints["tendon 1 force"].to_numpy() / PIER.gravity
+    assert (tendon.y.min(), tendon.y.max()) == pytest.approx((force.min(), force.max()), rel=1e-3)
+    drawn = response.plot(width)
+    drawn.draw_without_rendering()
+    assert drawn.get_figwidth() == pytest.approx(width / 25.4)
 
 
 STUDY = study_text(

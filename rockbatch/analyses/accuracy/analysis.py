@@ -45,10 +45,12 @@ class Accuracy(Analysis):
     records: tuple[str, ...]
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the error that 95 % of the runs stay below, over the time of a run: a matplotlib Figure of this width."""
-        from rockbatch.analyses.accuracy import plots
+        """Draw the largest error, that of 95 % of the runs and the median over the time of a run: a matplotlib Figure."""
+        from rockbatch.analyses.accuracy.figures import error_and_time
+        from rockbatch.analyses.accuracy.levels import of_table
+        from rockbatch.common.figures.paper import drawn
 
-        return plots.accuracy(self.accuracy, width_mm)
+        return drawn(error_and_time(of_table(self.accuracy)), width_mm)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write ``accuracy.csv``, and the report again where the folder holds results of this very study.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from rockbatch.common.files import opened_text
+from rockbatch.common.lazy import pd
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,13 @@ def read(path: Path, study: str) -> list[Level]:
 
 def _number(text: str) -> float | None:
     return float(text) if text else None
+
+
+def of_table(table: "pd.DataFrame") -> list[Level]:
+    """Return the levels of the table of which ``accuracy.csv`` is made."""
+    numbers = table[[field.name for field in NUMBERS]].astype(float)
+    rows = zip(table["method"], table["machine"], numbers.to_numpy().tolist(), strict=True)
+    return [Level(method, machine, *(None if x != x else x for x in row)) for method, machine, row in rows]
 
 
 def chosen(levels: Sequence[Level]) -> Level | None:

@@ -1,9 +1,10 @@
 """Error against time in the report."""
 
-from rockbatch.analyses.accuracy.drawing import draw
+from rockbatch.analyses.accuracy.figures import error_and_time
 from rockbatch.analyses.accuracy.levels import chosen, read
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.markup import Markup
+from rockbatch.report.svg import drawn
 from rockbatch.report.table import Head, listed
 from rockbatch.report.templates import render
 
@@ -29,7 +30,7 @@ def section(contents: Contents) -> Markup:
     if not levels:
         return Markup("")
     return render(
-        "analyses/accuracy/section.html", levels=levels, own=chosen(levels), picture=draw(levels),
+        "analyses/accuracy/section.html", levels=levels, own=chosen(levels), picture=drawn(error_and_time(levels)),
         last_change=max((level.reference_change or 0.0 for level in levels), default=0),
         table=listed(HEADS, [vars(level) | {"milliseconds": level.milliseconds} for level in levels]),
     )  # fmt: skip

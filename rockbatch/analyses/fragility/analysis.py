@@ -79,9 +79,10 @@ class Fragility(Analysis):
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the share of records that exceed each limit, and the fitted curves: a matplotlib Figure of this width."""
-        from rockbatch.analyses.fragility import plots
+        from rockbatch.analyses.fragility.figures import curves
+        from rockbatch.common.figures.paper import drawn
 
-        return plots.fragility(self.fragility, self.curves, width_mm)
+        return drawn(curves(self.info), width_mm)
 
     @checked
     def risk(

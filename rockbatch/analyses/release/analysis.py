@@ -78,9 +78,10 @@ class Release(Analysis):
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the computed rotation of each case, and the measured impacts and amplitudes on it: a matplotlib Figure."""
-        from rockbatch.analyses.release import plots
+        from rockbatch.analyses.release.figures import rotations
+        from rockbatch.common.figures.paper import drawn
 
-        return plots.release(self.release, self.release_impacts, self.release_history, width_mm)
+        return drawn(rotations(self.release_impacts, self.release_history, self.study.varied), width_mm)
 
 
 @checked

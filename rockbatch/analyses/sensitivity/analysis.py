@@ -60,9 +60,10 @@ class Sensitivity(Analysis):
 
     def plot(self, width_mm: float = 160.0) -> "Figure":
         """Draw the answer over the range of each input, the greatest swing on top, and Sobol's indices: a matplotlib Figure."""
-        from rockbatch.analyses.sensitivity import plots
+        from rockbatch.analyses.sensitivity.figures import bars
+        from rockbatch.common.figures.paper import drawn
 
-        return plots.sensitivity(self.sensitivity, self.sobol, width_mm)
+        return drawn(bars(self.sensitivity, self.sobol, self.study.varied), width_mm)
 
 
 @checked

@@ -61,15 +61,19 @@ class Spectrum(Analysis):
         ``axis`` is "two_pi_over_p_s", which it is unless given, "p" or "size_m"; a self-similar spectrum has "omega_g_over_p"
         alone, over which all its slendernesses share a panel. Raises ``InputError`` for another.
         """
-        from rockbatch.analyses.spectrum import plots
+        from rockbatch.analyses.spectrum.figures import maps, spectra
+        from rockbatch.common.figures.description import Figure as Description
+        from rockbatch.common.figures.paper import drawn
 
         self_similar = self.spectra is not None and self.spectra.axis == SELF_SIMILAR
         axes = (SELF_SIMILAR,) if self_similar else tuple(name for name in AXES if name != SELF_SIMILAR)
         if axis is not None and axis not in axes:
             remedy = f"; for {SELF_SIMILAR} write it as the range in [spectrum]" if axis == SELF_SIMILAR else ""
             raise InputError(f'axis = "{axis}": must be {" or ".join(axes)} in this spectrum{remedy}')
-        tables = (self.spectrum, self.spectrum_suite, self.overturning_map)
-        return plots.spectrum(*tables, axis or axes[0], width_mm)
+        of_suite, of_maps = self.spectrum_suite, self.overturning_map
+        figures = [] if of_suite is None else [spectra(of_suite, self.spectrum, self.info, axis or axes[0])]
+        figures += [] if of_maps is None else [maps(of_maps, self.info)]
+        return drawn(Description([panel for figure in figures for panel in figure.panels], ""), width_mm)
 
 
 @checked

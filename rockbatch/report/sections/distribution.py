@@ -2,12 +2,13 @@
 
 from itertools import islice
 
-from rockbatch.report.drawing import distribution
 from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.overview import worst_first
 from rockbatch.report.sections.statistics import RECORDS
+from rockbatch.report.svg import drawn
 from rockbatch.report.templates import render
+from rockbatch.results.figures import distributions
 from rockbatch.results.rows import counts_as
 
 MOST_PANELS = 12
@@ -26,11 +27,11 @@ def section(finished: Finished) -> Markup:
     if finished.runs.empty:
         return Markup("")
     picture, places = Markup(""), worst_first(finished.runs, "series")[::-1]
-    drawn = places if len(places) <= MOST_CURVES else places[:BEST]
+    chosen = places if len(places) <= MOST_CURVES else places[:BEST]
     groups = islice(finished.groups(), MOST_PANELS)
-    shown = [(words, runs.loc[runs["series"].isin(drawn), SHOWN]) for words, runs in groups]
+    shown = [(words, runs.loc[runs["series"].isin(chosen), SHOWN]) for words, runs in groups]
     if counts_as(finished.runs, finished.count)[0].nunique() >= LEAST_RECORDS:
-        picture = distribution.draw(shown, finished.series, finished.count)
+        picture = drawn(distributions(shown, finished.series, finished.count))
     return render(
         "report/sections/distribution.html", picture=picture, records=RECORDS[finished.count], shown=len(shown),
         groups=finished.grouped.ngroups, foundations=len(places), best=BEST if len(places) > MOST_CURVES else None,

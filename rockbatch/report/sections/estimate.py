@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.files import read_table
-from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.table import THETA_FORMAT, Head, alarm, table
 from rockbatch.report.templates import render
 from rockbatch.results.estimate import DAMPING, ESTIMATE, START
+from rockbatch.results.labelled import as_dicts
 
 Run = Mapping[str, Any]
 METHODS = {"priestley": "Priestley et al. (1978)", "fema_356": "FEMA 356"}

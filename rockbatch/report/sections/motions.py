@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.report.drawing import response_spectra
-from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.motions.figures import drawable, response_spectra
+from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup, figure, join, tag
+from rockbatch.report.svg import drawn
 from rockbatch.report.table import MOST_ROWS, Head, listed, table
+from rockbatch.results.labelled import as_dicts
 
 PULSE_LIKE = (
     "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
@@ -49,7 +51,7 @@ def section(finished: Finished) -> Markup:
     if not finished.info["records"]:
         return Markup("")
     caption = "before the study's scale."
-    drawn = Markup("") if "target" in finished.info else spectra(finished, caption)
+    picture = Markup("") if "target" in finished.info else spectra(finished, caption)
     records = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
     name = Head("record", value=lambda record: finished.shown(record["record"]))
     scaled = any(record.get("factor", 1.0) != 1.0 for record in records)
@@ -63,7 +65,7 @@ def section(finished: Finished) -> Markup:
         Head("what was done", value=_processing),
     ]
     return join(
-        drawn, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
+        picture, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
         tag("h3", "Where they come from, and what was done to them"), listed(sources, records, prose=True, name="Sources"),
     )  # fmt: skip
 
@@ -71,11 +73,11 @@ def section(finished: Finished) -> Markup:
 def spectra(finished: Finished, caption: str, fitted: tuple[float, float] | None = None) -> Markup:
     """Draw the response spectra; empty if run.json has none that fit its records, as for very large suites."""
     records, shown = finished.info["records"], finished.info.get("spectra")
-    if not shown or len(shown["sa_g"]) != len(records) or not response_spectra.drawable(shown):
+    if not shown or len(shown["sa_g"]) != len(records) or not drawable(shown):
         return Markup("")
-    drawn = response_spectra.draw(shown, [finished.label(record["record"]) for record in records], fitted)
+    described = response_spectra(shown, [finished.label(record["record"]) for record in records], fitted)
     lead = f"Pseudo-spectral accelerations of the horizontal components, {100 * shown['damping']:g} % damped, "
-    return figure(drawn, lead, caption)
+    return figure(drawn(described), lead, caption)
 
 
 def _path(source: str | None) -> object:
@@ -96,14 +98,14 @@ def unusable(finished: Finished) -> Markup:
     ]
     rows += [[]] * (len(failed) - most)  # not shown
     heads = [Head("record"), Head("case"), Head("file"), Head("why")]
-    drawn = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
+    shown = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
     left_out = finished.info.get("left_out")
     if not left_out:
-        return drawn
+        return shown
     heads = [Head("record", value="name"), Head("file", value="source"), Head("why", value="reason")]
     named = [file for file in left_out if file.get("named")]
     others = [file for file in left_out if not file.get("named")]
     for title, files in (("Left out by name", named), ("Left out", others)):
         if files:
-            drawn = join(drawn, tag("h3", title), listed(heads, files, prose=True, name=title))
-    return drawn
+            shown = join(shown, tag("h3", title), listed(heads, files, prose=True, name=title))
+    return shown

@@ -5,12 +5,14 @@ from collections.abc import Sequence
 from itertools import islice
 
 from rockbatch.common.lazy import pd
-from rockbatch.report.drawing.panels import draw
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.markup import Markup, figure, join, tag
-from rockbatch.report.overview import by_foundation, ceiling
+from rockbatch.report.overview import by_foundation
 from rockbatch.report.sections.peaks import at_a_glance
+from rockbatch.report.svg import drawn
 from rockbatch.report.table import THETA
+from rockbatch.results.figures import peaks
+from rockbatch.results.labelled import ceiling
 from rockbatch.results.suite_statistics import NO_PEAK, worst_records
 from rockbatch.simulation.outcome import LEANS
 
@@ -38,7 +40,7 @@ def section(finished: Finished) -> Markup:
     ]  # fmt: skip
     if finished.grouped["series"].nunique().max() > MOST_SERIES:
         return by_foundation(finished)
-    drawn = figures(finished, caption)
+    pictures = figures(finished, caption)
     stood = runs[runs["status"] == "ok"]
     marks = {
         "f": ("both pivots left the ground on the way; the pier was guided down.", stood["flight_s"].notna()),
@@ -50,7 +52,7 @@ def section(finished: Finished) -> Markup:
     legend = (
         tag("p", tag("sup", mark), " ", words, class_="legend") for mark, (words, mask) in marks.items() if mask.any()
     )
-    return join(drawn, *legend)
+    return join(pictures, *legend)
 
 
 def chosen(finished: Finished, runs: "pd.DataFrame", figures: int = 1) -> list[str]:
@@ -99,11 +101,20 @@ def figures(finished: Finished, caption: Sequence[object], *, side: str = "polar
             f" Shown are the {len(runs):,} worst of {all_of_them:,} runs." if len(runs) < all_of_them else
             f" Shown are the {len(records):,} records with the worst runs of {every:,}." if len(records) < every else "",
         ]  # fmt: skip
-        drawn = draw(finished, runs[~runs["record"].isin(quiet)], records, top, side)
-        shown.append(figure(drawn, *parts))
+        captions = {name: _captions(finished, name, runs) for name in records}
+        described = peaks(runs.assign(side=runs[side]), finished.series, captions, top)
+        shown.append(figure(drawn(described), *parts))
         shown.append(
             at_a_glance(finished, runs, finished.by_pga([*records, *quiet])) if side == "polarity" else Markup("")
         )
     if groups > MOST_FIGURES:
         shown.append(tag("p", f"The first {MOST_FIGURES} of {groups} combinations of pier and scale are shown."))
     return join(*shown)
+
+
+def _captions(finished: Finished, record: str, runs: "pd.DataFrame") -> tuple[str, str]:
+    """Return the caption of a record's panel, and its name in tables and peak ground acceleration."""
+    pga = float(runs.loc[runs["record"] == record, "pga"].iloc[0])
+    label = finished.label(record)
+    parts = ("" if label == record else record, f"PGA = {pga:.3f} g" if math.isfinite(pga) else "")
+    return label, ", ".join(filter(None, parts))

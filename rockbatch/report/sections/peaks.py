@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.demands import IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, creeps
-from rockbatch.report.finished import Finished, as_dicts, worst_first
+from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
 from rockbatch.report.templates import render
 from rockbatch.results.columns import COLUMNS, PEAKS, on_page
+from rockbatch.results.labelled import as_dicts
 from rockbatch.simulation.outcome import LINEARISED
 
 if TYPE_CHECKING:

@@ -4,11 +4,12 @@ import math
 from fnmatch import fnmatchcase
 from typing import Any
 
-from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.finished import Finished
 from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.sections.peaks import outcome
 from rockbatch.report.table import THETA, THETA_FORMAT, Head, table
+from rockbatch.results.labelled import as_dicts
 from rockbatch.results.suite_statistics import NO_PEAK
 
 

@@ -4,10 +4,11 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from rockbatch.report.finished import Finished, as_dicts
+from rockbatch.report.finished import Finished
 from rockbatch.report.markup import Markup
 from rockbatch.report.table import THETA, THETA_FORMAT, Head, alarm, sub, table
 from rockbatch.report.templates import render
+from rockbatch.results.labelled import as_dicts
 from rockbatch.results.shocks import MEANING, SHOCKS, read_shocks
 
 AT_REST = 0.001

@@ -3,13 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rockbatch.pier.figures import Sheet, statics
 from rockbatch.pier.statics import FACTS, MOST_FLEXURE, Statics, flexure, sheet_of
-from rockbatch.report.drawing import statics as drawing
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, paragraphs, tag
 from rockbatch.report.structure import base_of, in_words, pier_of
+from rockbatch.report.svg import drawn
 from rockbatch.report.table import Head, alarm, table
+from rockbatch.results.labels import quantity
 
 MOST_CASES, ABREAST = 16, 8
 """Most cases that have a sheet, since each takes some milliseconds, and how many stand beside each other."""
@@ -44,7 +45,11 @@ def section(finished: Finished) -> Markup:
     return join(
         paragraphs(*map(alarm, soft)),
         *tables,
-        tag("figure", drawing.draw(sheets), class_="whole"),
+        tag(
+            "figure",
+            drawn(statics([Sheet(name, one.pier, one.equilibria, one.swings_at) for name, one in sheets])),
+            class_="whole",
+        ),
         tag("p", LEGEND, class_="legend"),
         paragraphs(f"The first {MOST_CASES} cases are shown; `rockbatch statics` shows all." if omitted > 0 else ""),
     )

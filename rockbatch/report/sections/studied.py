@@ -4,13 +4,15 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.report.drawing import pier as drawing
+from rockbatch.pier.figures import devices, sketches
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import plain, symbol
+from rockbatch.report.labels import symbol
 from rockbatch.report.markup import Markup, join
 from rockbatch.report.structure import pier_of, restraints_of
+from rockbatch.report.svg import sketch
 from rockbatch.report.table import Head, sub, table
 from rockbatch.report.templates import render
+from rockbatch.results.labels import plain
 from rockbatch.study import PIER_KEYS
 
 GIVEN = {
@@ -60,14 +62,14 @@ def _drawn(finished: Finished) -> list[Markup]:
     shown: dict[tuple[object, ...], tuple[dict[str, Any], list[str]]] = {}
     for case in finished.info["cases"]:
         pier = pier_of(case)
-        places = drawing.devices(pier, restraints_of(case)) if pier else ()
+        places = devices(pier, restraints_of(case)) if pier else ()
         deck = {"deck_m": pier.deck} if has_deck and pier else {}
         key = case["pier"]["alpha"], case["pier"]["p"], places
         names = shown.setdefault(key, (case["pier"] | deck | {"devices": places}, []))[1]
         if case["case"] not in names:
             names.append(str(case["case"]))
     piers = [pier | {"name": ", ".join(names) if len(shown) > 1 else ""} for pier, names in shown.values()]
-    return drawing.piers(piers, {case["base"] for case in finished.info["cases"]})
+    return [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
 
 
 def _numbers_of(pier: Mapping[str, Any]) -> list[str]:

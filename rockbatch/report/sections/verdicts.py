@@ -10,9 +10,9 @@ from rockbatch.checks.coverage import CaseRuns, stations_of
 from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.report.finished import Finished
-from rockbatch.report.labels import quantity
 from rockbatch.report.markup import Markup, join, number, paragraphs, tag
 from rockbatch.report.table import Head, table
+from rockbatch.results.labels import quantity
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}

@@ -12,11 +12,13 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
 from rockbatch.analyses.fragility.curves import assess
+from rockbatch.analyses.fragility.figures import curves
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import capacities, points
 from rockbatch.analyses.fragility.windows import SAMPLES, samples, windows
+from rockbatch.common.figures.description import Line
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -202,5 +204,5 @@ def test_whatever_the_number_of_threads_the_shares_are_the_same_and_python_draws
     for name in ("fragility", "fragility_runs", "fragility_capacities"):
         files = [(tmp_path / f"out {jobs}" / f"{name}.csv").read_bytes() for jobs in (1, 2)]
         assert files[0] == files[1]
-    drawn = [line.get_label() for axes in one.plot().axes for line in axes.lines]
-    assert ("rigid, by shares" in drawn) == isinstance(two.curves[0].windows.fitted, Lognormal)
+    of_shares = [mark for panel in curves(one.info).panels for mark in panel.marks if mark.label == "rigid, by shares"]
+    assert any(isinstance(mark, Line) for mark in of_shares) == isinstance(two.curves[0].windows.fitted, Lognormal)

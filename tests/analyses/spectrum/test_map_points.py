@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import rockbatch as rb
-from rockbatch.analyses.spectrum.map_drawing import strips
+from rockbatch.analyses.spectrum.map_regions import strips
 from rockbatch.analyses.spectrum.overturning_map import SAMPLES, Maps, columns, ending
 from rockbatch.analyses.spectrum.study import MapSpec
 from rockbatch.batch.execution import row_of

@@ -10,9 +10,12 @@ from slender_block import end_of_pulse
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.spectrum.figures import spectra
 from rockbatch.cli import main
+from rockbatch.common.figures.description import Points
 from rockbatch.errors import InputError
-from rockbatch.results.plots import plot_self_similar
+from rockbatch.results.figures import self_similar
+from rockbatch.results.labelled import labelled
 
 AXES = {"omega_g_over_p": [3.0, 6.0], "points": 4, "pga_over_g_tan_alpha": [1.5, 2.5]}
 E = 0.9
@@ -115,10 +118,10 @@ def test_every_run_has_the_intensity_and_frequency_of_its_point(tmp_path, capsys
 
 def test_the_figure_has_a_panel_for_each_intensity_and_a_median_for_each_slenderness():
     result = rb.spectrum(rb.Study.from_toml(STUDY), jobs=1)
-    panels = [axes for axes in result.plot().axes if axes.get_visible()]
+    panels = spectra(result.spectrum_suite, result.spectrum, result.info).panels
     assert len(panels) == 2
-    labels = set(panels[0].get_legend_handles_labels()[1])
-    assert labels == {"each record", r"median, $\alpha$ = 0.1", r"median, $\alpha$ = 0.2"}
+    labels = {mark.label.replace("\u00a0", " ") for mark in panels[0].marks if mark.label}
+    assert labels == {"each record", "α = 0.1 rad, median", "α = 0.2 rad, median"}
     with pytest.raises(InputError, match="must be omega_g_over_p in this spectrum"):
         result.plot(axis="p")
 
@@ -196,14 +199,13 @@ def test_peaks_are_drawn_where_their_intensity_and_frequency_are(tmp_path):
     )
     rb.run(rb.Study.from_toml(text), out=tmp_path / "out", jobs=1)
     results = rb.open_results(tmp_path / "out")
-    drawn = results.plot(axes="self-similar")
-    rigid = drawn.axes[0]
-    assert rigid.get_title() == "rigid"
-    shown = np.vstack(
-        [points.get_offsets() for points in rigid.collections] + [line.get_xydata() for line in rigid.lines[1:]]
-    )
-    own = results.intensity[results.intensity["case"] == "rigid"]
-    a, v = own["pga_over_g_tan_alpha"], own["p_pgv_over_g_tan_alpha"]
+    results.plot(axes="self-similar").draw_without_rendering()
+    own = labelled(results.peaks, results.info, results.directory)
+    rigid = self_similar(own, results.info).panels[0]
+    assert rigid.caption == "rigid"
+    shown = np.vstack([np.column_stack([mark.x, mark.y]) for mark in rigid.marks if isinstance(mark, Points)])
+    rows = results.intensity[results.intensity["case"] == "rigid"]
+    a, v = rows["pga_over_g_tan_alpha"], rows["p_pgv_over_g_tan_alpha"]
     expected = np.column_stack([a / v, a])
     assert len(shown) == len(expected) == 4
     np.testing.assert_allclose(np.sort(shown, axis=0), np.sort(expected, axis=0), rtol=1e-6)
@@ -213,4 +215,5 @@ def test_peaks_are_drawn_where_their_intensity_and_frequency_are(tmp_path):
         record | {"pgv_m_s": record["pgv_m_s"] * (1.0 + i * 2.0**-52)}
         for i, record in enumerate(results.info["records"])
     ]
-    plot_self_similar(results.peaks, results.info | {"records": records}, 160.0)  # not narrower than rounding
+    narrow = self_similar(own, results.info | {"records": records}).panels[0].x  # not narrower than rounding
+    assert narrow.high > 1.1 * narrow.low

@@ -1,30 +1,20 @@
-"""Overturning maps as pictures: regions over the frequency and amplitude of a pulse, drawn as they were computed.
+"""Regions of overturning maps over the frequency and amplitude of a pulse, as they were computed.
 
 Straight lines join the boundaries of neighbouring columns with the same outcomes in the same order. Where these differ each
 column reaches halfway to the next: a boundary that both have continues, and at the others the picture has a step.
 """
 
-import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from rockbatch.common.figures.description import Array
 from rockbatch.common.lazy import pd
-from rockbatch.report.drawing.axes import Axes, Scale
-from rockbatch.report.drawing.svg import Array, Entry, curve, line, lowered, rectangle, svg, text
-from rockbatch.report.markup import Markup
 
-WIDTH, HEIGHT = 420.0, 320.0
-REGIONS = {
-    "safe": ("", "stands"),
-    "overturned with impact": ("s2", "overturns after an impact or more (mode 1)"),
-    "overturned without impact": ("s1", "overturns without impact (mode 2)"),
-    "flight": ("s3", "leaves the ground with both pivots: the run ends"),
-    "undecided": ("s4", "not decided: the run did not settle"),
-}
-"""Colour and words of each region of a map."""
+Outline = tuple[Array, Array]
+"""Frequencies and amplitudes of a line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,40 +103,7 @@ def _nearest(height: float, kind: tuple[str, ...], strip: Strip, edges: Array) -
     return min(candidates, key=lambda i: abs(edges[i] - height), default=0)
 
 
-def draw(table: "pd.DataFrame") -> tuple[Markup, list[Entry]]:
-    """Draw one map; return the picture and its legend."""
-    drawn = strips(table)
-    across = Scale(float(drawn[0].frequencies[0]), float(drawn[-1].frequencies[-1]))
-    axes = Axes(32, 26, WIDTH - 44, HEIGHT - 64, across, Scale(float(table["low"].min()), float(table["high"].max())))
-    present = [name for name in REGIONS if REGIONS[name][0] and any(name in strip.outcomes for strip in drawn)]
-    picture = [
-        # One path for each outcome, or a hair of background would show where two strips meet
-        *(_path(axes, areas(drawn, name), f"filled {REGIONS[name][0]}") for name in present),
-        axes.frame(axes.x.ticks(8), axes.y.ticks(8)),
-        _path(axes, [*inside(drawn), *between(drawn)], "level"),
-        text(axes.left + axes.width / 2, HEIGHT - 4, lowered("ω", "p", "/p"), class_="m q"),
-        text(axes.left - 28, 12, lowered("a", "p", "/(g tan α)"), class_="q"),
-    ]
-    entries = [(rectangle(1, 1, 20, 12, f"filled {REGIONS[name][0]}"), REGIONS[name][1]) for name in present]
-    entries.append((line(0, 7, 22, 7, "level"), "boundary; where there is no colour the pier stands"))
-    return svg(WIDTH, HEIGHT, *picture, description="Overturning map", class_="plot marks"), entries
-
-
-Line = tuple[Array, Array]
-"""Frequencies and amplitudes."""
-
-
-def _path(axes: Axes, lines: Iterable[Line], class_: str) -> Markup:
-    """Return all lines as one path."""
-    gap = np.array([math.nan])
-    pieces = [(np.append(axes.across(x), gap), np.append(axes.down(y), gap)) for x, y in lines]
-    if not pieces:
-        return Markup("")
-    x, y = (np.concatenate(coordinates) for coordinates in zip(*pieces, strict=True))
-    return curve(x, y, class_)
-
-
-def areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
+def areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Outline]:
     """Yield the outlines of all regions with an outcome."""
     for strip in drawn:
         x = np.concatenate((strip.frequencies, strip.frequencies[::-1]))
@@ -155,12 +112,12 @@ def areas(drawn: Sequence[Strip], outcome: str) -> Iterator[Line]:
                 yield x, np.concatenate((strip.edges[:, place], strip.edges[::-1, place + 1]))
 
 
-def inside(drawn: Sequence[Strip]) -> Iterator[Line]:
+def inside(drawn: Sequence[Strip]) -> Iterator[Outline]:
     """Return the boundaries along each strip."""
     return ((strip.frequencies, edge) for strip in drawn for edge in strip.edges.T[1:-1])
 
 
-def between(drawn: Sequence[Strip]) -> Iterator[Line]:
+def between(drawn: Sequence[Strip]) -> Iterator[Outline]:
     """Yield the lines at which the outcome changes from a strip to the next."""
     for left, right in pairwise(drawn):
         x = left.frequencies[-1]

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockbatch.common.figures.description import DASHES, ENDED, Axis, Look, Mark, Points, Rule, marks_of, sign_of
 from rockbatch.common.lazy import pd
-from rockbatch.report.drawing.axes import Scale, written
-from rockbatch.report.drawing.svg import NO_PEAK, Entry, ends, key, marker, sign_of, style_of, text
-from rockbatch.report.finished import as_dicts
-from rockbatch.report.labels import Series
 from rockbatch.report.markup import Markup, escape, join, number, tag
+from rockbatch.report.svg import classes, key, marker, text
 from rockbatch.report.table import THETA, THETA_FORMAT
+from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labels import Series
 
 FIRST, LAST = 1.5, 97.0
 """Ends of the axis [% of the width]."""
@@ -24,6 +24,9 @@ MOST_LETTERS = 20
 """Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
 MIDDLE = 10
 """Middle of a row of 20 px [px]."""
+
+DOT = Look("dot", 1)
+"""Look of runs that are all alike."""
 
 Run = dict[str, Any]
 
@@ -61,11 +64,11 @@ def draw(
     ``limits`` are those of each column.
     """
     limits = limits or [[] for _ in columns]
-    ticks = [tick for tick in Scale(0.0, top).ticks(4) if tick <= top]
+    ticks = Axis("", 0.0, top, about=4).ticks()
     grids = [
         [_line(_across(tick, top), "grid") for tick in ticks]
         + [
-            _line(_across(limit.theta, top), _dash(place), tag("title", limit.words))
+            _line(_across(limit.theta, top), classes(Look("limit", dash=place % DASHES)), tag("title", limit.words))
             for place, limit in enumerate(of_column)
             if limit.theta <= top
         ]
@@ -81,9 +84,7 @@ def draw(
         for words, runs, grid in zip(columns, row.runs, grids, strict=True):
             label = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
             cells += [_strip(runs, top, grid, marks, label), _without_peak(runs, marks)]
-    axis = [
-        text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in zip(ticks, written(ticks), strict=True)
-    ]
+    axis = [text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in ticks.items()]
     cells.append(tag("span", tag("span", THETA), class_="of axis"))
     for _ in columns:
         cells += [tag("svg", *axis, class_="plot strip", aria_hidden="true"), tag("span")]
@@ -92,22 +93,24 @@ def draw(
         aria_label="Peaks, a row each; arrow keys go through the values",
     )  # fmt: skip
     entries = _legend([runs for row in rows for runs in row.runs], marks)
-    return join(key([*entries, *_of_limits(limits, top)]), drawn)
+    return join(key(entries | _of_limits(limits, top)), drawn)
 
 
-def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
+def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> dict[str, list[Mark]]:
     """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
-    drawn: dict[str, Markup] = {}
+    entries: dict[str, list[Mark]] = {}
     for place, limit in (numbered for of_column in limits for numbered in enumerate(of_column)):
         words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
-        # Serifs, since a rigid base is a stroke, too
-        drawn.setdefault(words, tag("path", d="M11 0v14M7 0h8M7 14h8", class_=_dash(place)))
-    return [(line, words) for words, line in drawn.items()]
+        entries.setdefault(words, [_rule(Look("limit", dash=place % DASHES))])
+    return entries
 
 
-def _dash(place: int) -> str:
-    """Return the line style of a limit, by its place among those of its column."""
-    return f"limit d{place % 4}"
+def _rule(look: Look) -> Mark:
+    return Rule("x", np.empty(0), look=look)
+
+
+def _points(look: Look) -> Mark:
+    return Points(np.empty(0), np.empty(0), look=look)
 
 
 def _across(theta: float, top: float) -> float:
@@ -146,42 +149,42 @@ def _mark(run: Run, x: float, marks: Marks) -> Markup:
 def _template(series: Series | None) -> Markup:
     """Return a mark with {x} where its position [% of the width] stands, and {said} for its tooltip: thousands are alike."""
     if series is None:
-        return tag("circle", tag("title", "{said}"), cx="{x}%", cy=MIDDLE, r=3.5, class_="dot s1")
+        return marker(DOT, "{x}%", MIDDLE, "{said}")
     if series.rigid:
-        return _line("{x}", f"rigid d{series.index % 4}", tag("title", "{said}"), low=MIDDLE + 7, high=MIDDLE - 7)
-    shape, colour = style_of(series.index)
-    return marker(shape, "{x}%", MIDDLE, colour=f"s{colour}", title="{said}")
+        return _line("{x}", classes(_rigid(series)), tag("title", "{said}"), low=MIDDLE + 7, high=MIDDLE - 7)
+    return marker(marks_of(series.index), "{x}%", MIDDLE, "{said}")
+
+
+def _rigid(series: Series) -> Look:
+    return Look("rigid", dash=series.index % DASHES)
 
 
 def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
     """Draw what had no peak: by the foundations' letters, or how many."""
     shown: list[Markup] = []
     statuses = set(runs["status"])
-    for status, words in NO_PEAK.items() if statuses != {"ok"} else ():
+    for status, words in ENDED.items() if statuses != {"ok"} else ():
         ended = runs[runs["status"] == status]
         if status in statuses:
             series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended["series"])]
             names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
             names = names if 0 < len(names) <= MOST_LETTERS else str(len(ended))
-            sign = tag("svg", sign_of(status, 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
+            sign = tag("svg", marker(sign_of(status), 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
                        aria_hidden="true")  # fmt: skip
             class_ = "undecided" if status == "failed" else "alarm"
             shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_))
     return tag("span", *shown, class_="ends")
 
 
-def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
+def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> dict[str, list[Mark]]:
     present = {place for runs in drawn for place in runs["series"].unique().tolist()}
     if marks.series is None:
-        entries = [(tag("circle", cx=11, cy=7, r=3.5, class_="dot s1"), f"a {marks.kind}")]
+        entries = {f"a {marks.kind}": [_points(DOT)]}
     else:
         shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
-        entries = [(_key(series), series.keyed) for series in shown]
-    return [*entries, *ends({status for runs in drawn for status in runs["status"].unique().tolist()})]
-
-
-def _key(series: Series) -> Markup:
-    if series.rigid:
-        return tag("line", x1=11, x2=11, y1=0, y2=14, class_=f"rigid d{series.index % 4}")
-    shape, colour = style_of(series.index)
-    return marker(shape, 11, 7, colour=f"s{colour}")
+        entries = {
+            series.keyed: [_rule(_rigid(series)) if series.rigid else _points(marks_of(series.index))]
+            for series in shown
+        }
+    statuses = {status for runs in drawn for status in runs["status"].unique().tolist()}
+    return entries | {words: [_points(sign_of(status))] for status, words in ENDED.items() if status in statuses}

@@ -1,0 +1,214 @@
+"""Figures of fragility, from the content of fragility.json: curves, clouds, and what annual rates come from."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.common.figures.description import (
+    Area,
+    Array,
+    Axis,
+    Figure,
+    Line,
+    Look,
+    Mark,
+    Panel,
+    Points,
+    Rule,
+    decades,
+    log_spanning,
+    marks_of,
+    sign_of,
+)
+from rockbatch.common.grouping import grouped
+from rockbatch.results.labels import quantity
+
+STRIP = 0.03
+"""Height of a strip above the axes, in probability."""
+CASES_OF_A_PANEL = 4
+"""Most curves of a panel, since more bands would hide each other."""
+
+Curve = Mapping[str, Any]
+"""One of ``curves`` of fragility.json."""
+
+
+def label(entry: Curve) -> str:
+    words = [quantity(name, value) for name, value in entry["columns"].items()]
+    return f"{entry['case']}: {', '.join(words)}" if words else entry["case"]
+
+
+def _looks(info: Mapping[str, Any]) -> dict[str, Look]:
+    """Return the marks of each case, the same in every figure."""
+    return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
+
+
+def _intensity(info: Mapping[str, Any]) -> str:
+    return f"{info['measure']} [{info['unit']}]"
+
+
+def curves(info: Mapping[str, Any]) -> Figure:
+    """Return the share of the records that exceed each limit, the fitted curves and their bands."""
+    looks, panels = _looks(info), []
+    for name, of_limit in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
+        for first in range(0, len(of_limit), CASES_OF_A_PANEL):
+            group = of_limit[first : first + CASES_OF_A_PANEL]
+            looked = [entry for entry in group if entry.get("looked")]
+            x = Axis(_intensity(info), 0.0, 1.1 * info["levels"][-1], about=6)
+            y = Axis("probability", 0.0, 1.0 + STRIP * (len(looked) + 0.5 * bool(looked)), last=1.0)
+            strips = [
+                _line([low, high], [1.0 + STRIP * (place + 1)] * 2, looks[label(entry)])
+                for place, entry in enumerate(looked)
+                for low, high in entry["looked"]
+            ]
+            bands = [mark for entry in group for mark in _bands(entry, looks[label(entry)])]
+            marks = [mark for entry in group for mark in _marks(entry, x.high, looks[label(entry)])]
+            panels.append(Panel(x, y, [*bands, *strips, *marks], name, group[0]["words"]))
+    return Figure(panels, f"Fragility curves over {info['measure']}")
+
+
+def _line(x: Sequence[float] | Array, y: Sequence[float] | Array, look: Look, dash: int = 0, label: str = "") -> Line:
+    """Return a curve in the colour of a case."""
+    return Line(np.array(x), np.array(y), look=Look("level", look.colour, dash), label=label)
+
+
+def _bands(entry: Curve, look: Look) -> Iterator[Mark]:
+    for name, kind in (("open", "unsure"), ("curve", "area")):
+        if name in entry:
+            x, low, high = (np.array(entry[name][side]) for side in ("x", "low", "high"))
+            around = np.concatenate((low, high[::-1]))
+            yield Area(np.concatenate((x, x[::-1])), around, look=Look(kind, look.colour))
+
+
+def _marks(entry: Curve, right: float, look: Look) -> Iterator[Mark]:
+    """Yield the curves of a case, and the shares at the levels, each from the decided records, with bars for the others."""
+    name = label(entry)
+    if "curve" in entry:
+        yield _line(entry["curve"]["x"], entry["curve"]["p"], look, label=name)
+    if "total" in entry:
+        yield _line(entry["total"]["x"], entry["total"]["p"], look, 1)
+    if "windows" in entry:
+        yield from _of_shares(entry, look)
+    if entry["capacities"] and "open" not in entry:  # a share of the records needs all of them
+        yield _line(*_steps([high for _, high in entry["capacities"]], right), look, 2)
+    points = [point for point in entry["points"] if point["records"]]
+    for point in points:
+        if point["undecided"]:
+            ends = [k / point["records"] for k in (point["exceeded"], point["exceeded"] + point["undecided"])]
+            yield Line(
+                np.full(2, point["level"]), np.array(ends), look=Look("level", look.colour), title=_said(entry, point)
+            )
+    decided = [point for point in points if point["records"] > point["undecided"]]
+    shares = np.array([point["exceeded"] / (point["records"] - point["undecided"]) for point in decided])
+    levels = np.array([point["level"] for point in decided], dtype=float)
+    yield Points(levels, shares, None, [_said(entry, point) for point in decided], look=look, label=name)
+
+
+def _of_shares(entry: Curve, look: Look) -> Iterator[Mark]:
+    """Yield the curve by shares, and the shares as open markers."""
+    windows, name = entry["windows"], f"{label(entry)}, by shares"
+    if "curve" in windows:
+        yield _line(windows["curve"]["x"], windows["curve"]["p"], look, 3, name)
+    shown = [
+        (p["level"], share) for p, share in zip(entry["points"], windows["shares"], strict=True) if share is not None
+    ]
+    words = f"of the scales within ±{100 * windows['width']:g} % exceed the limit"
+    titles = [f"{label(entry)}, {level:g}: {share:.0%} {words}" for level, share in shown]
+    levels, shares = np.array(shown, dtype=float).reshape(-1, 2).T
+    yield Points(levels, shares, None, titles, look=Look("", look.colour, shape=look.shape, open=True), label=name)
+
+
+def _said(entry: Curve, point: Mapping[str, Any]) -> str:
+    ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
+            if point[name]]  # fmt: skip
+    counts = f"{label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
+    undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
+    return "; ".join([counts, *undecided, *ends])
+
+
+def _steps(capacities: Sequence[float | None], right: float) -> tuple[Array, Array]:
+    """Return the share of the records whose capacity is at most x, as a staircase."""
+    finite = np.minimum(np.sort([x for x in capacities if x is not None]), right)
+    shares = np.arange(len(finite) + 1) / len(capacities)
+    return np.concatenate(([0.0], np.repeat(finite, 2), [right])), np.repeat(shares, 2)
+
+
+def clouds(info: Mapping[str, Any]) -> Figure:
+    """Return the demand of every record over its intensity, the line through them and its standard deviation, and the limit."""
+    looks = _looks(info)
+    shown = [entry for entry in info["curves"] if _has_demands(entry)]
+    return Figure([_cloud(info, entry, looks[label(entry)]) for entry in shown], "Demands of the records")
+
+
+def _has_demands(entry: Curve) -> bool:
+    """Return whether a curve has a cloud with demands, not that of an event."""
+    cloud = entry.get("cloud") or {"floor": None}
+    return cloud["floor"] is not None and 0 < cloud["limit"] < math.inf
+
+
+def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
+    """Return the cloud of a curve, with its limit; what overturned above all demands."""
+    cloud, runs = entry["cloud"], entry["cloud"]["runs"]
+    demands = [run["demand"] for run in runs if run["counts"] == "line"] + [cloud["limit"], cloud["floor"]]
+    x = log_spanning(_intensity(info), np.array([run["x"] for run in runs], dtype=float), margin=0.1)
+    top = 1.5 * max(demands)
+    y = Axis(
+        str(entry["words"]).split(" > ")[0], min(demands) / 1.2, top * (top / min(demands)) ** 0.1, log=True, last=top
+    )
+    marks: list[Mark] = [
+        Rule("y", np.array([float(cloud["limit"])]), look=Look("limit"), title=f"limit {cloud['limit']:g}")
+    ]
+    if cloud["line"]:
+        across = np.geomspace(x.low, x.high, 40)
+        middle, sigma = cloud["line"]["ln_a"] + cloud["line"]["b"] * np.log(across), cloud["line"]["sigma"]
+        for shift, dash in ((0.0, 0), (-sigma, 2), (sigma, 2)):
+            up = np.exp(middle + shift)
+            marks.append(_line(across, np.where((up >= y.low) & (up <= top), up, np.nan), look, dash))
+    kinds = {  # which runs, where they are drawn, how
+        "line": (None, look, label(entry)), "below": (cloud["floor"], Look("", look.colour, shape="down", open=True), ""),
+        "overturned": (math.sqrt(top * y.high), sign_of("overturned"), ""),
+    }  # fmt: skip
+    for counts, (height, own, name) in kinds.items():
+        counted = [run for run in runs if run["counts"] == counts]
+        up = np.array([run["demand"] if height is None else height for run in counted], dtype=float)
+        titles = [
+            f"{run['x']:.3g} {info['unit']}, {counts}" + f": {run['demand']:.3g}" * (height is None) for run in counted
+        ]
+        marks.append(
+            Points(np.array([run["x"] for run in counted], dtype=float), up, None, titles, look=own, label=name)
+        )
+    return Panel(x, y, marks, f"{entry['limit_state']}, {label(entry)}")
+
+
+def risk(info: Mapping[str, Any], shown: Sequence[Curve]) -> Figure:
+    """Return the hazard of the site, and from which intensities the rate of each limit comes."""
+    hazard, looks = info["hazard"], _looks(info)
+    across, rate = (np.array(hazard["drawn"][name]) for name in ("x", "rate"))
+    titles = [
+        f"{level:g} {info['unit']}: {often:.3g} per year, once in {1.0 / often:.0f} years"
+        for level, often in zip(hazard["levels"], hazard["rates"], strict=True)
+    ]
+    x = Axis(_intensity(info), float(across[0]), float(across[-1]), log=True)
+    points = Points(
+        np.array(hazard["levels"], dtype=float), np.array(hazard["rates"], dtype=float), None, titles, look=Look()
+    )
+    marks = [Line(across, rate), points]
+    panels = [Panel(x, decades("exceedances per year", rate.tolist(), about=5), marks, "hazard of the site")]
+    for name, group in grouped(shown, lambda entry: entry["limit_state"]).items():
+        panels.append(_densities(info, [entry for entry in group if "density" in entry["risk"]], looks, name))
+    return Figure(panels, "Annual rates")
+
+
+def _densities(info: Mapping[str, Any], shown: Sequence[Curve], looks: Mapping[str, Look], caption: str) -> Panel:
+    densities = [entry["risk"]["density"] for entry in shown]
+    ends = [float(x) for density in densities for x in (density["x"][0], density["x"][-1])] or [0.1, 10.0]
+    most = max((max(density["share"]) for density in densities), default=1.0)
+    x = Axis(_intensity(info), min(ends), max(ends), log=True)
+    known = sorted(end for end in {info["hazard"]["levels"][0], info["hazard"]["levels"][-1]} if x.low <= end <= x.high)
+    marks: list[Mark] = [Rule("x", np.array(known, dtype=float), look=Look("edge"))]
+    marks += [
+        _line(density["x"], density["share"], looks[label(entry)], label=label(entry))
+        for entry, density in zip(shown, densities, strict=True)
+    ]
+    return Panel(x, Axis("share of the rate", 0.0, 1.1 * most, about=4), marks, caption)

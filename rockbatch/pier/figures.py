@@ -1,0 +1,226 @@
+"""Figures of a pier: its statics, and the pier to scale with its supports and devices."""
+
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rockbatch.common.figures.description import (
+    COLOURS,
+    DASHES,
+    Area,
+    Axis,
+    Figure,
+    Line,
+    Look,
+    Mark,
+    Panel,
+    Points,
+    Rule,
+    Words,
+    line_of,
+)
+from rockbatch.pier.block import Pier
+from rockbatch.pier.equilibrium import Equilibria
+from rockbatch.pier.free_rocking import Swings
+from rockbatch.pier.places import Place, places
+from rockbatch.pier.restraints import Damper, Restraint
+
+MOST_SHEETS = COLOURS * DASHES
+"""Most cases that are drawn: colours times dashes."""
+SHARES = {"weight": "weight and supports", "tendons": "tendons", "stops": "stops, deck springs", "dampers": "dampers"}
+
+HEIGHT = 190.0
+"""Height of the highest pier [px]."""
+LEFT, RIGHT, ABOVE, BELOW = 30.0, 110.0, 14.0, 48.0
+"""Room around a pier for its labels [px]."""
+SPRING = 20.0
+"""Height of a support's spring [px]: not to scale, it has none."""
+ASIDE = 9.0
+"""Distance of a damper outside its pivot [px]."""
+MOST_PIERS = 4
+"""Most piers that are drawn; more would show nothing new."""
+
+
+class Sheet(NamedTuple):
+    """What is drawn of a statics sheet."""
+
+    name: str
+    pier: Pier
+    equilibria: Equilibria
+    swings: Swings
+
+
+def statics(sheets: Sequence[Sheet]) -> Figure:
+    """Return the righting moment and the acceleration that holds each pier over its rotation, and its period over the amplitude;
+    of a single pier, also the shares of the moment, and the period of the pier fixed at its base."""
+    sheets = sheets[:MOST_SHEETS]
+    heavy = all(sheet.pier.mass_t is not None for sheet in sheets)
+    moments, accelerations, periods = [], [], []
+    for place, (name, pier, at, swings) in enumerate(sheets):
+        look, label = line_of(place), name if len(sheets) > 1 else ""
+        size = 1e-3 * (pier.mass_t or 0.0) * pier.gravity if heavy else 1.0
+        across = at.theta / pier.alpha
+        moments.append(Line(across, size * at.moment, name, look=look, label=label))
+        accelerations.append(Line(across, at.acceleration, name, look=look))
+        periods.append(Line(swings.amplitude / pier.alpha, swings.period, name, look=look))
+        shares = {words: getattr(at, share) for share, words in SHARES.items()} if len(sheets) == 1 else {}
+        shown = [(words, values) for words, values in shares.items() if values.any()]
+        if len(shown) > 1:
+            moments += [
+                Line(across, size * values, words, look=line_of(i), label=words)
+                for i, (words, values) in enumerate(shown, 1)
+            ]
+    flexural = sheets[0].pier.flexural_period_s if len(sheets) == 1 else None
+    fixed = (
+        [] if flexural is None else [Rule("y", np.array([flexural]), look=line_of(4), label="period fixed at its base")]
+    )
+    panels = [
+        _over("θ/α", "moment [MN m]" if heavy else "moment/weight [m]", moments, "righting moment"),
+        _over("θ/α", "acceleration [g]", accelerations, "steady horizontal ground acceleration that holds the pier"),
+        _over("amplitude/α", "period [s]", periods, "free rocking", fixed),
+    ]
+    return Figure(panels, "Statics")
+
+
+def _over(across: str, up: str, lines: Sequence[Line], caption: str, fixed: Sequence[Rule] = ()) -> Panel:
+    """Return a panel whose axes begin at zero and hold the lines."""
+    right = max((float(line.x.max()) for line in lines if len(line.x)), default=1.0)
+    tops = [float(np.nanmax(line.y, initial=0.0)) for line in lines] + [float(rule.at.max()) for rule in fixed]
+    axes = Axis(across, 0.0, right or 1.0, about=8), Axis(up, 0.0, 1.06 * max(tops, default=1.0) or 1.0, about=6)
+    return Panel(*axes, [*lines, *fixed], caption, width=300.0, height=150.0)
+
+
+def devices(pier: Pier, restraints: Sequence[Restraint]) -> tuple[tuple[str, Place], ...]:
+    """Return kinds and places of devices."""
+    return tuple(
+        (f"{restraint.kind} damper" if isinstance(restraint, Damper) else restraint.what.replace("_", " "), place)
+        for restraint in restraints
+        for place in places(pier, restraint)
+    )
+
+
+def sketches(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -> list[Figure]:
+    """Return each pier, at one scale; ``all_of_them`` as in run.json, ``bases`` the kinds of their bases.
+
+    A pier with impossible values is left out, since run.json may come from anybody.
+    """
+    shown = [pier for pier in all_of_them if _can_be(pier)][:MOST_PIERS]
+    if not shown:
+        return []
+    scale = HEIGHT / max(_highest(pier) for pier in shown)
+    return [_sketch(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
+
+
+def _can_be(pier: Mapping[str, Any]) -> bool:
+    width, height = 2.0 * pier["half_width_m"], pier["height_m"]
+    return (
+        0.0 < pier["alpha"] < 0.5 * math.pi
+        and 0.0 < height < 1e6
+        and 0.0 < width < 100.0 * height
+        and 0.0 < _top(pier) < 1e6
+    )
+
+
+def _top(pier: Mapping[str, Any]) -> float:
+    """Return the height of the highest point of the shaft [m]; that of a uniform block if it is not given."""
+    return float(pier.get("top_m") or 2.0 * pier["height_m"])
+
+
+def _highest(pier: Mapping[str, Any]) -> float:
+    return max(_top(pier), float(pier.get("deck_m") or 0.0))
+
+
+def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
+    """Return a pier in pixels from the middle of its base."""
+    b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
+    side, high = max(b, 30.0), max(scale * _highest(pier), h) + ABOVE
+    arc = 0.45 * math.hypot(b, h)
+    turn = np.linspace(0.0, pier["alpha"], 9)
+    marks: list[Mark] = [
+        Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
+        _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
+        Line(np.array([b, 0.0]), np.array([0.0, h]), look=Look("rigid", dash=1)),
+        _stroke("edge", (b, 0.0), (b, 1.15 * arc)),
+        Line(b - arc * np.sin(turn), arc * np.cos(turn), look=Look("edge")),
+        Words(b, arc, "α"),
+        Words(-b, 0.5 * h, "R₀", -1),
+        Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
+        *_length((b + 26.0, 0.0), (b + 26.0, h), f"h = {pier['height_m']:.3g} m"),
+        *(mark for x in (-b, b) for mark in _support(x, springs)),
+        *_deck(pier, b, scale),
+        *(mark for kind, place in pier.get("devices", ()) for mark in _device(kind, place, scale, top)),
+        *_length((-b, -32.0), (b, -32.0), f"2b = {2.0 * pier['half_width_m']:.3g} m"),
+    ]
+    support = "two springs" if springs else "rigid ground"
+    words = (
+        f"The pier to scale on {support}: {2.0 * pier['half_width_m']:.3g} m between its pivots, centre of mass "
+        f"{pier['height_m']:.3g} m above them, slenderness {pier['alpha']:.3g} rad"
+    )
+    if kinds := dict.fromkeys(kind for kind, _ in pier.get("devices", ())):
+        words += f", with {' and '.join(kinds)}"
+    x, y = Axis("", -LEFT - side, side + RIGHT, names={}), Axis("", -BELOW, high, names={})
+    return Figure(
+        [Panel(x, y, marks, pier.get("name", ""), width=x.high - x.low, height=y.high - y.low, framed=False)], words
+    )
+
+
+def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: int = 0) -> Line:
+    x, y = np.array(points).T
+    return Line(x, y, look=Look(kind, colour), title=title)
+
+
+def _deck(pier: Mapping[str, Any], b: float, scale: float) -> Iterator[Mark]:
+    """Yield the deck at its height: a slab of no particular size, since none is given."""
+    if pier.get("deck_m"):
+        y, half = scale * float(pier["deck_m"]), max(b, 24.0) + 6.0
+        yield _box(0.0, y, half, 3.0, Look("deck"))
+        yield Words(half, y, f"deck, {float(pier['deck_m']):.3g} m")
+
+
+def _box(x: float, y: float, half_width: float, half_height: float, look: Look) -> Area:
+    across, up = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+    return Area(x + half_width * across, y + half_height * up, look=look)
+
+
+def _device(kind: str, place: Place, scale: float, top: float) -> Iterator[Mark]:
+    """Yield a tendon up to the top, a stop above the base, or a damper between it and the ground, outside the support there.
+
+    Beside the deck, a wall that the deck meets, or to which it is tied, on the side on which it is.
+    """
+    offset = scale * place.offset
+    x = offset + math.copysign(ASIDE, offset)
+    if place.height:
+        y, side = scale * place.height, place.way or 1.0
+        near, far = side * 30.0, side * (30.0 + SPRING)
+        yield _stroke("tendon", (near, y), (far, y), title=kind, colour=3)
+        yield _stroke("rigid", (far, y - ASIDE), (far, y + ASIDE))
+    elif kind == "tendon":
+        yield _stroke("tendon", (offset, -SPRING), (offset, top), title=kind, colour=2)
+    elif kind == "stop":
+        yield _stroke("rigid", (x, -SPRING), (x, ASIDE), (offset, ASIDE), title=kind)
+    else:
+        yield _stroke("tendon", (offset, 0.0), (x, 0.0), (x, -SPRING), title=kind, colour=3)
+        yield _box(x, -9.5, 3.0, 4.5, Look("damper", 3))
+
+
+def _support(x: float, spring: bool) -> Iterator[Mark]:
+    """Yield the support of a pivot: a spring on the ground, or the ground."""
+    below = -SPRING if spring else 0.0
+    yield _stroke("rigid", (x - 9.0, below), (x + 9.0, below))
+    for offset in (-5.0, 0.0, 5.0, 9.0):
+        yield _stroke("edge", (x + offset, below), (x + offset - 4.0, below - 5.0))
+    if spring:
+        turns = [(x + way, -(i + 1) * SPRING / 6) for i, way in enumerate((4, -4, 4, -4, 4))]
+        yield _stroke("rigid", (x, 0.0), *turns, (x, below))
+
+
+def _length(start: tuple[float, float], end: tuple[float, float], words: str) -> Iterator[Mark]:
+    """Yield a dimension line, with its text below or beside it."""
+    across, up = (0.0, 3.0) if start[1] == end[1] else (3.0, 0.0)
+    yield _stroke("edge", start, end)
+    for x, y in (start, end):
+        yield _stroke("edge", (x - across, y - up), (x + across, y + up))
+    middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    yield Words(middle[0], middle[1] - 10.0, words, 0) if across == 0.0 else Words(*middle, words)

@@ -1,0 +1,223 @@
+"""Figures of finished results: peaks as in Palmeri & Makris (2007), Fig. 7, their distribution, and self-similar axes."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rockbatch.common.figures.description import (
+    COLOURS,
+    DASHES,
+    ENDED,
+    VISIBLE,
+    Axis,
+    Figure,
+    Line,
+    Look,
+    Mark,
+    Panel,
+    Points,
+    Rule,
+    Span,
+    line_of,
+    log_spanning,
+    marks_of,
+    sign_of,
+)
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.errors import InputError
+from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
+from rockbatch.results.labels import Series
+from rockbatch.results.rows import counts_as
+from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
+
+THETA = "θ_max/α"
+MOST_PANELS = 24
+SPREAD = 0.64
+"""Share of the distance of two foundations, over which the marks of different sides are spread."""
+OVER = "overturned, or ended by flight"
+_DRAWN = ["record", "series", "polarity", "side", "status", "theta_max_over_alpha", "theta_max_error"]
+
+Run = dict[str, Any]
+
+
+def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, tuple[str, str]], top: float) -> Figure:
+    """Return the peaks: a panel for each record, a marker for each foundation, the rigid base as a line.
+
+    ``runs`` have a column ``side``, by which those of one foundation differ in their marks; ``records`` gives each record's
+    caption and note, and ``top`` is the end of the common axis, θ_max/α.
+    """
+    present = sorted((series[place] for place in runs["series"].unique()), key=lambda one: (not one.rigid, one.index))
+    ticks = {one.index + 1.0: one.tick for one in present if not one.rigid}
+    sides = sorted(runs["side"].unique())
+    eventful = bool(runs["status"].isin(NO_PEAK).any())
+    last = max(ticks, default=0.0)
+    x = Axis("", 0.2, last + 0.8 + (last == 0.0), names=ticks, numbered=bool(ticks))
+    y = Axis(THETA, 0.0, 1.18 * top if eventful else top, about=4, last=top)
+    width = min(max(166.0, 56.0 + 13.0 * (last + 1.0)), 900.0)
+    strip = [Span("y", top, y.high, look=Look("band"))] if eventful else []
+    by_record = grouped(as_dicts(runs[_DRAWN]), lambda run: run["record"])
+    panels = []
+    for name, (caption, note) in records.items():
+        by_mark = grouped(by_record[name], lambda run: (run["series"], run["side"]))
+        order = sorted(by_mark, key=lambda key: (not series[key[0]].rigid, series[key[0]].index, key[1]))
+        marks = [mark for key in order for mark in _peaks_of(series[key[0]], key[1], sides, by_mark[key], top)]
+        panels.append(Panel(x, y, [*strip, *marks], caption, note, width, 110.0))
+    return Figure(panels, "θmax/α of every foundation")
+
+
+def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: float) -> Iterator[Mark]:
+    """Yield the marks of a foundation in a panel; a third side and more have their own colours."""
+    place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
+    titles = [said_of(one, run, len(sides) > 1) for run in runs]
+    at = 0.42 if one.rigid else one.index + 1 + SPREAD * ((place + 0.5) / len(sides) - 0.5)
+    x = np.full(len(runs), at)
+    theta, error = (
+        np.array([run[name] for run in runs], dtype=float) for name in ("theta_max_over_alpha", "theta_max_error")
+    )
+    stood = np.array([run["status"] == "ok" for run in runs]) & ~np.isnan(theta)
+    if one.rigid:
+        colour = place + 1 if len(sides) > 2 else 0
+        look = Look("rigid", colour % COLOURS, one.index % DASHES, open=len(sides) == 2 and place == 1)
+        levels = np.where(stood, theta, 1.09 * top)[[run["status"] != "failed" for run in runs]]
+        yield Rule("y", levels, look=look, label=label, title="; ".join(titles))
+        for low, high in zip(theta - error, theta + error, strict=True):
+            if high - low > 2.0 * VISIBLE * top:
+                yield Line(np.full(2, at), np.array([low, high]), look=Look("bar"))
+    else:
+        look = marks_of(one.index, place == 1) if len(sides) < 3 else marks_of(place)
+        titles_of = [title for title, stands in zip(titles, stood, strict=True) if stands]
+        yield Points(x[stood], theta[stood], np.nan_to_num(error[stood]), titles_of, look=look, label=label)
+    for status, words in ENDED.items():
+        ended = [i for i, run in enumerate(runs) if run["status"] == status]
+        if ended:
+            height = 0.05 if status == "failed" else 1.09
+            yield Points(x[ended], np.full(len(ended), height * top), None, [titles[i] for i in ended],
+                         look=sign_of(status), label=words)  # fmt: skip
+
+
+def said_of(series: Series, run: Run, several_sides: bool) -> str:
+    """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
+    name = series.label + (f" ({run['polarity']})" if several_sides else "")
+    if run["status"] != "ok":
+        return f"{name}: {run['status']}"
+    error = run["theta_max_error"]
+    return f"{name}: {run['theta_max_over_alpha']:.4f}" + (f" ± {error:.0e}" if error == error else "")
+
+
+def peaks_of_all(results: Labelled, info: Mapping[str, Any]) -> Figure:
+    """Return the peaks of all piers, scales and directions in one figure, of many records those with the worst runs."""
+    runs = _some(results.runs)
+    sides = [runs.loc[of_group.index, []].assign(side=words) for words, of_group in groups_of(runs, results.piers)]
+    side = pd.concat(sides)["side"]
+    if runs["polarity"].nunique() > 1:
+        side = (side + ", " + runs["polarity"]).str.removeprefix(", ")
+    names = by_pga(worst_records(runs, MOST_PANELS), info)
+    shown = runs.assign(side=side)[runs["record"].isin(names)]
+    labels = {record["record"]: str(record.get("label") or record["record"]) for record in info["records"]}
+    figure = peaks(shown, results.series, {name: (labels.get(name, name), "") for name in names}, ceiling(shown))
+    every = runs["record"].nunique()
+    more = f" ({len(names)} of {every} records, the worst)" if len(names) < every else ""
+    return Figure(figure.panels, figure.description, info["study"]["title"] + more)
+
+
+def _some(runs: "pd.DataFrame") -> "pd.DataFrame":
+    """Return the runs; raise ``InputError`` without any."""
+    if runs.empty:
+        raise InputError("there are no runs to plot: no record could be used, as the column reason of peaks.csv says")
+    return runs
+
+
+def distributions(groups: "Sequence[tuple[str, pd.DataFrame]]", series: Sequence[Series], count: str) -> Figure:
+    """Return the distribution of the peaks: a panel for each of the groups of runs, with their captions, and a curve for each
+    foundation; ``count`` is what counts as one record."""
+    eventful = any(runs["status"].isin(NO_PEAK).any() for _, runs in groups)
+    return Figure(
+        [_distribution(words, runs, series, count, eventful) for words, runs in groups], "Distribution of θmax/α"
+    )
+
+
+def distributions_of_all(results: Labelled, count: str) -> Figure:
+    """Return the distributions of all piers and scales."""
+    return distributions(list(groups_of(_some(results.runs), results.piers)), results.series, count)
+
+
+def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
+    peaks_of_ok = runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(dtype=np.float64)
+    top = 1.04 * float(np.nanmax(peaks_of_ok, initial=0.0)) or 1.0
+    right = 1.08 * top if eventful else top
+    marks: list[Mark] = [Span("x", top, right, look=Look("band"))] if eventful else []
+    for place, group in runs.groupby("series"):
+        foundation = series[int(str(place))]
+        theta, share = distribution(
+            group["theta_max_over_alpha"].to_numpy(dtype=np.float64),
+            group["status"].to_list(),
+            counts_as(group, count)[0].to_list(),
+        )
+        look = Look("level", dash=foundation.index % DASHES) if foundation.rigid else line_of(foundation.index)
+        reached = float(share[-1]) if len(share) else 0.0
+        x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
+        y = np.repeat(np.concatenate(([0.0], share)), 2)
+        marks.append(Line(x, y, foundation.label, look=look, label=foundation.label))
+        if reached < 1.0 and group["status"].isin(NO_PEAK).any():
+            note = f"{foundation.label}: {100 * (1 - reached):.0f} % {OVER}"
+            middle = np.full(2, 0.5 * (top + right))
+            marks.append(Line(middle, np.array([reached, 1.0]), look=look))
+            marks.append(
+                Points(
+                    middle[:1], np.array([0.5 * (1.0 + reached)]), titles=[note], look=sign_of("overturned"), label=OVER
+                )
+            )
+    axes = Axis(THETA, 0.0, right, last=top), Axis("share of the records", 0.0, 1.0)
+    return Panel(*axes, marks, words or "all runs")
+
+
+def self_similar(results: Labelled, info: Mapping[str, Any]) -> Figure:
+    """Return the runs at PGA/(g tan α) over ω_g/p, a panel for each foundation, their θ_max/α as tone."""
+    runs = _with_groups(_some(results.runs), results, info)
+    theta = runs["theta_max_over_alpha"][(runs["status"] == "ok") & (runs["theta_max_over_alpha"] > 0)]
+    low = float(theta.min()) if len(theta) else 0.1
+    tone = Axis(THETA, low, max(float(theta.max()), 1.001 * low) if len(theta) else 1.0, log=True)
+    x = log_spanning("ω_g/p,  ω_g = PGA/PGV", runs["frequency"].to_numpy())
+    y = log_spanning("PGA/(g tan α)", np.append(runs["intensity"].to_numpy(), 1.0))
+    panels = []
+    for place in runs["series"].unique():
+        of_series = runs[runs["series"] == place]
+        lifts = Rule("y", np.ones(1), look=Look("edge", dash=1), label="lifts a pier off rigid ground")
+        panels.append(Panel(x, y, [lifts, *_scattered(of_series, tone)], results.series[place].label, "", 240.0, 150.0))
+    return Figure(panels, "PGA/(g tan α) and ω_g/p of every run", info["study"]["title"])
+
+
+def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
+    """Yield the runs of one foundation: those that moved, those that did not, and those without a peak."""
+    theta, stood = runs["theta_max_over_alpha"], runs["status"] == "ok"
+    kinds = [(stood & (theta > 0), Look(), ""), (stood & ~(theta > 0), Look("faint", open=True), "did not move")]
+    kinds += [(runs["status"] == status, sign_of(status), words) for status, words in ENDED.items()]
+    for chosen, look, label in kinds:
+        x, y, values = (
+            runs.loc[chosen, name].to_numpy(float) for name in ("frequency", "intensity", "theta_max_over_alpha")
+        )
+        if len(x):
+            yield Points(x, y, look=look, label=label, shade=None if label else (tone, values))
+
+
+def _to_12_digits(value: float) -> float:
+    return float(f"{value:.12g}")
+
+
+def _with_groups(runs: "pd.DataFrame", results: Labelled, info: Mapping[str, Any]) -> "pd.DataFrame":
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
+
+    To 12 digits: an axis cannot be as narrow as rounding.
+    """
+    pgv = {record["record"]: record["pgv_m_s"] for record in info["records"]}
+    frequency, intensity = [], []
+    for run in as_dicts(runs[["record", "series", "pier", "scale", "alpha", "pga"]]):
+        pier, speed = results.cases[run["series"], run["pier"]]["pier"], pgv[run["record"]]
+        pga = run["pga"] / run["scale"]
+        frequency.append(_to_12_digits(pga * pier["gravity"] / (speed * pier["p"]) if speed else math.nan))
+        intensity.append(_to_12_digits(run["pga"] / math.tan(run["alpha"])))
+    table = runs.assign(frequency=frequency, intensity=intensity)
+    return _some(table[table["frequency"] > 0])

@@ -1,0 +1,137 @@
+"""Names of foundations and piers, by what distinguishes them."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rockbatch.study import PIER_KEYS
+
+SYMBOLS = {
+    "alpha": ("α", "rad"),
+    "p": ("p", "rad/s"),
+    "mu": ("μ", ""),
+    "gravity": ("g", "m/s²"),
+    "size_m": ("R0", "m"),
+    "width_m": ("width", "m"),
+    "height_m": ("height", "m"),
+    "beta": ("β", ""),
+    "eta": ("η", ""),
+    "epsilon": ("ε", ""),
+    "zeta": ("ζ", ""),
+    "n": ("n", ""),
+    "restitution": ("e", ""),
+    "stiffness_kN_m": ("K", "kN/m"),
+    "yield_kN": ("Fy", "kN"),
+    "flight_limit_mm": ("flight limit", "mm"),
+    "mass_t": ("M", "t"),
+    "deck_mass_t": ("deck mass", "t"),
+    "deck_height_m": ("deck height", "m"),
+    "deck_inertia_t_m2": ("deck inertia", "t m²"),
+    "top_m": ("top", "m"),
+    "omega_g_over_p": ("ω_g/p", ""),
+    "pga_over_g_tan_alpha": ("PGA/(g tan α)", ""),
+    "flexural_period_s": ("flexural period", "s"),
+    "area_m2": ("area", "m²"),
+}
+BASE_KEYS = (
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
+    "flight_limit_mm", "friction", "area_m2",
+)  # fmt: skip
+SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
+"""Equivalent keys, without and with units: a foundation is described by the one that its study gives."""
+
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+Key = tuple[object, ...]
+"""Identity of a foundation: the case, and its varied values in the order of the study."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One foundation: a marker in the figures, or a line where it is rigid ground alone; a column in the tables."""
+
+    label: str
+    tick: str
+    rigid: bool
+    index: int  # among those of its kind, rigid or not
+
+    @property
+    def keyed(self) -> str:
+        """Return the label for a legend, behind the tick if it does not begin with it."""
+        return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
+
+
+def quantity(key: str, value: object, digits: int = 10) -> str:
+    """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
+    symbol, unit = SYMBOLS.get(key, (key, ""))
+    if not isinstance(value, float | int):
+        return f"{symbol} {value}"
+    return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def plain(value: float, digits: int) -> str:
+    """Format a number in the unit in which it was given, without an "e": "45,000", "2.5 × 10⁶"."""
+    whole = len(str(int(abs(value))))
+    if whole <= 6:
+        written = f"{value:.{max(digits, whole)}g}"
+        return f"{float(written):,.10g}" if whole > 4 else written
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{float(mantissa):.10g} × 10{str(int(exponent)).translate(_RAISED)}"
+
+
+def digits_that_tell(values: Iterable[object], least: int = 3) -> int:
+    """Return the number of significant digits, at least ``least``, that distinguishes all different numbers."""
+    numbers = {value for value in values if isinstance(value, float | int)}
+    return next((n for n in range(least, 10) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers)), 10)
+
+
+def named(
+    cases: Mapping[Key, Sequence[dict[str, Any]]], varied: Sequence[str], given: Mapping[str, Collection[str]]
+) -> dict[Key, Series]:
+    """Return a series for each foundation, named after what distinguishes it from the others.
+
+    ``cases`` are those of run.json, one for each pier on which the foundation was run; ``given`` holds the keys that the
+    study gives for each case, by its name.
+    """
+    constants = {key: _constants(of_foundation, given.get(str(key[0]), ())) for key, of_foundation in cases.items()}
+    # The rocking block itself, drawn as a line to compare others with: on rigid ground and without devices
+    rigid = {
+        key for key, (case, *_) in cases.items() if case["base"] == "rigid" and not case["parameters"].get("restraints")
+    }
+    if 1 < len(cases) == len(rigid):
+        rigid = set()  # nothing to compare with: they are foundations like others
+    shown = dict.fromkeys((*BASE_KEYS, *varied))
+    values = {kind: [constants[key] for key in cases if (key in rigid) is kind] for kind in (True, False)}
+    differing = {
+        kind: [name for name in shown if len({str(constants_of.get(name)) for constants_of in of_kind}) > 1]
+        for kind, of_kind in values.items()
+    }
+    digits = {name: digits_that_tell(constants_of.get(name) for constants_of in constants.values()) for name in shown}
+    names = [key[0] for key in cases if key not in rigid]
+    short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
+    series: dict[Key, Series] = {}
+    count = {True: 0, False: 0}
+    for key in cases:
+        kind = key in rigid
+        distinguishing = [name for name in differing[kind] if name in constants[key]]
+        words = [quantity(name, constants[key][name], digits[name]) for name in distinguishing]
+        case, index = str(key[0]), count[kind]
+        count[kind] += 1
+        label = f"{case}: {', '.join(words)}" if words else case
+        tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
+        series[key] = Series(label, tick, kind, index)
+    return series
+
+
+def _constants(cases: Sequence[dict[str, Any]], given: Collection[str]) -> dict[str, object]:
+    """Return the values that a foundation keeps on every pier, without the keys that repeat a ``given`` one in other units.
+
+    β of a given stiffness, for example, follows the pier.
+    """
+    first, *further = [case["parameters"] | case["columns"] for case in cases]
+    omitted = {free if unit in given else unit for free, unit in SAME.items()}.union(PIER_KEYS)
+    return {
+        key: value
+        for key, value in first.items()
+        if key not in omitted and value is not None and all(values.get(key) == value for values in further)
+    }

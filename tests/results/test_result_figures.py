@@ -1,0 +1,159 @@
+"""The figures of finished results show the rows of the table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies import PADS, PIER, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.common.figures.description import ENDED, Line, Points, Rule
+from rockbatch.results import figures
+from rockbatch.results.figures import OVER, distributions, peaks_of_all
+from rockbatch.results.labelled import groups_of, labelled
+
+STUDY = study_text(
+    title="Panels",
+    pier=PIER | {"p": [1.0, 2.0]},
+    motions={"polarity": ["+", "-"]},
+    pulses=[
+        SINE | {"name": "strong", "amplitude_g": 4.0, "period_s": 2.0, "confirm": "amplitude_g"},
+        SINE | {"name": "weak", "amplitude_g": 0.8, "period_s": 0.3},
+    ],
+    cases=[RIGID | {"name": "rock"}, PADS | {"beta": [30, 50]}],
+)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("panels")
+    rb.run(write_study(folder, STUDY), folder / "out")
+    return rb.open_results(folder / "out")
+
+
+def own(results):
+    return labelled(results.peaks, results.info, results.directory)
+
+
+def peaks_of(results):
+    figure = peaks_of_all(own(results), results.info)
+    return figure, {panel.caption: panel for panel in figure.panels}
+
+
+def test_there_is_a_panel_for_each_record_in_order_of_pga(results):
+    figure, panels = peaks_of(results)
+    assert list(panels) == ["weak", "strong"]
+    assert figure.title == "Panels"
+
+
+def test_marks_and_lines_are_the_rows_of_the_table(results):
+    panel = peaks_of(results)[1]["weak"]
+    rows = results.peaks[(results.peaks["record"] == "weak") & (results.peaks["polarity"] == "+")]
+    assert (rows["status"] == "ok").all()
+    assert panel.x.names == {1.0: "a", 2.0: "b"}
+    marks = {
+        (mark.label.replace("\u00a0", " "), mark.look.open): mark for mark in panel.marks if isinstance(mark, Points)
+    }
+    for p, is_open in ((1.0, False), (2.0, True)):
+        for place, (letter, beta) in enumerate((("a", 30), ("b", 50)), 1):
+            row = rows[(rows["case"] == "pads") & (rows["p"] == p) & (rows["beta"] == beta)]
+            mark = marks[f"{letter} – pads: β = {beta} (p = {p:g} rad/s)", is_open]
+            assert mark.y == pytest.approx(row["theta_max_over_alpha"])
+            assert mark.error == pytest.approx(row["theta_max_error"])
+            assert mark.x == pytest.approx([place + (0.16 if is_open else -0.16)])
+    rigid = sorted(float(mark.at[0]) for mark in panel.marks if isinstance(mark, Rule))
+    assert rigid == pytest.approx(sorted(rows[rows["case"] == "rock"]["theta_max_over_alpha"]))
+
+
+def test_runs_without_a_peak_stand_above_the_axis_values(results):
+    rows = results.peaks[(results.peaks["record"] == "strong") & (results.peaks["polarity"] == "+")]
+    fell = (rows["status"] == "overturned").sum()
+    assert fell > 0
+    figure, panels = peaks_of(results)
+    marks = [mark for mark in panels["strong"].marks if mark.label == ENDED["overturned"]]
+    assert sum(len(mark.x) for mark in marks) == fell
+    highest = results.peaks.loc[results.peaks["status"] == "ok", "theta_max_over_alpha"].max()
+    assert min(mark.y.min() for mark in marks) > highest
+    assert all(panel.y.last < panel.y.high for panel in figure.panels)
+
+
+def test_a_run_that_failed_stands_at_the_foot_and_its_error_is_not_drawn(results):
+    peaks = results.peaks.copy()
+    failed = (peaks["record"] == "weak") & (peaks["beta"] == 30)
+    peaks.loc[failed, ["status", "theta_max_over_alpha", "theta_max_error"]] = ["failed", np.nan, np.nan]
+    panel = peaks_of(replace(results, peaks=peaks))[1]["weak"]
+    marks = [mark for mark in panel.marks if mark.label == ENDED["failed"]]
+    assert [len(mark.x) for mark in marks] == [1, 1]
+    assert max(mark.y.max() for mark in marks) < 0.1 * panel.y.last
+
+
+def test_three_sides_and_more_have_colours_of_their_own(results):
+    peaks = results.peaks[results.peaks["mirror_of"] == ""]
+    thrice = replace(results, peaks=peaks.assign(scale=np.where(peaks["record"] == "weak", 1.0, 2.0)))
+    looks = {mark.look for panel in peaks_of(thrice)[1].values() for mark in panel.marks
+             if isinstance(mark, Points) and mark.label not in ENDED.values()}  # fmt: skip
+    assert len(looks) == 4
+    assert not any(look.open for look in looks)
+
+
+def test_a_study_of_rigid_bases_alone_has_its_cases_on_the_axis(tmp_path):
+    cases = [RIGID | {"name": name, "restitution": e} for name, e in (("hard", 0.9), ("soft", 0.6))]
+    rb.run(write_study(tmp_path, study_text(pulses=[SINE], cases=cases)), tmp_path / "out")
+    (panel,) = peaks_of(rb.open_results(tmp_path / "out"))[1].values()
+    assert list(panel.x.names.values()) == ["a", "b"]
+    assert [len(mark.x) for mark in panel.marks] == [1, 1]
+
+
+def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturned(results):
+    runs = own(results)
+    figure = distributions(list(groups_of(runs.runs, runs.piers)), runs.series, "station")
+    assert [panel.caption.replace("\u00a0", " ") for panel in figure.panels] == ["p = 1 rad/s", "p = 2 rad/s"]
+    peaks = results.peaks[results.peaks["mirror_of"] == ""]
+    for panel, p in zip(figure.panels, (1.0, 2.0), strict=True):
+        curves = [mark for mark in panel.marks if isinstance(mark, Line) and mark.name]
+        assert len(curves) == 3
+        rows = peaks[(peaks["p"] == p) & (peaks["case"] == "rock")]
+        stood = rows["theta_max_over_alpha"][rows["status"] == "ok"]
+        (rock,) = (curve for curve in curves if curve.name == "rock")
+        assert sorted(set(rock.x[1:-1])) == sorted(stood)
+        assert rock.y[-1] == pytest.approx(len(stood) / len(rows))
+        fell = (
+            peaks[peaks["p"] == p]
+            .groupby(["case", "beta"], dropna=False)["status"]
+            .agg(lambda of: "overturned" in set(of))
+        )
+        assert sum(mark.label == OVER for mark in panel.marks) == fell.sum()
+    results.plot_cdf(88.0).draw_without_rendering()
+
+
+def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
+    monkeypatch.setattr(figures, "MOST_PANELS", 1)
+    figure, panels = peaks_of(results)
+    assert list(panels) == ["strong"]
+    assert "1 of 2 records" in figure.title
+    results.plot(88.0).draw_without_rendering()
+
+
+def test_without_runs_there_is_no_figure(results):
+    none = replace(results, peaks=results.peaks.iloc[:0])
+    for plot in (none.plot, none.plot_cdf, lambda: none.plot(axes="self-similar")):
+        with pytest.raises(rb.InputError, match="no runs to plot"):
+            plot()
+
+
+def test_results_tell_of_themselves_in_a_few_lines(results):
+    told = repr(results).splitlines()
+    assert told[0] == f"<results of 'Panels' in {results.directory}>"
+    runs = results.peaks[results.peaks["polarity"] == "+"]
+    assert told[1].split() == ["runs", "12:", *" ".join(_counts(runs)).split()]
+    worst = runs[runs["status"] == "ok"].nlargest(1, "theta_max_over_alpha").iloc[0]
+    assert f"θ_max/α = {worst['theta_max_over_alpha']:.5f}, {worst['record']} on {worst['case']}" in told[2]
+    assert "histories.h5" in told[3]
+    html = results._repr_html_()
+    assert "<th>beta</th>" in html
+    assert html.count("<td>weak</td>") == 6
+
+
+def _counts(runs):
+    counts = runs["status"].value_counts()
+    return [", ".join(f"{n} {status}" for status, n in counts.items())]

@@ -1,0 +1,206 @@
+"""Figures are described once: both renderers draw every kind of mark, and a page and ``plot()`` show the same description."""
+
+import math
+import re
+import sys
+import warnings
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from studies import PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+import rockbatch.report
+from rockbatch.common.figures import description, paper
+from rockbatch.common.figures.description import (
+    COLOURS,
+    DASHES,
+    Area,
+    Axis,
+    Figure,
+    Line,
+    Look,
+    Panel,
+    Points,
+    Rule,
+    Span,
+    Words,
+    decades,
+    line_of,
+    log_spanning,
+    sign_of,
+    spanning,
+    without_repeats,
+    written,
+)
+from rockbatch.report import svg
+
+NASTY = "_$x_1$ <b>&"
+X, Y = np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 1.0])
+MARKS = (
+    Span("x", 0.5, 0.7, look=Look("band"), label="span"),
+    Area(X, Y, look=Look("area", 2), label="area"),
+    Line(X, Y, "named", look=line_of(2), label="line"),
+    Points(X, Y, np.array([0.0, 0.5, 0.0]), ["a", NASTY, "c"], look=Look("", 1, shape="up"), label="points"),
+    Points(X[:1], Y[:1], look=sign_of("failed"), label="failed"),
+    Rule("y", np.array([1.0]), look=Look("limit", dash=1), label="limit", title="at 1"),
+    Rule("x", np.array([0.5, 1.5]), 0.0, 0.1, look=Look("event"), label="events"),
+    Words(1.0, 1.0, NASTY),
+)
+
+
+def figure(*marks, x=Axis("θ_max/α", 0.0, 2.0), y=Axis("F [kN]", 0.0, 2.0), **more):  # noqa: B008
+    return Figure([Panel(x, y, marks, **more)], "a figure")
+
+
+def parsed(drawn):
+    return ET.fromstring(f"<div>{drawn}</div>")
+
+
+def test_every_kind_of_mark_is_drawn_on_the_page_with_its_tooltip_and_legend():
+    drawn = parsed(svg.drawn(figure(*MARKS, reads="plane")))
+    picture, key = drawn
+    of_class = {}
+    for node in picture.iter():
+        of_class.setdefault(node.get("class"), []).append(node)
+    assert {"band", "area s2", "level s3 d2", "s1", "bar", "limit d1", "event", "m none"} <= set(of_class)
+    assert len(of_class["s1"]) == 3
+    assert of_class["event"][0].get("d").count("M") == 2
+    assert [node.text for node in picture.iter("title")] == ["a", NASTY, "c", "at 1"]
+    assert NASTY in [node.text for node in picture.iter("text")]
+    assert {"plot", "marks", "readings", "alone"} == set(picture.get("class").split())
+    assert [item[1].text for item in key] == ["span", "area", "line", "points", "failed", "limit", "events"]
+    (group,) = of_class["axes"]
+    assert group.get("data-names") == "θmax/α|F [kN]"
+    assert [path.get("data-name") for path in group] == ["named"]
+
+
+def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        drawn = paper.drawn(figure(*MARKS, caption=NASTY), 88.0)
+        drawn.draw_without_rendering()
+    (axes,) = drawn.axes
+    assert len(axes.patches) == 2
+    assert axes.lines[0].get_xydata().tolist() == np.column_stack([X, Y]).tolist()
+    assert [line.get_marker() for line in axes.lines if line.get_marker() not in ("None", None)][-1] == "$?$"
+    assert len(axes.containers) == 1
+    assert [text.get_text() for text in drawn.legends[0].get_texts()] == [mark.label for mark in MARKS if mark.label]
+    assert axes.texts[0].get_text() == axes.get_title() == r" _\$x_1\$ <b>&"
+    assert axes.get_xlabel() == r"θ$_\mathrm{max}$/α"
+    assert drawn.get_figwidth() == pytest.approx(88.0 / 25.4)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "pieces"),
+    [
+        ([], [], 0),
+        ([1.0], [1.0], 1),
+        ([0.0, 0.5, 1.0, 1.5], [0.0, math.nan, 1.0, 1.0], 2),
+        ([0.0, 1.0], [math.nan] * 2, 0),
+    ],
+    ids=["empty", "one point", "interrupted", "none"],
+)
+def test_what_has_no_value_is_not_drawn_and_breaks_nothing(x, y, pieces):
+    values = np.array(x), np.array(y)
+    shown = figure(Line(*values, look=Look("level")), Points(*values))
+    drawn = parsed(svg.drawn(shown))
+    (path,) = (node for node in drawn.iter("path") if node.get("class") == "level ink")
+    assert path.get("d").count("M") == pieces
+    assert len(list(drawn.iter("use"))) == np.isfinite(values[1]).sum()
+    paper.drawn(shown, 88.0).draw_without_rendering()
+
+
+def test_both_renderers_write_the_same_ticks():
+    for axis in (
+        Axis("", -0.5, 2.0),
+        Axis("", 0.2, 3.0, log=True),
+        decades("", [1e-7, 0.3]),
+        Axis("", 0, 3, names={1.0: "a"}),
+    ):
+        shown = figure(x=axis, y=Axis("", 0.0, 1.0, numbered=False))
+        (axes,) = paper.drawn(shown, 88.0).axes
+        on_paper = [label.get_text() for label in axes.get_xticklabels()]
+        on_page = [node.text for node in parsed(svg.drawn(shown)).iter("text")]
+        assert on_paper == on_page == list(axis.ticks().values())
+        assert len(on_page) in range(1, 10)
+    assert written([0.5, 1.0, 1.5]) == ["0.5", "1.0", "1.5"]
+    assert written([1e-4, 1e-2, 1.0]) == ["10⁻⁴", "10⁻²", "1"]
+    assert list(Axis("", 0.0, 2.0, last=1.0, about=4).ticks()) == [0.0, 0.5, 1.0]
+    assert list(Axis("", 1.1, 1.3, log=True, about=2).ticks()) == pytest.approx([1.1, 1.2, 1.3])
+
+
+def test_axes_hold_their_values():
+    held = spanning("", np.array([1.0, math.nan, 4.0]))
+    assert (held.low, held.high) == (0.0, pytest.approx(4.24))
+    assert spanning("", np.array([])).high > 0.0
+    held = log_spanning("", np.array([0.0, 0.1, math.inf, 10.0]))
+    assert 0.05 < held.low < 0.1 < 10.0 < held.high < 20.0
+    assert decades("", [0.5]).fraction(np.array([0.1, 1.0])).tolist() == [0.0, 1.0]
+
+
+def test_a_curve_without_repeats_keeps_its_ends_and_gaps():
+    x, y = np.linspace(0.0, 1.0, 10_001), np.zeros(10_001)
+    y[5000] = math.nan
+    thinner, values = without_repeats(x, y, 10)
+    assert len(thinner) < 210
+    assert (thinner[0], thinner[-1]) == pytest.approx((0.0, 1.0), abs=0.01)
+    assert np.isnan(values).sum() == 1
+
+
+def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
+    panel = Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), [], "caption", width=300.0)
+    flowing = Figure([panel] * 3, "three")
+    assert svg.drawn(flowing).count("<figure") == 3
+    assert len({axes.get_position().x0 for axes in _laid_out(flowing, 160.0).axes}) == 2
+    assert len({axes.get_position().x0 for axes in _laid_out(flowing, 80.0).axes}) == 1
+    half = Panel(panel.x, panel.y, [], width=150.0)
+    stacked = Figure([panel, half, half], "two rows", stacked=True)
+    assert [len(row) for row in stacked.rows] == [1, 2]
+    assert svg.drawn(stacked).count("<svg") == 1
+    tall = Figure([panel, panel, panel], "three rows", stacked=True)
+    assert len({re.search('viewBox="([^"]*)"', one)[1] for one in svg.alike([stacked, tall])}) == 1
+
+
+def _laid_out(shown, width_mm):
+    drawn = paper.drawn(shown, width_mm)
+    drawn.draw_without_rendering()
+    return drawn
+
+
+def test_colours_and_dashes_of_paper_are_those_of_the_page():
+    style = (Path(rockbatch.report.__file__).parent / "style.css").read_text(encoding="utf-8").split("@media")[0]
+    colours = dict(re.findall(r"--(\w+): (#\w{6})", style))
+    assert list(paper.PALETTE) == [colours["ink"], *(colours[f"s{i}"] for i in range(1, COLOURS + 1))]
+    assert tuple(colours[name] for name in ("alarm", "muted", "band")) == (paper.ALARM, paper.MUTED, paper.PALE)
+    assert len(paper._DASHES) == DASHES
+    assert set(description.SHAPES) | set(description.ENDED) <= set(paper._MARKERS)
+    assert set(paper._MARKERS) == set(svg._OUTLINES) | {"failed"}
+    assert len({line_of(place) for place in range(COLOURS * DASHES)}) == COLOURS * DASHES
+
+
+def test_the_page_and_every_plot_show_figures_of_the_same_functions(tmp_path, monkeypatch):
+    made, describe = set(), Figure.__init__
+
+    def noted(self, *args, **more):
+        frame = sys._getframe(1)
+        made.add(f"{frame.f_globals['__name__']}.{frame.f_code.co_name}")
+        describe(self, *args, **more)
+
+    monkeypatch.setattr(Figure, "__init__", noted)
+    study = write_study(
+        tmp_path, study_text(pulses=[SINE | {"name": f"sine {n}"} for n in range(3)], cases=[RIGID, PADS])
+    )
+    rb.run(study, tmp_path / "out")
+    of_page, results = set(made), rb.open_results(tmp_path / "out")
+    made.clear()
+    results.plot()
+    results.plot_cdf()
+    results.responses[0].plot()
+    response = results.responses[1]
+    rb.statics(response.pier, response.base).plot()
+    of_plots = made - {"rockbatch.results.figures.peaks_of_all"}  # which gives the panels of `peaks` a title
+    assert of_plots <= of_page
+    assert {name.rpartition(".")[2] for name in of_plots} == {"peaks", "distributions", "history", "statics"}
