@@ -24,10 +24,6 @@ ENDED = {
 """Statuses of runs without a largest rotation, in words; each has its own shape, "failed" a question mark."""
 
 
-VISIBLE = 0.015
-"""Share of the axis: shorter error bars hide behind their marker."""
-
-
 @dataclass(frozen=True)
 class Look:
     """Style of a mark.
@@ -86,7 +82,7 @@ class Area(Mark):
 
 @dataclass(frozen=True, eq=False)
 class Points(Mark):
-    """Markers, with half the lengths of error bars, and tooltips of each; ``shade`` are a scale and values, drawn as tone."""
+    """Markers with half the lengths of error bars, none where 0, and tooltips; ``shade`` is a scale and values, drawn as tone."""
 
     x: Array
     y: Array
