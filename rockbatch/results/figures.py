@@ -205,21 +205,12 @@ def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
             yield Points(x, y, look=look, label=label, shade=None if label else (tone, values))
 
 
-def _to_12_digits(value: float) -> float:
-    return float(f"{value:.12g}")
-
-
 def _with_groups(runs: "pd.DataFrame", results: Labelled, info: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
-
-    To 12 digits: an axis cannot be as narrow as rounding.
-    """
-    pgv = {record["record"]: record["pgv_m_s"] for record in info["records"]}
-    frequency, intensity = [], []
-    for run in as_dicts(runs[["record", "series", "pier", "scale", "alpha", "pga"]]):
-        pier, speed = results.cases[run["series"], run["pier"]]["pier"], pgv[run["record"]]
-        pga = run["pga"] / run["scale"]
-        frequency.append(_to_12_digits(pga * pier["gravity"] / (speed * pier["p"]) if speed else math.nan))
-        intensity.append(_to_12_digits(run["pga"] / math.tan(run["alpha"])))
-    table = runs.assign(frequency=frequency, intensity=intensity)
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves."""
+    piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
+    pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)
+    size = [pier["gravity"] / pier["p"] for pier in piers]
+    table = runs.assign(
+        frequency=size * runs["pga"] / (runs["scale"] * pgv), intensity=runs["pga"] / np.tan(runs["alpha"])
+    )
     return _some(table[table["frequency"] > 0])

@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -239,15 +238,13 @@ class Panel:
         Whether its axes are drawn; without them its marks have one scale both ways.
     """
 
-    TALL: ClassVar[float] = 132.0
-
     x: Axis
     y: Axis
     marks: Sequence[Mark]
     caption: str = ""
     note: str = ""
     width: float = 300.0
-    height: float = TALL
+    height: float = 132.0
     reads: str = ""
     framed: bool = True
 
@@ -256,7 +253,7 @@ class Panel:
 class Figure:
     """Panels beside each other as room permits, or ``stacked`` in rows that are as wide as the widest; and one legend.
 
-    ``description`` is for those who cannot see it; ``keys`` are further entries of the legend, each a mark.
+    ``description`` is for those who cannot see it.
     """
 
     panels: Sequence[Panel]
