@@ -12,6 +12,9 @@ from rockbatch.study import Study
 SHOW = ("commands", "report", "cli.py", "__init__.py", "__main__.py", "_version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
+OF_ANALYSES = ("command.py", "section.py", "risk_section.py")
+"""Modules of analyses that only show rows, likewise."""
+
 _TOP = Path(__file__).parents[1]
 
 
@@ -42,7 +45,8 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 def sources() -> Iterator[Path]:
     """Yield the modules that take part in what a row says, in a fixed order."""
     for path in sorted(_TOP.rglob("*.py")):
-        if path.relative_to(_TOP).parts[0] not in SHOW:
+        parts = path.relative_to(_TOP).parts
+        if parts[0] not in SHOW and not (parts[0] == "analyses" and parts[-1] in OF_ANALYSES):
             yield path
 
 

@@ -28,7 +28,7 @@ def section(contents: Contents) -> Markup:
     of_clouds = clouds(info)
     return render(
         "analyses/fragility/section.html", info=info, share=share, panels=drawn(curves(info)), table=_table(info, share),
-        little=[f"{entry['limit_state']}, {label(entry)}" for entry in entries if entry["inconclusive"]],
+        little=[f"{entry['limit_state']}, {label(entry)}" for entry in entries if entry["says_little"]],
         open=any("open" in entry for entry in entries), looked=any(entry.get("looked") for entry in entries),
         clouds=drawn(of_clouds) if of_clouds.panels else "", factors=_factors(info),
         own=any(None in row for row in info.get("scales", {}).get("factors", ())),

@@ -177,7 +177,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "dispersion": None,
         "note": note(curve, spec),
         "undecided": curve.undecided._asdict(),
-        "inconclusive": curve.inconclusive,
+        "says_little": curve.inconclusive,
         "median_undecided": _finite(readings.medians) if readings else None,
         "points": [stripe._asdict() for stripe in curve.stripes],
         "capacities": [_finite(cap.decided) for _, cap in curve.capacities],

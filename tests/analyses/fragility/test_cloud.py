@@ -152,7 +152,7 @@ def exactly(limit=LIMIT, share=ALPHA):
 
 
 def test_without_overturning_the_curve_is_lognormal():
-    """θ = (d/a)^(1/b), β = σ/b; and its rate under a power law is the closed form of tests/analysis/test_risk.py."""
+    """θ = (d/a)^(1/b), β = σ/b; and its rate under a power law is the closed form of tests/analyses/fragility/test_risk.py."""
     curve = exactly(share=None)
     theta, beta = (LIMIT / 0.6) ** (1 / B), SIGMA / B
     assert curve.median == pytest.approx(theta, rel=1e-9)
