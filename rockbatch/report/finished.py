@@ -15,8 +15,7 @@ from rockbatch.errors import InputError
 from rockbatch.report.finished_analysis import Contents
 from rockbatch.report.labels import counted
 from rockbatch.report.markup import Markup, join, number, tag
-from rockbatch.results.labelled import by_pga, foundation, groups_of, labelled, pier_of
-from rockbatch.results.labels import Key, Series
+from rockbatch.results.labelled import Labelled, by_pga, foundation, groups_of, labelled, pier_of
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
 from rockbatch.results.rows import NOT_RUN, counts_as, simulated
@@ -27,25 +26,13 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Finished(Contents):
-    """Contents of a folder of results.
+class Finished(Contents, Labelled):
+    """Contents of a folder of results, with its labelled runs.
 
     Attributes
     ----------
     saved : Saved
         Contents of ``peaks.csv`` and ``run.json``.
-    runs : DataFrame
-        The simulated rows of ``peaks.csv``, without mirror images, with further columns: ``series`` and ``pier``, places in
-        the lists below; ``alpha`` [rad]; ``pga`` [g], that of the scaled motion; ``with_vertical``, "" unless the study
-        has both.
-    series : list of Series
-        The foundations.
-    piers : list of str
-        Descriptions of the varied values of each pier; [""] if none varies.
-    places, pier_places : dict
-        Place of each foundation in ``series``, and of the varied values of each pier in ``piers``.
-    cases : dict
-        Entries of run.json for each foundation and pier that have runs, by their places.
     responses : sequence of Response
         Runs whose histories are shown.
     verdicts : sequence of Verdict
@@ -53,12 +40,6 @@ class Finished(Contents):
     """
 
     saved: Saved
-    runs: "pd.DataFrame"
-    series: list[Series]
-    piers: list[str]
-    places: dict[Key, int]
-    pier_places: dict[Key, int]
-    cases: dict[tuple[int, int], dict[str, Any]]
     responses: Sequence[Response] = ()
     verdicts: Sequence[Verdict] = ()
 
@@ -176,10 +157,9 @@ def read(directory: Path, responses: Sequence[Response] | None = None, saved: Re
     ``InputError`` if the results are missing, damaged or do not belong together.
     """
     saved = saved or open_results(directory)
-    own = labelled(saved.peaks, saved.info, saved.directory)
     return Finished(
-        saved.directory, saved.info["study"], saved, own.runs, own.series, own.piers, own.places, own.pier_places, own.cases,
-        saved.responses if responses is None else responses, read_verdicts(saved.directory),
+        **vars(labelled(saved.peaks, saved.info, saved.directory)), directory=saved.directory, study=saved.info["study"],
+        saved=saved, responses=saved.responses if responses is None else responses, verdicts=read_verdicts(saved.directory),
     )  # fmt: skip
 
 

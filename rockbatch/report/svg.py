@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.figures.description import (
-    VISIBLE,
     Area,
     Array,
     Figure,
@@ -290,11 +289,9 @@ def _(mark: Points, box: Box) -> Markup:
 
 
 def _error_bars(mark: Points, box: Box) -> Iterator[Markup]:
-    if mark.error is None:
-        return
-    axis = box.panel.y
-    for x, y, error in zip(mark.x, mark.y, mark.error, strict=True):
-        if error > VISIBLE * (axis.high - axis.low):
+    axis, errors = box.panel.y, np.zeros(len(mark.x)) if mark.error is None else mark.error
+    for x, y, error in zip(mark.x, mark.y, errors, strict=True):
+        if error > 0.0:
             at, (top, foot) = float(box.across(x)), box.down(np.clip([y + error, y - error], axis.low, axis.high))
             yield tag("path", d=f"M{at - 2.5:.1f} {top:.1f}h5m-2.5 0V{foot:.1f}m-2.5 0h5", class_="bar")
 

@@ -10,7 +10,6 @@ from rockbatch.common.figures.description import (
     COLOURS,
     DASHES,
     ENDED,
-    VISIBLE,
     Axis,
     Figure,
     Line,
@@ -34,6 +33,8 @@ from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 
 THETA = "θ_max/α"
+VISIBLE = 0.015
+"""Share of the axis: shorter error bars hide behind their marker."""
 MOST_PANELS = 24
 SPREAD = 0.64
 """Share of the distance of two foundations, over which the marks of different sides are spread."""
@@ -77,6 +78,7 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: fl
     theta, error = (
         np.array([run[name] for run in runs], dtype=float) for name in ("theta_max_over_alpha", "theta_max_error")
     )
+    error = np.where(error > VISIBLE * top, error, 0.0)
     stood = np.array([run["status"] == "ok" for run in runs]) & ~np.isnan(theta)
     if one.rigid:
         colour = place + 1 if len(sides) > 2 else 0
@@ -84,12 +86,12 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: fl
         levels = np.where(stood, theta, 1.09 * top)[[run["status"] != "failed" for run in runs]]
         yield Rule("y", levels, look=look, label=label, title="; ".join(titles))
         for low, high in zip(theta - error, theta + error, strict=True):
-            if high - low > 2.0 * VISIBLE * top:
+            if high > low:
                 yield Line(np.full(2, at), np.array([low, high]), look=Look("bar"))
     else:
         look = marks_of(one.index, place == 1) if len(sides) < 3 else marks_of(place)
         titles_of = [title for title, stands in zip(titles, stood, strict=True) if stands]
-        yield Points(x[stood], theta[stood], np.nan_to_num(error[stood]), titles_of, look=look, label=label)
+        yield Points(x[stood], theta[stood], error[stood], titles_of, look=look, label=label)
     for status, words in ENDED.items():
         ended = [i for i, run in enumerate(runs) if run["status"] == status]
         if ended:
@@ -203,21 +205,12 @@ def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
             yield Points(x, y, look=look, label=label, shade=None if label else (tone, values))
 
 
-def _to_12_digits(value: float) -> float:
-    return float(f"{value:.12g}")
-
-
 def _with_groups(runs: "pd.DataFrame", results: Labelled, info: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
-
-    To 12 digits: an axis cannot be as narrow as rounding.
-    """
-    pgv = {record["record"]: record["pgv_m_s"] for record in info["records"]}
-    frequency, intensity = [], []
-    for run in as_dicts(runs[["record", "series", "pier", "scale", "alpha", "pga"]]):
-        pier, speed = results.cases[run["series"], run["pier"]]["pier"], pgv[run["record"]]
-        pga = run["pga"] / run["scale"]
-        frequency.append(_to_12_digits(pga * pier["gravity"] / (speed * pier["p"]) if speed else math.nan))
-        intensity.append(_to_12_digits(run["pga"] / math.tan(run["alpha"])))
-    table = runs.assign(frequency=frequency, intensity=intensity)
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves."""
+    piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
+    pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)
+    size = [pier["gravity"] / pier["p"] for pier in piers]
+    table = runs.assign(
+        frequency=size * runs["pga"] / (runs["scale"] * pgv), intensity=runs["pga"] / np.tan(runs["alpha"])
+    )
     return _some(table[table["frequency"] > 0])

@@ -132,7 +132,8 @@ def _scale(histories: Sequence[History], row: int) -> Axis:
     """Return one scale for all columns, not stretched by piers that overturned."""
     stood = [one for one in histories if one.status == "ok"] or histories
     bands = [np.array([-one.band, one.band]) for one in stood] if row == 0 else []
-    return spanning(QUANTITIES[row], *(one.curves[row][1] for one in stood), *bands)
+    margin = 0.15 if row == 0 else 0.06  # strokes of events stand beyond the curve
+    return spanning(QUANTITIES[row], *(one.curves[row][1] for one in stood), *bands, margin=margin)
 
 
 def _standing(one: History, row: int) -> Array:

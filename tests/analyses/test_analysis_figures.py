@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from figure_makers import makers
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -76,7 +77,7 @@ def test_a_fragility_has_its_shares_and_one_colour_for_each_case(tmp_path):
                 assert mark.y == pytest.approx(rows["exceeded"] / rows["n"])
     assert {len(colours[case]) for case in ("rigid", "pads")} == {1}
     assert colours["rigid"] != colours["pads"]
-    result.plot().draw_without_rendering()
+    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
 
 
 def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_and_record(tmp_path):
@@ -93,6 +94,9 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_a
     panels = [axes for axes in result.plot().axes if axes.lines]
     titles = [axes.get_title().rpartition(", ")[0] or axes.get_title() for axes in panels]
     assert titles == ["rigid", "pads", "sine (sine), rigid", "sine (sine), pads"]
+    assert makers(result.plot) - {"rockbatch.analyses.spectrum.analysis.plot"} <= makers(
+        lambda: result.save(tmp_path / "out")
+    )
 
 
 def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(tmp_path):
@@ -142,7 +146,7 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     ordered = result.sobol.sort_values("total", ascending=False, kind="stable")
     whiskers = [line.x.mean() for line in of_kind(indices.marks, Line)]
     assert whiskers == pytest.approx([row[name] for row in ordered.to_dict("records") for name in INDICES])
-    result.plot(88.0).draw_without_rendering()
+    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
 
 
 def test_an_accuracy_has_its_errors_over_times_and_steps_beside_the_marks():

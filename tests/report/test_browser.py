@@ -111,7 +111,7 @@ def test_markers_say_their_value_to_the_pointer_and_to_the_arrow_keys(tmp_path, 
     """
     found = browse(tmp_path, page, act)
     assert re.fullmatch(r"3: β = 80, η = 2.5: 0\.\d{4} ± 3e-06", found["pointed"].replace("\u00a0", " "))
-    assert found["first"].startswith(f"{FIG7[0][0]} PGA = 0.515 g\nrigid: 0.")
+    assert found["first"].replace("\u00a0", " ").startswith(f"{FIG7[0][0]} PGA = 0.515 g\nrigid: 0.")
     assert "\n1: β" in found["second"]
     assert found["none"] is None
 

@@ -59,7 +59,7 @@ def test_marks_and_lines_are_the_rows_of_the_table(results):
             row = rows[(rows["case"] == "pads") & (rows["p"] == p) & (rows["beta"] == beta)]
             mark = marks[f"{letter} – pads: β = {beta} (p = {p:g} rad/s)", is_open]
             assert mark.y == pytest.approx(row["theta_max_over_alpha"])
-            assert mark.error == pytest.approx(row["theta_max_error"])
+            assert mark.error.tolist() == [0.0]  # shorter than its marker
             assert mark.x == pytest.approx([place + (0.16 if is_open else -0.16)])
     rigid = sorted(float(mark.at[0]) for mark in panel.marks if isinstance(mark, Rule))
     assert rigid == pytest.approx(sorted(rows[rows["case"] == "rock"]["theta_max_over_alpha"]))
@@ -75,6 +75,9 @@ def test_runs_without_a_peak_stand_above_the_axis_values(results):
     highest = results.peaks.loc[results.peaks["status"] == "ok", "theta_max_over_alpha"].max()
     assert min(mark.y.min() for mark in marks) > highest
     assert all(panel.y.last < panel.y.high for panel in figure.panels)
+    rock = rows[(rows["case"] == "rock") & (rows["status"] == "overturned")]
+    lines = [float(mark.at[0]) for mark in panels["strong"].marks if isinstance(mark, Rule)]
+    assert sum(at > panels["strong"].y.last for at in lines) == len(rock) > 0
 
 
 def test_a_run_that_failed_stands_at_the_foot_and_its_error_is_not_drawn(results):
@@ -85,6 +88,17 @@ def test_a_run_that_failed_stands_at_the_foot_and_its_error_is_not_drawn(results
     marks = [mark for mark in panel.marks if mark.label == ENDED["failed"]]
     assert [len(mark.x) for mark in marks] == [1, 1]
     assert max(mark.y.max() for mark in marks) < 0.1 * panel.y.last
+
+
+def test_errors_longer_than_their_marker_have_bars_also_those_of_a_line(results):
+    peaks = results.peaks.copy()
+    weak = peaks["record"] == "weak"
+    peaks.loc[weak & peaks["case"].isin(["rock", "pads"]) & (peaks["p"] == 1.0), "theta_max_error"] = 0.2
+    panel = peaks_of(replace(results, peaks=peaks))[1]["weak"]
+    marks = [mark for mark in panel.marks if isinstance(mark, Points) and not mark.look.open]
+    assert [mark.error.tolist() for mark in marks] == [[0.2], [0.2]]
+    (bar,) = (mark for mark in panel.marks if isinstance(mark, Line))
+    assert np.ptp(bar.y) == pytest.approx(0.4)
 
 
 def test_three_sides_and_more_have_colours_of_their_own(results):
@@ -110,6 +124,7 @@ def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturn
     assert [panel.caption.replace("\u00a0", " ") for panel in figure.panels] == ["p = 1 rad/s", "p = 2 rad/s"]
     peaks = results.peaks[results.peaks["mirror_of"] == ""]
     for panel, p in zip(figure.panels, (1.0, 2.0), strict=True):
+        assert panel.x.last < panel.x.high  # no numbers where what overturned stands
         curves = [mark for mark in panel.marks if isinstance(mark, Line) and mark.name]
         assert len(curves) == 3
         rows = peaks[(peaks["p"] == p) & (peaks["case"] == "rock")]

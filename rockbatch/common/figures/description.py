@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -22,10 +21,6 @@ ENDED = {
     "overturned": "overturned", "flight": "flight: both pivots off the ground", "failed": "no result: the run failed",
 }  # fmt: skip
 """Statuses of runs without a largest rotation, in words; each has its own shape, "failed" a question mark."""
-
-
-VISIBLE = 0.015
-"""Share of the axis: shorter error bars hide behind their marker."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +81,7 @@ class Area(Mark):
 
 @dataclass(frozen=True, eq=False)
 class Points(Mark):
-    """Markers, with half the lengths of error bars, and tooltips of each; ``shade`` are a scale and values, drawn as tone."""
+    """Markers with half the lengths of error bars, none where 0, and tooltips; ``shade`` is a scale and values, drawn as tone."""
 
     x: Array
     y: Array
@@ -243,15 +238,13 @@ class Panel:
         Whether its axes are drawn; without them its marks have one scale both ways.
     """
 
-    TALL: ClassVar[float] = 132.0
-
     x: Axis
     y: Axis
     marks: Sequence[Mark]
     caption: str = ""
     note: str = ""
     width: float = 300.0
-    height: float = TALL
+    height: float = 132.0
     reads: str = ""
     framed: bool = True
 
@@ -260,7 +253,7 @@ class Panel:
 class Figure:
     """Panels beside each other as room permits, or ``stacked`` in rows that are as wide as the widest; and one legend.
 
-    ``description`` is for those who cannot see it; ``keys`` are further entries of the legend, each a mark.
+    ``description`` is for those who cannot see it.
     """
 
     panels: Sequence[Panel]

@@ -19,6 +19,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure as MatplotlibFigure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from rockbatch.common.figures.description import (
@@ -92,7 +93,7 @@ def drawn(figure: Figure, width_mm: float) -> MatplotlibFigure:
             each = grid.ncols // abreast
             for column, panel in enumerate(row):
                 axes = result.add_subplot(grid[place, column * each : (column + 1) * each])
-                for mark, artist in _panel(axes, panel, int(LETTERS * (width_mm / abreast - BESIDE))):
+                for mark, artist in _panel(axes, panel, width_mm / abreast):
                     entries.setdefault(mark.label, {}).setdefault(type(mark), artist)
         entries.pop("", None)
         _colour_bar(result, figure)
@@ -137,17 +138,21 @@ def _rows(figure: Figure, width_mm: float) -> Iterator[Sequence[Panel]]:
 def _height(panel: Panel, width_mm: float, stacked: bool) -> float:
     """Return the height of a panel with what stands above and below it [mm]."""
     wider = 1.0 if stacked else min(max(width_mm / (MM * panel.width), 0.8), 1.5)
-    return (
-        MM * panel.height * wider + 4.0 * bool(panel.caption) + 4.0 * panel.x.numbered + 4.0 * bool(panel.x.label) + 2.0
-    )
+    beside = 3.2 * len(_caption(panel, width_mm)) + 4.0 * panel.x.numbered + 4.0 * bool(panel.x.label) + 2.0
+    return MM * panel.height * wider + beside
 
 
-def _panel(axes: Axes, panel: Panel, letters: int) -> Iterator[tuple[Mark, Artist]]:
+def _caption(panel: Panel, width_mm: float) -> list[str]:
+    """Return the lines of a panel's caption."""
+    words = ", ".join(filter(None, (panel.caption, panel.note)))
+    return textwrap.wrap(words, int(LETTERS * (width_mm - BESIDE)))
+
+
+def _panel(axes: Axes, panel: Panel, width_mm: float) -> Iterator[tuple[Mark, Artist]]:
     """Draw a panel; yield its marks as they are drawn."""
     for mark in panel.marks:
         yield mark, _draw(mark, axes)
-    caption = ", ".join(filter(None, (panel.caption, panel.note)))
-    axes.set_title("\n".join(map(_text, textwrap.wrap(caption, letters))))
+    axes.set_title("\n".join(map(_text, _caption(panel, width_mm))))
     for axis, scale in (("x", panel.x), ("y", panel.y)):
         _axis(axes, axis, scale)
     if not panel.framed:
@@ -216,8 +221,16 @@ def _(mark: Area, axes: Axes) -> Artist:
 @_draw.register
 def _(mark: Points, axes: Axes) -> Artist:
     style = _style(mark.look) | {"linestyle": "", "marker": _MARKERS[mark.look.shape]}
-    if mark.error is not None and np.any(mark.error > 0):
-        axes.errorbar(mark.x, mark.y, mark.error, fmt="none", ecolor=PALETTE[0], elinewidth=0.6, capsize=1.5)
+    if mark.error is not None and np.any(longer := mark.error > 0.0):
+        axes.errorbar(
+            mark.x[longer],
+            mark.y[longer],
+            mark.error[longer],
+            fmt="none",
+            ecolor=PALETTE[0],
+            elinewidth=0.6,
+            capsize=1.5,
+        )
     if mark.shade is not None:
         scale, values = mark.shade
         toned = axes.scatter(mark.x, mark.y, 14.0, values, norm=LogNorm(scale.low, scale.high), cmap="cividis")
@@ -246,5 +259,6 @@ def _(mark: Span, axes: Axes) -> Artist:
 def _(mark: Words, axes: Axes) -> Artist:
     return axes.annotate(
         _text(mark.text), (mark.x, mark.y), (4.0 * mark.side, 0.7 * mark.lift), textcoords="offset points", fontsize=6.0,
-        color=_style(mark.look)["color"], va="center", ha={-1: "right", 0: "center", 1: "left"}[mark.side],
+        color=_style(mark.look)["color"], va="center", path_effects=[withStroke(linewidth=1.5, foreground="w")], zorder=4.0,
+        ha={-1: "right", 0: "center", 1: "left"}[mark.side],
     )  # fmt: skip

@@ -116,5 +116,5 @@ def _captions(finished: Finished, record: str, runs: "pd.DataFrame") -> tuple[st
     """Return the caption of a record's panel, and its name in tables and peak ground acceleration."""
     pga = float(runs.loc[runs["record"] == record, "pga"].iloc[0])
     label = finished.label(record)
-    parts = ("" if label == record else record, f"PGA = {pga:.3f} g" if math.isfinite(pga) else "")
+    parts = ("" if label == record else record, f"PGA = {pga:.3f}\u00a0g" if math.isfinite(pga) else "")
     return label, ", ".join(filter(None, parts))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from figure_makers import makers
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicSpline
 
@@ -247,6 +248,7 @@ def test_the_command_leaves_what_python_has(tmp_path, capsys):
     assert "The release test" in page
     assert "of Housner" in page
     assert len(result.plot().axes) == 1
+    assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
 
 
 def test_half_cycles_of_a_block_are_those_in_closed_form():
