@@ -186,7 +186,7 @@ def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
         yield _readable(box, [_draw(line, box) for line in named])
     yield from (_draw(mark, box) for mark in panel.marks if mark not in behind and mark not in named)
     if panel.y.label:
-        yield text(max(box.left - 34.0, 2.0), box.top - 9.0, *_lettered(panel.y.label), class_="q")
+        yield text(max(box.left - 34.0 * panel.y.numbered, 2.0), box.top - 9.0, *_lettered(panel.y.label), class_="q")
     if panel.x.label:
         yield text(
             box.left + box.width / 2, box.foot + 14.0 * panel.x.numbered + 15.0, *_lettered(panel.x.label), class_="m q"

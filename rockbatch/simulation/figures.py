@@ -190,7 +190,7 @@ def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
     panels = []
     for side, own, force in zip(sides, v, forces, strict=True):
         marks: list[Mark] = [Line(*without_repeats(own, force, pixels), y.plain, look=Look("curve", 1))]
-        scale = y if side == "left" else replace(y, label="", numbered=False)
+        scale = replace(y, numbered=side == "left")
         panels.append(
             Panel(x, scale, marks + [yields] * base.yields, side, width=WIDTH / 2, height=LOOPS, reads="plane")
         )

@@ -115,6 +115,7 @@ def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
 def test_long_names_of_what_has_no_peak_leave_the_figure_its_room(tmp_path):
     names = ["a foundation with a long name", "another one with a long name"]
     cases = [case_entry(name, {}, PIER, RigidBase()) for name in names]
+    cases.append(case_entry("pads", {}, PIER, YieldingBase(beta=40.0, eta=2.5)))
     write_results(tmp_path, cases=cases, changes={("RRS228", name): {"status": "overturned"} for name in names})
     text = write_report(tmp_path, []).read_text(encoding="utf-8")
     worst = re.search(r'<span class="ends">(.*?)</span></span>', text, re.DOTALL)[1]
