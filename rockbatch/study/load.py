@@ -88,14 +88,15 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "sa_pairs": Key(choice(*DIRECTIONS), '["rotd50", "rotd100"]',
         "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
         "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-    "estimate": Key(boolean, "true",
-        "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
-}), instead=names({"write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file"}))  # fmt: skip
+}), instead=names({
+    "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
+    "the estimates of design practice are an example now, benchmarks/code_estimates.py; leave it out": "estimate estimates",
+}))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 

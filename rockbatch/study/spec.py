@@ -116,7 +116,6 @@ class Output:
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     sa_pairs: tuple[str, ...] = ()
-    estimate: bool = False
     half_cycles: bool = False
 
 
