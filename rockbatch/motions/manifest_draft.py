@@ -31,7 +31,7 @@ _HEAD = """\
 _ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
 
 
-def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
+def write_manifest(folder: Path, options: ReadOptions | None = None) -> Path:
     """Write ``motions.toml`` into ``folder``; ``InputError`` if there is a manifest, which is never written over."""
     target = folder / "motions.toml"
     if not folder.is_dir():

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rockbatch.common.grouping import grouped
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
@@ -89,7 +90,7 @@ MOST_FACTOR = 4.0
 
 
 def at_target(
-    motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
+    motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float = GRAVITY, confirmed: Sequence[str] = ()
 ) -> MotionSet:
     """Return all motions scaled to ``target``, with the factor noted; one without motion is unusable.
 

@@ -16,7 +16,7 @@ from motion_files import at2_text, wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import archives, read_motions
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 NAMES = {"RSN1063_NORTHR_RRS228.AT2": 1, "RSN1063_NORTHR_RRS318.AT2": 2, "RSN1063_NORTHR_RRS-UP.AT2": 3}
 
@@ -113,7 +113,7 @@ def test_manifest_and_draft_reach_into_archives(tmp_path):
     peer_zip(tmp_path / "peer.zip")
     (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(at2("000.AT2", 4).encode()))
     before = read_motions(tmp_path)
-    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert [(m.name, m.vertical_source, m.notes) for m in read_motions(tmp_path).motions] == [
         (m.name, m.vertical_source, m.notes) for m in before.motions
     ]

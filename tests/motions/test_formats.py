@@ -14,7 +14,7 @@ from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, with_obspy
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 
 def only_reason(found) -> str:
@@ -157,7 +157,7 @@ def test_two_events_in_a_file_are_two_records_each_with_its_vertical_and_turned_
     turned = read_motions(tmp_path, confirmed=["*"], options=options, azimuths=(0.0, 90.0))
     assert len(turned.motions) == 4
     assert not turned.unusable
-    draft = write_draft(tmp_path, options)
+    draft = write_manifest(tmp_path, options)
     again = read_motions(tmp_path, confirmed=["*"], options=options)
     assert draft.read_text().count(f'{second}"') == 3
     assert [motion.name for motion in again.motions] == names

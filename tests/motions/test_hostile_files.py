@@ -16,7 +16,7 @@ from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions, columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 
 def names(found) -> list[str]:
@@ -256,7 +256,7 @@ def test_words_of_a_header_come_no_further_than_the_reader(tmp_path):
 def test_a_delete_sign_in_a_header_leaves_the_drafted_manifest_one_that_can_be_read(tmp_path):
     write_at2(tmp_path, "a.AT2", wiggle(), title="Event, 1/17/1994, Sta\x7ftion\x1b, 000")
     write_at2(tmp_path, "b.AT2", wiggle(seed=2), title="Event, 1/17/1994, Sta\x7ftion\x1b, UP")
-    write_draft(tmp_path)
+    write_manifest(tmp_path)
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical_source == "b.AT2"
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.motions import Unusable
+from rockbatch.motions import LeftOut, Unusable
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 
 
@@ -72,6 +72,15 @@ def test_a_set_and_a_motion_tell_of_themselves_in_a_few_lines():
         "  PGA      0.500 g, vertical 0.200 g",
         "  from     strong.txt",
     ]
+
+
+def test_components_of_a_station_stand_together():
+    pair = [rb.Motion(name, 0.02, np.ones(3), station="S") for name in ("a", "b")]
+    assert rb.MotionSet([*pair, motion("c", 1.0)]).stations() == {"S": pair, "c": [motion("c", 1.0)]}
+
+
+def test_what_could_not_be_used_is_printed_as_its_file_and_the_reason():
+    assert str(FOUND.unusable[0]) == str(LeftOut("bad", "bad.txt", "it ends early")) == "bad.txt: it ends early"
 
 
 def test_a_notebook_shows_the_first_of_many_rows_and_escapes_names():
