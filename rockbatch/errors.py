@@ -40,7 +40,7 @@ def remedy(name: str) -> str:
 
 
 class NoRecordError(InputError):
-    """A file beside records that is none: spectra, velocities, notes; of a ``station``, if a record of it replaces it."""
+    """A file without accelerations: spectra, velocities, notes; of a ``station``, if a record of it replaces it."""
 
     def __init__(self, problem: str, station: str = "") -> None:
         super().__init__(problem)

@@ -49,8 +49,8 @@ class Target:
 
     def __str__(self) -> str:
         if self.sa_g is not None:
-            of_pairs = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
-            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){of_pairs} = {self.sa_g:g} g"
+            measure = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
+            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){measure} = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
@@ -204,9 +204,9 @@ def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Un
             motion.files,
             f'{lacks}: {reason}; write pairs = "apart", or leave it out',
         )
-        for of_station in stations.values()
-        if (reason := unpaired(of_station))
-        for motion in of_station
+        for station in stations.values()
+        if (reason := unpaired(station))
+        for motion in station
     ]
 
 
