@@ -57,7 +57,7 @@ def test_a_zip_gives_what_its_files_give_in_a_folder_under_names_that_lead_to_it
     assert not packed.unusable
 
 
-def test_files_of_two_archives_are_not_paired_and_told_apart_by_their_archives(tmp_path):
+def test_files_of_two_archives_are_not_paired_and_bear_the_names_of_their_archives(tmp_path):
     for name, seed in (("a.zip", 1), ("b.zip", 2)):
         write_zip(tmp_path / name, {"Y000.AT2": at2_text(wiggle(50, seed), title="nothing")})
     write_zip(tmp_path / "c.zip", {"Y-UP.AT2": at2_text(wiggle(50, 3), title="nothing")})
@@ -249,7 +249,7 @@ def test_a_damaged_archive_ends_in_records_or_reasons(tmp_path):
     assert reasons > 100
 
 
-def test_a_record_in_a_file_without_a_known_suffix_is_told_by_its_header(tmp_path):
+def test_a_record_in_a_file_without_a_known_suffix_is_recognised_by_its_header(tmp_path):
     write_at2(tmp_path, "RSN1063_NORTHR_RRS228.AT2.90", wiggle(50, 1))
     (tmp_path / "unknown").write_text("hello\n")
     found = read_motions(tmp_path)

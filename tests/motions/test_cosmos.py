@@ -10,14 +10,11 @@ from fixed_column_files import (
     A,
     B,
     C,
-    assert_components_or_input_error,
     cosmos_header,
     cosmos_series,
     cosmos_text,
-    damaged,
     read,
 )
-from hypothesis import given, settings
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
@@ -203,17 +200,6 @@ def test_what_cannot_be_used_is_refused_with_place_and_finding(text, message):
         read(text, "x.V1")
 
 
-def test_a_file_cut_after_any_line_keeps_whole_channels_only():
-    lines = three_channels().splitlines(keepends=True)
-    each = len(lines) // 3
-    for end in range(1, len(lines)):
-        if end % each:
-            with pytest.raises(InputError):
-                read("".join(lines[:end]), "x.V1")
-        else:
-            assert [len(c.acceleration) for c in read("".join(lines[:end]), "x.V1")] == [NPTS] * (end // each)
-
-
 def test_obspy_gets_the_files_own_unit_and_the_channels_codes(tmp_path):
     path = tmp_path / "x.V1c"
     path.write_bytes(cosmos_text().encode("latin-1"))
@@ -226,12 +212,3 @@ def test_obspy_gets_the_files_own_unit_and_the_channels_codes(tmp_path):
     assert [trace.stats.npts for trace in read_cosmos_stream(io.BytesIO(three_channels().encode("latin-1")))] == [
         NPTS
     ] * 3
-
-
-GOOD = cosmos_text().encode("latin-1")
-
-
-@settings(max_examples=100, deadline=1000)
-@given(damaged(GOOD))
-def test_a_damaged_file_ends_in_components_or_an_input_error(data):
-    assert_components_or_input_error(data, "x.V1c")

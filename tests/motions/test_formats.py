@@ -267,7 +267,7 @@ def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["TST.EW.txt", "AOM003", "20180124.asc", "TST.ew.90"])
-def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+def test_knet_is_recognised_by_its_content_in_a_file_of_any_name(tmp_path, name):
     text, counts = knet_text("E-W")
     (tmp_path / name).write_text(text)
     (motion,) = read_motions(tmp_path).motions
@@ -276,7 +276,7 @@ def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["x.seed", "x.msd", "CI.LRL..HNN.D.2019.187", "x", "x.dat"])
-def test_miniseed_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+def test_miniseed_is_recognised_by_its_content_in_a_file_of_any_name(tmp_path, name):
     write_mseed(tmp_path / name, trace("HNN"))
     (motion,) = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2")).motions
     np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 100, atol=1e-12)

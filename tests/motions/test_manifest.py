@@ -134,7 +134,7 @@ def test_a_motions_csv_without_a_column_of_files_is_a_record(tmp_path):
     assert list(motions_of(tmp_path)) == ["motions"]
 
 
-def test_every_mistake_is_told_at_once_with_its_line(tmp_path):
+def test_all_mistakes_are_one_error_with_their_lines(tmp_path):
     write_records(tmp_path)
     (tmp_path / "outside").mkdir()
     (tmp_path / "motions.toml").write_text("""\
@@ -179,7 +179,7 @@ component = "NS"
     assert "did you mean a0" in problems[1]
 
 
-def test_mistakes_in_a_csv_are_told_with_their_lines_too(tmp_path):
+def test_mistakes_in_a_csv_have_their_lines_too(tmp_path):
     write_records(tmp_path)
     (tmp_path / "motions.csv").write_text("file,azimut,scale\na000.AT2,,x\n\na09.AT2,,1,2\n")
     first, second, third, fourth = problems_of(tmp_path)

@@ -29,7 +29,7 @@ def test_a_set_is_gone_through_as_a_list_of_its_motions():
     assert "bad" not in FOUND
 
 
-def test_a_name_that_is_not_there_is_told_with_those_that_are():
+def test_an_unknown_name_is_an_error_with_the_known_ones():
     with pytest.raises(rb.InputError, match='"stron"; did you mean "strong"'):
         FOUND["stron"]
     with pytest.raises(rb.InputError, match="there are weak, strong"):

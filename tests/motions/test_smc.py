@@ -5,8 +5,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
-from fixed_column_files import NPTS, A, B, C, assert_components_or_input_error, damaged, film_text, read, smc_text
-from hypothesis import given, settings
+from fixed_column_files import NPTS, A, B, C, film_text, read, smc_text
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
@@ -146,12 +145,3 @@ def test_obspy_gets_cm_s2_with_what_the_header_says(tmp_path):
 @pytest.mark.parametrize("other", [b"", b"\x00" * 3000, b"2 CORRECTED ACCELEROGRAM\n" * 20, b"1 2 3\n" * 20])
 def test_nothing_else_is_taken_for_smc(other):
     assert not is_smc_file(io.BytesIO(other))
-
-
-GOOD = smc_text().encode("latin-1")
-
-
-@settings(max_examples=100, deadline=1000)
-@given(damaged(GOOD))
-def test_a_damaged_file_ends_in_components_or_an_input_error(data):
-    assert_components_or_input_error(data, "x.smc")
