@@ -207,12 +207,12 @@ class Study(Shown):
             With every mistake in the changed study, by table and key.
         """
         changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
-        instead = self.motions.instead if motions is None or isinstance(motions, Mapping) else motions
+        override = self.motions.override if motions is None or isinstance(motions, Mapping) else motions
         if not changes:
-            return _checked(self.file(), instead)
+            return _checked(self.file(), override)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), instead)
+        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
 
     @property
     def in_file(self) -> bool:
@@ -231,7 +231,7 @@ class Study(Shown):
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
-        given = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
+        given = len(spec.override) if isinstance(spec.override, MotionSet) else 0
         counts = several(given, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
         still = f"still ground for {spec.still_s:g} s" if spec.still_s is not None else ""
         fixed, error = f"{step.substeps} steps per sample", f"error of theta_max/alpha below {step.tolerance or 0:g}"

@@ -13,9 +13,9 @@ from studies import seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Line, Logistic, fit, fit_event
-from rockbatch.analyses.fragility.hazard_curve import HazardCurve
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.errors import InputError
+from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
 
 LN_A, B, SIGMA, ALPHA = math.log(0.6), 1.2, 0.5, (-1.5, 3.0)
