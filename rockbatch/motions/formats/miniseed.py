@@ -45,7 +45,9 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
         )
     if len(stream) > _MOST_PIECES:
-        raise InputError(f"holds {len(stream)} pieces of channels; {_MOST_PIECES} are the most: divide it by stations")
+        raise InputError(
+            f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
+        )
     segments = grouped(stream, lambda trace: str(trace.id))
     entries, refused = stationxml.channels_beside(file.path.parent, file.root)
     channels = grouped(entries, lambda channel: channel.id)
