@@ -10,7 +10,7 @@ from rockbatch.analysis.fragility_curves import CloudPoint, Curve
 from rockbatch.analysis.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, threshold
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.fragility import FragilitySpec
 
 CLOUD = "fragility_cloud.csv"
