@@ -37,7 +37,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.cli import main
 from rockbatch.errors import EditedTable
 from rockbatch.report.finished_analysis import digest_of
-from rockbatch.results.columns import PART, columns
+from rockbatch.results.columns import JOURNAL, columns
 from rockbatch.simulation import first_substeps, steps_of
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
@@ -400,7 +400,7 @@ class Sample:
         self.study.write_text(STUDY, encoding="utf-8")
         with quiet():
             assert main(["run", str(self.study), "--out", str(folder / "out"), "--shard", "1/1"]) == 0
-            self.journal = (folder / "out" / PART).read_bytes()
+            self.journal = (folder / "out" / JOURNAL).read_bytes()
             assert main(["run", str(self.study), "--out", str(folder / "out")]) == 0
             for analysis in ("fragility", "spectrum", "sensitivity"):
                 assert main([analysis, str(self.study), "--out", str(folder / "out")]) == 0
@@ -430,7 +430,7 @@ class Sample:
 
     def damage_journal(self, rng: Rng) -> str:
         self.clear()
-        part = self.scratch / PART
+        part = self.scratch / JOURNAL
         part.write_bytes(damaged(self.journal, rng, TEXT))
         told: list[str] = []
         with Journal(part, self.columns, self.digest, runs=self.runs, tell=told.append) as journal:

@@ -26,7 +26,8 @@ from printing import as_pdf
 import rockbatch
 from rockbatch import motions
 from rockbatch.cli import COMMANDS, main
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.quantity import BASES_IN_WORDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.schema import FILES, MANIFEST, STUDY, schema_of
 from rockbatch.toml.kinds import Choice, shown
@@ -209,7 +210,7 @@ def _number(value: Any) -> str:
 def _demands() -> Iterator[str]:
     yield from ("## What a check may ask { #demands }", "", "| demand | meaning | bases |", "| --- | --- | --- |")
     for name, demand in DEMANDS.items():
-        yield f"| `{name}` | {demand.words} | {', '.join(demand.bases)} |"
+        yield f"| `{name}` | {demand.words} | {BASES_IN_WORDS[demand.bases] or 'all'} |"
     yield from ("", "## Statistics over the records { #statistics }", "", "| statistic | meaning |", "| --- | --- |")
     for name, statistic in STATISTICS.items():
         yield f"| `{name}` | {statistic.words} |"

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.results.columns import Ran
+from rockbatch.results.columns import FinishedRun
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Case, Study
@@ -33,9 +33,9 @@ class PlannedRun:
         """Return the simulation: the pier of the case on its base, under the motion."""
         return Run(self.case.pier, self.case.base, self.motion)
 
-    def ran(self, outcome: Outcome) -> Ran:
+    def ran(self, outcome: Outcome) -> FinishedRun:
         """Return the run with its outcome."""
-        return Ran(outcome, self.motion, self.polarity, self.scale, self.case, self.mirror_of)
+        return FinishedRun(outcome, self.motion, self.polarity, self.scale, self.case, self.mirror_of)
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:

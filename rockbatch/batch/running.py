@@ -29,7 +29,7 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
-from rockbatch.results.columns import PART, as_table, columns, unusable_rows
+from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
 from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
@@ -151,7 +151,7 @@ def run_into(
     requested = _share(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
-    with Journal(directory / PART, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
+    with Journal(directory / JOURNAL, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
             state = f"{described(study, motions)} are finished in {directory}"
@@ -186,13 +186,13 @@ def merge(
     listener.motions(motions)
     runs = Plan(study, motions)
     digest = study_digests(study, motions)
-    with Journal(directory / PART, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
+    with Journal(directory / JOURNAL, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
         problems = []
         for share in shares:
             try:
-                journal.add_from(share / PART)
+                journal.add_from(share / JOURNAL)
             except FileNotFoundError:
-                problems.append(f"{share / PART}: not there; give folders that `rockbatch run --shard` has written")
+                problems.append(f"{share / JOURNAL}: not there; give folders that `rockbatch run --shard` has written")
             except InputError as error:
                 problems += error.problems
         missing = [number for number in range(len(runs)) if number not in journal]

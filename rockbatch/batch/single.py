@@ -9,7 +9,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
-from rockbatch.results.columns import Ran, as_series, row
+from rockbatch.results.columns import FinishedRun, as_series, row
 from rockbatch.results.shocks import as_table, shock_rows
 from rockbatch.simulation.error_control import run_to_tolerance
 from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
@@ -106,7 +106,9 @@ def simulate(
     if motion.shocks:
         outcomes = by_shock(run, outcome, numerics.quiet_s, error=numerics.substeps is None, wait=wait)
         response = replace(response, shocks=as_table(shock_rows(motion, pier, outcomes)))
-    return replace(response, row=as_series(row(Ran(outcome, motion, "+", 1.0, Case(name, pier, foundation, {})))))
+    return replace(
+        response, row=as_series(row(FinishedRun(outcome, motion, "+", 1.0, Case(name, pier, foundation, {}))))
+    )
 
 
 def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:

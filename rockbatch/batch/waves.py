@@ -10,7 +10,8 @@ from rockbatch.batch.listening import Listener, silent
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.common.lazy import pd
-from rockbatch.results.columns import COUNTS, TEXTS, as_table
+from rockbatch.quantities.catalogue import COUNTS, TEXTS
+from rockbatch.results.columns import as_table
 from rockbatch.study import Study
 
 

@@ -11,7 +11,7 @@ from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.toml.kinds import shown
 
 MOST_NAMES, MOST_ENDS = 6, 3

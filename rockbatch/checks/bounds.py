@@ -8,7 +8,8 @@ import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC, OVERTURNS
-from rockbatch.quantities.demands import DEMANDS, OTHER_LAW, RESIDUAL, Case, creeps
+from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import Values
 from rockbatch.results.rows import NOT_RUN
 from rockbatch.study.rules import USUAL, Rule
@@ -104,7 +105,7 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
 
 def chaotic(rule: Rule, runs: "pd.DataFrame", error: Values) -> npt.NDArray[np.bool_]:
     """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
-    of_peak = np.isnan(runs["theta_max_error"].to_numpy(np.float64, na_value=np.nan)) | (rule.demand in RESIDUAL)
+    of_peak = np.isnan(runs["theta_max_error"].to_numpy(np.float64, na_value=np.nan)) | DEMANDS[rule.demand].residual
     return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
 
 
@@ -128,6 +129,6 @@ def counted(rule: Rule, runs: "pd.DataFrame") -> str:
     parts = []
     for name in (*USUAL, NOT_RUN):
         if n := np.count_nonzero(status == name):
-            kind = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].of_runs else ""
+            kind = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].per_run else ""
             parts.append(f"{n} {name}{kind}")
     return ", ".join(parts)

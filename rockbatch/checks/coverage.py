@@ -7,7 +7,7 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import Case
+from rockbatch.quantities.cases import Case
 from rockbatch.results.rows import NOT_RUN, rows_of_cases
 
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}

@@ -11,7 +11,8 @@ from rockbatch.checks.bounds import SCATTER, by_other_law, by_record, chaotic, c
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.quantities.demands import BROUGHT, DEMANDS, OTHER_LAW, Case, creeps, has_device
+from rockbatch.quantities.cases import Case, creeps, has_device
+from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
 from rockbatch.study.rule_choices import chooses, unmet
@@ -88,7 +89,7 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
     demand = DEMANDS[rule.demand]
     unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
     of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
-    if not demand.of_the_case:
+    if not demand.per_case:
         statistic, number = rule.statistic or "max", len(suite)
         of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suite), "count": count}
     none = Verdict(
@@ -110,7 +111,7 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         return replace(none, note=f"the pier has no {demand.device}")
     if demand.weighed and "mass_t" not in case["pier"]:
         return replace(none, note=NOT_WEIGHED)
-    if not demand.of_the_case:
+    if not demand.per_case:
         return _of_suite(rule, suite, case, none)
     value = float(demand.evaluate(suite, case).value[0])
     if math.isnan(value):

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.demands import Case
+from rockbatch.quantities.cases import Case
 
 MOST_NAMES = 3
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import DEMANDS, OTHER_LAW, TILTS, Case, creeps
+from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
 from rockbatch.results.rows import rows_of_cases
 
-PEAKS = frozenset(
-    ("theta_max_over_alpha", "theta_max_rad", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm")
-)
+PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
 """Demands that are the greatest rotation times a length of the case."""
+TILTS = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
 _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
 

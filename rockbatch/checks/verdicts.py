@@ -10,7 +10,7 @@ from typing import Any
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.rules import COUNTS, is_ban
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)

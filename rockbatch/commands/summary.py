@@ -8,7 +8,7 @@ import numpy as np
 from rockbatch.batch.listening import count
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.results.rows import with_case
 from rockbatch.simulation.outcome import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.study import PIER_KEYS, Study

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, worst_of_all
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import counted, head, symbol
 from rockbatch.report.markup import Markup, join, tag
@@ -15,7 +16,6 @@ from rockbatch.report.sections import peak_rotations, statics, statistics, studi
 from rockbatch.report.sections.answer import worst
 from rockbatch.report.sections.peaks import on_scale, outcome
 from rockbatch.report.table import MOST_ROWS, THETA, THETA_FORMAT, Head, shown_of, table
-from rockbatch.results.columns import COLUMNS
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import digits_that_tell
 from rockbatch.results.suite_statistics import NO_PEAK

@@ -2,9 +2,9 @@
 
 import re
 
+from rockbatch.quantities.quantity import Quantity
 from rockbatch.report.markup import Markup, escape, tag
 from rockbatch.report.table import Head
-from rockbatch.results.columns import Column
 from rockbatch.results.labels import SYMBOLS
 
 
@@ -24,7 +24,7 @@ def heading(words: str) -> Markup:
     return Markup(re.sub(r"_([a-z0]+)", lambda match: tag("sub", match[1]), escape(words)))
 
 
-def head(column: Column) -> Head:
+def head(column: Quantity) -> Head:
     """Return the head of a column of peaks.csv, with its name in the file and its meaning."""
     assert column.page is not None
     factor = f" × {column.page.factor}" if column.page.factor != 1 else ""

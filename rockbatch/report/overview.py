@@ -6,7 +6,7 @@ from typing import Any
 from rockbatch.checks import wording
 from rockbatch.checks.responses import PEAKS
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.report import dots
 from rockbatch.report.finished import Finished
@@ -64,7 +64,7 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
     scales = set(runs["scale"])
     cases_of: dict[dots.Limit, set[str]] = {}
     for verdict in finished.verdicts:
-        most = DEMANDS[verdict.demand].most if verdict.demand in PEAKS else None
+        most = DEMANDS[verdict.demand].ceiling if verdict.demand in PEAKS else None
         if most is None or verdict.case not in names or verdict.scale not in scales or verdict.statistic == "count":
             continue
         words = f"limit of {verdict.check}, {wording.number(verdict.limit)} {verdict.unit}".rstrip()

@@ -10,7 +10,8 @@ from rockbatch.common.files import csv_text, opened_text, replacing, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
-from rockbatch.results.columns import PEAKS, TEXTS
+from rockbatch.quantities.catalogue import TEXTS
+from rockbatch.results.columns import PEAKS
 from rockbatch.results.rows import simulated, with_case
 from rockbatch.study import Study
 

@@ -13,7 +13,7 @@ from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.errors import InputError
-from rockbatch.results.columns import in_words
+from rockbatch.quantities.catalogue import in_words
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled

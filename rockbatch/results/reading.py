@@ -15,7 +15,8 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.errors import EditedTable, InputError, MissingColumns
-from rockbatch.results.columns import COUNTS, MORE, PEAKS, STATUSES, STAYING, TEXTS, UNBOUNDED, names
+from rockbatch.quantities.catalogue import COUNTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
+from rockbatch.results.columns import PEAKS, STATUSES
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
@@ -93,7 +94,7 @@ def read_saved(directory: Path) -> Saved:
             )
     if differs := edited(directory, info):
         warnings.warn(f"{directory / PEAKS}: {differs}; what it says now is shown", EditedTable, stacklevel=2)
-    missing = tuple(name for name in names(MORE) if name not in peaks)
+    missing = tuple(name for name in names(TRAILING) if name not in peaks)
     for name in missing:
         peaks[name] = "" if name in TEXTS else math.nan
     saved = Saved(directory, info, peaks, missing)
@@ -171,7 +172,7 @@ def _legible(value: Any) -> Any:
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     with _naming_damage(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
-    if missing := [name for name in (*names(STAYING), *varied) if name not in head]:
+    if missing := [name for name in (*names(FIXED), *varied) if name not in head]:
         raise InputError(f"{path}:1: has no column {', '.join(missing)}; start `rockbatch run` again")
     if len(set(head)) < len(head) or "" in head:
         fault = "without a name" if "" in head else "twice"

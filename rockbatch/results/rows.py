@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import MIRROR_OF, Case
+from rockbatch.quantities.cases import Case
+from rockbatch.quantities.catalogue import MIRROR_OF
 
 NOT_RUN = "not run"
 

@@ -18,7 +18,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import described, symmetric
-from rockbatch.quantities.demands import BROUGHT
+from rockbatch.quantities.catalogue import BROUGHT
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers

@@ -5,7 +5,8 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 
 from rockbatch.common.grouping import closest
-from rockbatch.quantities.demands import DEMANDS, Case
+from rockbatch.quantities.cases import Case
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 
@@ -77,15 +78,15 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
             f'passes; check the sign; if it is right, write confirm = ["{key}"] in this table'
         )
     mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]))]
-    most = max((demand.most.value(case) for case in mine if demand.most), default=math.inf)
+    most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
     shown = 1e-3 * most if rule.demand in ("top_drift_mm", "heel_uplift_mm") and math.isfinite(most) else 0.0
     if demand.unit == "mm" and 0 < value < max(LEAST_MM, shown):
         yield (
             f"{key} = {value:g}: in mm, as {rule.demand} is, hardly more than nothing; {value:g} m are "
             f'{1000 * value:g} mm; check the unit; if it is right, write confirm = ["{key}"] in this table'
         )
-    if demand.most is not None and value > most:
+    if demand.ceiling is not None and value > most:
         yield (
-            f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.most.beyond}, so the limit decides nothing; check the "
+            f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing; check the "
             f'unit; if it is right, write confirm = ["{key}"] in this table'
         )

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rockbatch.errors import InputError
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.toml.kinds import choice, shown, text
 from rockbatch.toml.meant import names
@@ -106,7 +106,7 @@ def _rules(
         if name is not None:
             names.add(name)
         if file.is_sound_since(before):
-            if counted and "demand" in read and not DEMANDS[read["demand"]].of_the_case:
+            if counted and "demand" in read and not DEMANDS[read["demand"]].per_case:
                 read.setdefault("count", counted)
             try:
                 rule = Rule(**read)

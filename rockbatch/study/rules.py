@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import (
     Choice,
@@ -149,7 +149,7 @@ class Rule:
     def words(self) -> str:
         """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
         demand = DEMANDS[self.demand]
-        if demand.of_the_case:
+        if demand.per_case:
             return self.demand
         statistic = STATISTICS[self.statistic or "max"].words
         if self.is_ban:
@@ -161,7 +161,7 @@ class Rule:
     @property
     def counting(self) -> str:
         """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
-        if not DEMANDS[self.demand].of_runs:
+        if not DEMANDS[self.demand].per_run:
             return ""
         kinds = dict.fromkeys(self.counts(status) for status in USUAL)
         return "; ".join(
@@ -251,7 +251,7 @@ def _misfits(rule: Rule) -> list[str]:
     demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
     two_limits = rule.at_most is not None and rule.at_least is not None
     neither = rule.at_most is None and rule.at_least is None
-    wrong_way = not demand.of_the_case and rule.at_most is None and not neither
+    wrong_way = not demand.per_case and rule.at_most is None and not neither
     least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
     example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
     counts = rule.statistic == "count"
@@ -266,7 +266,7 @@ def _misfits(rule: Rule) -> list[str]:
         ),
         (rule.above is not None and not counts, 'above: is for statistic = "count"; leave it out'),
         (
-            counts and rule.above is None and not (demand.event or demand.of_the_case),
+            counts and rule.above is None and not (demand.event or demand.per_case),
             "above is missing, what a record has to exceed to count; write for example above = 0.5",
         ),
         (
@@ -280,9 +280,9 @@ def _misfits(rule: Rule) -> list[str]:
         (rule.other_law and demand.other_law is None, f"other_law: is for {with_other_law}; leave it out"),
     ]
     without_place = [  # attributes that say nothing about such a demand or statistic
-        (demand.of_the_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
-        (not demand.of_runs, USUAL, f"says nothing about {rule.demand}"),
-        (demand.of_runs and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
+        (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
+        (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
+        (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
     ]
     return [message for applies, message in rules if applies] + [
         f"{name}: {reason}; leave it out"

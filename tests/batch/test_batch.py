@@ -20,7 +20,8 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
-from rockbatch.results.columns import MORE, STAYING, columns, names
+from rockbatch.quantities.catalogue import FIXED, TRAILING, names
+from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -99,7 +100,7 @@ class Heard(Listener):
 
 def test_rows_come_in_the_order_of_the_study(study):
     table = rb.run(study)
-    assert list(table.columns) == [*names(STAYING), "beta", *names(MORE), "mirror_of", "settlement_other_law_m"]
+    assert list(table.columns) == [*names(FIXED), "beta", *names(TRAILING), "mirror_of", "settlement_other_law_m"]
     assert len(table) == 2 * 2 * 2 * 3
     first = table.loc[:5, ["record", "polarity", "scale", "case", "beta"]].astype(object).where(table.notna(), None)
     assert first.to_numpy().tolist() == [

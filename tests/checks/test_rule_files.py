@@ -20,7 +20,7 @@ from rockbatch.checks.checking import verdicts
 from rockbatch.cli import main
 from rockbatch.commands import check
 from rockbatch.errors import InputError
-from rockbatch.quantities.demands import DEMANDS, listed
+from rockbatch.quantities.catalogue import DEMANDS, listed
 from rockbatch.study.rule_files import CHECK, load_rules
 
 CONFIGS = Path(__file__).parents[2] / "configs"

@@ -9,7 +9,7 @@ import pandas as pd
 
 from rockbatch.checks import Verdict
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.results.columns import MORE, STAYING, names
+from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -37,7 +37,7 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
     table = pd.DataFrame({"theta_max_over_alpha": [float(value) for value in theta]})
     table["record"] = [f"r{i}" for i in range(len(table))]
     table["case"], table["polarity"], table["scale"], table["status"], table["reason"] = name, "+", 1.0, "ok", ""
-    for column in names((*STAYING, *MORE)):
+    for column in names((*FIXED, *TRAILING)):
         if column not in table:
             table[column] = math.nan
     table["station"] = table["record"]
@@ -48,7 +48,7 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:
     """Write a folder as ``rockbatch run`` leaves it, of a study with the text ``checks``."""
-    table = peaks.reindex(columns=list(dict.fromkeys([*names(STAYING), *names(MORE), *peaks.columns])))
+    table = peaks.reindex(columns=list(dict.fromkeys([*names(FIXED), *names(TRAILING), *peaks.columns])))
     path.mkdir(exist_ok=True)
     table.to_csv(path / "peaks.csv", index=False, float_format="%.10g")
     records = peaks.loc[peaks["case"] != "", ["record", "station"]].drop_duplicates("record")

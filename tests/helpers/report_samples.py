@@ -13,10 +13,10 @@ import numpy as np
 import pandas as pd
 
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.results.columns import MORE, STAYING, names
+from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.simulation.response import Response
 
-COLUMNS = names((*STAYING, *MORE))
+COLUMNS = names((*FIXED, *TRAILING))
 FIG7 = [
     ("ERZ-NS", 0.515), ("RSN779_LOMAP_LGP000", 0.563), ("RSN1120_KOBE_TAK000", 0.611),
     ("RRS228", 0.838), ("SYL360", 0.843), ("CPM000", 1.497),

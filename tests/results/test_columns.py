@@ -17,23 +17,24 @@ from studies import RIGID, study_text, write_study
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.errors import InputError, MissingColumns
-from rockbatch.quantities.demands import DEMANDS
-from rockbatch.report import write_comparison, write_report
-from rockbatch.results.columns import (
-    ASKED,
+from rockbatch.quantities.cases import THOUSAND
+from rockbatch.quantities.catalogue import (
     COLUMNS,
+    DEMANDS,
     DEVICES,
-    MORE,
-    STAYING,
+    FIXED,
+    OPTIONAL,
+    TRAILING,
     as_markdown,
-    columns,
     names,
-    on_page,
-    units,
+    report_columns,
 )
+from rockbatch.quantities.quantity import Limit, Quantity
+from rockbatch.report import write_comparison, write_report
+from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study.suite import ground_motions
 
 PAGE = Path(rb.__file__).parents[1] / "docs/columns.md"
@@ -107,7 +108,7 @@ def without(directory, *dropped):
 
 
 def test_the_page_of_columns_lists_them_as_the_table_has_them():
-    """To put it right: write what ``rockbatch.results.columns.as_markdown`` gives into docs/columns.md."""
+    """To put it right: write what ``rockbatch.quantities.catalogue.as_markdown`` gives into docs/columns.md."""
     assert as_markdown() in PAGE.read_text(encoding="utf-8")
 
 
@@ -131,6 +132,30 @@ def test_every_number_of_an_outcome_has_its_column():
     assert {field.name for field in fields(Outcome)} - taken == of_functions
 
 
+def test_every_term_of_the_energy_ledger_has_its_column():
+    assert [name for name in COLUMNS if name.startswith("energy_")] == [f"energy_{term}_J_kg" for term in TERMS]
+
+
+def test_a_row_of_the_catalogue_gives_column_heading_and_demands_in_two_units():
+    row = Quantity(
+        "slip_m",
+        "slip",
+        "slip",
+        "m",
+        more=" of the base",
+        error="slip_error_m",
+        limits=(Limit(), Limit(unit="mm", times=THOUSAND)),
+    )
+    assert row.meaning == "slip of the base"
+    runs = pd.DataFrame({"slip_m": [0.5, -0.2], "slip_error_m": [0.1, np.nan]})
+    demands = {demand.name: demand for demand in row.demands()}
+    assert [(name, demand.words) for name, demand in demands.items()] == [
+        ("slip_m", "slip [m]"),
+        ("slip_mm", "slip [mm]"),
+    ]
+    np.testing.assert_allclose(demands["slip_mm"].evaluate(runs, case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]])
+
+
 def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
     assert set(table["status"]) == {"ok", "overturned"}
     for name in columns(study):
@@ -145,8 +170,8 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
     of_devices = (*DEVICES, COLUMNS["devices_error"])  # it has neither dampers nor tendons
-    asked = [column for column in ASKED if column not in of_devices]
-    assert list(table) == [*names(STAYING), *study.varied, *names(MORE), *names(asked)]
+    asked = [column for column in OPTIONAL if column not in of_devices]
+    assert list(table) == [*names(FIXED), *study.varied, *names(TRAILING), *names(asked)]
 
 
 def test_run_json_says_the_unit_of_every_number(study, table):
@@ -168,7 +193,7 @@ def test_demands_read_columns_of_the_table_only():
 def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
     """All but which image a row is, for the page has no mirror images, and the peak in motion, which stands in the cell of a
     peak that failed later. Those that belong together stand side by side."""
-    shown = names([*on_page(), *on_page("forces")])
+    shown = names([*report_columns(), *report_columns("forces")])
     assert len(shown) == len(set(shown))
     assert set(shown) == {*COLUMNS} - {"mirror_of", "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"}
     for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
@@ -191,7 +216,7 @@ def test_what_has_statistics_is_compared(tmp_path):
     page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
     over = [text for text in page.tables["peaks"][0] if text]
     assert over == ["θmax/α", "θres/α", "settlement [mm]"]
-    assert sum(column.suite is not None and column.requested is None for column in COLUMNS.values()) == len(over)
+    assert sum(column.suite is not None for column in (*FIXED, *TRAILING)) == len(over)
 
 
 def write_results_in(directory):
@@ -215,7 +240,7 @@ def test_results_without_newer_columns_are_read_and_say_which_are_missing(tmp_pa
 @pytest.mark.parametrize("first", range(4))
 def test_a_report_without_newer_columns_is_made_and_says_so(tmp_path, first):
     """Every column is missing in one of four reports."""
-    dropped = names(MORE)[first::4]
+    dropped = names(TRAILING)[first::4]
     text = write_report(without(tmp_path, *dropped)).read_text(encoding="utf-8")
     assert f"has no columns {', '.join(dropped)}, as an earlier version wrote it" in text
     assert not [name for name in dropped if f'title="{name}' in text]
@@ -228,7 +253,7 @@ def test_a_report_of_all_columns_speaks_of_no_earlier_version(tmp_path):
 @pytest.mark.filterwarnings("ignore::rockbatch.errors.MissingColumns")
 def test_a_folder_without_newer_columns_is_compared_with_one_that_has_them(tmp_path):
     (tmp_path / "old").mkdir()
-    old, new = without(tmp_path / "old", *names(MORE)), write_results_in(tmp_path / "new")
+    old, new = without(tmp_path / "old", *names(TRAILING)), write_results_in(tmp_path / "new")
     assert "30 pairs of runs" in write_comparison(old, new).read_text(encoding="utf-8")
 
 
@@ -247,7 +272,7 @@ def test_commands_say_once_and_plainly_which_columns_are_missing(tmp_path, capsy
     assert "NOT DECIDED" in said.out
 
 
-@pytest.mark.parametrize("dropped", names(STAYING))
+@pytest.mark.parametrize("dropped", names(FIXED))
 def test_a_table_without_a_column_that_every_version_wrote_is_refused(tmp_path, dropped):
     with pytest.raises(InputError, match=rf"peaks\.csv:1: has no column {dropped}; start"):
         read_saved(without(tmp_path, dropped))

@@ -19,12 +19,13 @@ from rockbatch.batch.kept_histories import history_bytes, keep_histories, to_kee
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
-from rockbatch.results.columns import TERMS, columns
+from rockbatch.results.columns import columns
 from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import histories
+from rockbatch.simulation.outcome import TERMS
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(

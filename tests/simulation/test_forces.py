@@ -12,7 +12,8 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.cli import main
 from rockbatch.errors import InputError
-from rockbatch.results.columns import MORE, STAYING, columns, names
+from rockbatch.quantities.catalogue import FIXED, TRAILING, names
+from rockbatch.results.columns import columns
 from rockbatch.study.suite import ground_motions
 
 WEIGHED = {"width_m": 4.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 1000.0, "deck_height_m": 31.0}
@@ -35,7 +36,7 @@ def test_who_does_not_ask_has_the_same_columns_and_bytes_without_those_of_forces
         path = study(tmp_path, forces=forces, name=f"{name}.toml", motions={"polarity": ["+", "-"]})
         assert main(["run", str(path), "--out", str(tmp_path / name)]) == 0
     asked, plain = cells(tmp_path / "with"), cells(tmp_path / "without")
-    assert list(plain) == [*names(STAYING), *names(MORE), "mirror_of"]
+    assert list(plain) == [*names(FIXED), *names(TRAILING), "mirror_of"]
     assert list(plain)[-3:] == ["theta_max_in_motion_error", "settlement_error_m", "mirror_of"]
     pd.testing.assert_frame_equal(asked[list(plain)], plain)
     assert len(set(asked) - set(plain)) == 27

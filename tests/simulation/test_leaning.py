@@ -16,7 +16,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.report.sections.peaks import outcome
-from rockbatch.results.columns import Ran, as_table, row
+from rockbatch.results.columns import FinishedRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, written
@@ -132,7 +132,7 @@ def test_a_check_of_rocking_is_not_decided_within_its_error(tmp_path):
     outcome = outcome_of(study.cases[0].base, motion, rocking=True)
     for near, verdict in ((0.5, "not decided"), (1.5, "pass"), (-1.5, "fail")):
         limit = (outcome.theta_rocking + near * outcome.theta_rocking_error) / study.cases[0].pier.alpha
-        runs = as_table([row(Ran(outcome, motion, "+", 1.0, study.cases[0]))], study)
+        runs = as_table([row(FinishedRun(outcome, motion, "+", 1.0, study.cases[0]))], study)
         (told,) = judge([replace(study.checks[0], at_most=limit)], runs, [describe_case(study.cases[0])])
         assert told.verdict == verdict
 
@@ -146,7 +146,7 @@ def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
     study = load_study(write_study(tmp_path, text))
     (one,) = study.cases
     motion = pulse_and_vibration(0.5)
-    runs = as_table([row(Ran(outcome_of(one.base, motion, rocking=True), motion, "+", 1.0, one))], study)
+    runs = as_table([row(FinishedRun(outcome_of(one.base, motion, rocking=True), motion, "+", 1.0, one))], study)
     verdicts = judge(study.checks, runs, [describe_case(one)])
     assert [verdict.verdict for verdict in verdicts] == ["fail", "pass"]
     assert verdicts[1].value == runs["theta_rocking_over_alpha"][0]

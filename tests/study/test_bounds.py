@@ -6,7 +6,7 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.batch import carrying_out
+from rockbatch.batch import execution
 from rockbatch.cli import main
 from rockbatch.study import lists
 
@@ -73,7 +73,7 @@ def test_more_cases_than_there_is_room_for_are_refused_at_once(tmp_path):
 
 
 def test_more_runs_than_a_table_holds_are_refused_before_the_first(tmp_path, monkeypatch):
-    monkeypatch.setattr(carrying_out, "MOST_RUNS", 5)
+    monkeypatch.setattr(execution, "MOST_RUNS", 5)
     assert told(tmp_path, motions={"scale": [0.5, 1.0]}) == ""  # 4 runs
     scales = {"scale": [0.5, 0.75, 1.0]}
     assert "6 runs, more than 5: records × polarities × scales × cases; split the study" in told(

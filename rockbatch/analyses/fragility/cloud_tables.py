@@ -11,7 +11,7 @@ from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECI
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 
 CLOUD = "fragility_cloud.csv"
 

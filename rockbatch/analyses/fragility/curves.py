@@ -33,7 +33,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.rules import Rule

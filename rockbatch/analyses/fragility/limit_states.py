@@ -6,7 +6,8 @@ import numpy.typing as npt
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import DEMANDS, Case, has_device
+from rockbatch.quantities.cases import Case, has_device
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rule_choices import chooses
 from rockbatch.study.rules import Rule
 

@@ -19,7 +19,7 @@ from rockbatch.analyses.fragility.hazard import (
 from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
 from rockbatch.common.grouping import closest
 from rockbatch.pier import Base
-from rockbatch.quantities.demands import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
@@ -204,7 +204,7 @@ def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]
 
 def _limits(table: Table, rules: tuple[Rule, ...], chosen: tuple[str, ...] | None) -> tuple[Rule, ...]:
     """Return the checks that are limit states, all by default, at all scales; those of the case alone are left out."""
-    able = [rule for rule in rules if not DEMANDS[rule.demand].of_the_case and rule.demand != OVERTURNING.demand]
+    able = [rule for rule in rules if not DEMANDS[rule.demand].per_case and rule.demand != OVERTURNING.demand]
     if any(rule.name == OVERTURNING.name for rule in able):
         table.complain(f"a [[check]] is called {shown(OVERTURNING.name)}, as the limit state is; give it another name")
     if chosen is not None:
@@ -227,7 +227,7 @@ def _of_one_record(rule: Rule) -> Rule:
     """
     statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
     limit = replace(rule, scale=(), polarity=None, statistic=statistic)
-    if not DEMANDS[rule.demand].of_runs:
+    if not DEMANDS[rule.demand].per_run:
         return limit
     flight, failed = (
         "left out" if limit.counts(status) == "left out" else "unknown" for status in ("flight", "failed")

@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.catalogue import report_columns
+from rockbatch.quantities.quantity import Quantity
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import head
 from rockbatch.report.markup import Markup, join, number
 from rockbatch.report.sections.peaks import every_run, on_scale
 from rockbatch.report.table import Head, alarm, table
 from rockbatch.report.templates import render
-from rockbatch.results.columns import Column, on_page
 
 _LEAST = ("first_uplift_s", "first_uplift_g")
 """Columns of which the smallest value is the worst."""
@@ -22,7 +23,7 @@ _CUT_SHORT = ("flight", "failed")
 
 def section(finished: Finished) -> Markup:
     """Report forces if the study asks for them."""
-    shown = [column for column in on_page("forces") if column.name in finished.runs]
+    shown = [column for column in report_columns("forces") if column.name in finished.runs]
     if not shown or finished.runs.empty:
         return Markup("")
 
@@ -45,7 +46,7 @@ def section(finished: Finished) -> Markup:
     )  # fmt: skip
 
 
-def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
+def _of_cases(finished: Finished, shown: list[Quantity]) -> Markup:
     """Return a row for each case: the worst of its runs, column by column."""
     rows: list[list[object]] = []
     for words, group in finished.groups():
@@ -61,7 +62,7 @@ def _of_cases(finished: Finished, shown: list[Column]) -> Markup:
     return table([Head("case"), runs_head, *map(head, shown)], rows, sortable=True, name="Forces of every case")
 
 
-def _worst(column: Column, runs: "pd.DataFrame", cut_short: bool) -> object:
+def _worst(column: Quantity, runs: "pd.DataFrame", cut_short: bool) -> object:
     """Return the worst of the runs, with ≥ or ≤ if it is only a bound."""
     values = runs[column.name].dropna()
     if values.empty:

@@ -4,13 +4,14 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.demands import IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, creeps
+from rockbatch.quantities.cases import creeps
+from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
 from rockbatch.report.finished import Finished, worst_first
 from rockbatch.report.labels import head, symbol
 from rockbatch.report.markup import Markup, join, number, tag
 from rockbatch.report.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
 from rockbatch.report.templates import render
-from rockbatch.results.columns import COLUMNS, PEAKS, on_page
+from rockbatch.results.columns import PEAKS
 from rockbatch.results.labelled import as_dicts
 from rockbatch.simulation.outcome import LINEARISED
 
@@ -95,7 +96,7 @@ def _every_run(finished: Finished) -> Markup:
     names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
         names["with_vertical"] = Head("vertical component")
-    columns = {column.name: head(column) for column in on_page() if column.source and column.name in runs}
+    columns = {column.name: head(column) for column in report_columns() if column.source and column.name in runs}
     columns |= {
         name: Head(name)
         for name in map(str, finished.saved.peaks)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.report.finished import Finished
 from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
-from rockbatch.results.columns import COLUMNS
 from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import Suite, suites
 

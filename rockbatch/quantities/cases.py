@@ -1,0 +1,73 @@
+"""A case as run.json has it, and what demands take from it: lengths, weight, devices, parameters."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from rockbatch.pier.bases import RATCHETING
+from rockbatch.pier.restraints import what_of
+
+Case = Mapping[str, Any]
+"""``case``, ``columns``, ``pier``, ``base``, ``parameters``."""
+
+Lever = Callable[[Case], float]
+"""Factor of a case, such as a length by which a rotation becomes a displacement."""
+
+
+def always(value: float) -> Lever:
+    """Return a factor that is the same for all cases."""
+    return lambda case: value
+
+
+ONE, THOUSAND = always(1.0), always(1000.0)
+
+
+def product(first: Lever, second: Lever) -> Lever:
+    """Return the product of two factors."""
+    return lambda case: first(case) * second(case)
+
+
+def alpha(case: Case) -> float:
+    """Return α [rad]."""
+    return float(case["pier"]["alpha"])
+
+
+def width(case: Case) -> float:
+    """Return the width between the pivots [m]."""
+    return 2.0 * float(case["pier"]["half_width_m"])
+
+
+def top(case: Case) -> float:
+    """Return the height at which drift is read [m]: twice that of the centre of mass unless the pier gives it."""
+    pier = case["pier"]
+    return float(pier.get("top_m", 2.0 * pier["height_m"]))
+
+
+def weight(case: Case) -> float:
+    """Return the weight of the pier [kN]."""
+    return float(case["pier"]["mass_t"]) * float(case["pier"]["gravity"])
+
+
+def per_gravity(case: Case) -> float:
+    """Return 1/g [s²/m]."""
+    return 1.0 / float(case["pier"]["gravity"])
+
+
+def creeps(case: Case) -> bool:
+    """Return True if the springs of a case settle cyclically, so that another law gives its settlement a range."""
+    return case["parameters"].get("spring") in RATCHETING
+
+
+def has_device(case: Case, device: str) -> bool:
+    """Return True if the pier has a device of this kind."""
+    return any(what_of(restraint) == device for restraint in _devices(case))
+
+
+def holds_a_tilt(case: Case) -> bool:
+    """Return True if a damper keeps a force at rest, as friction does."""
+    holding = ("friction", "hysteretic")
+    return any(damper.get("kind") in holding and damper.get("f") != 0.0 for damper in _devices(case))
+
+
+def _devices(case: Case) -> Iterable[Mapping[str, Any]]:
+    """Return the devices of a case, as its file has them."""
+    return case["parameters"].get("restraints", ()) if "parameters" in case else ()

@@ -1,0 +1,202 @@
+"""A quantity: a column of peaks.csv, its place in the report, and the demands that checks make of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, Protocol
+
+from rockbatch.common.lazy import pd
+from rockbatch.pier import Pier
+from rockbatch.quantities.cases import ONE, Case, Lever
+from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
+from rockbatch.quantities.statistics import Values
+
+ALL = ("rigid", "elastic", "yielding")
+SPRINGS = ("elastic", "yielding")
+YIELDING = ("yielding",)
+TILTS = (*SPRINGS, "held")
+"""Bases on which a pier may rest at a tilt: springs, or any base if friction or hysteretic dampers hold it."""
+
+BASES_IN_WORDS = {
+    ALL: "", SPRINGS: "springs", YIELDING: "yielding springs", TILTS: "springs, or dampers that hold the pier at a tilt",
+}  # fmt: skip
+
+ENDINGS = {
+    "m": "m", "s": "s", "rad": "rad", "m/s": "m_s", "1/s": "per_s", "m/s^2": "m_s2", "m^2/s^2": "m2_s2", "J/kg": "J_kg",
+    "kN": "kN", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
+}  # fmt: skip
+"""Ends of names by their units, as pint reads these."""
+
+SHARES = ("forces_error", "devices_error")
+"""Columns of errors that are shares of what they belong to."""
+
+
+class Run(Protocol):
+    """What a quantity takes from a finished run."""
+
+    @property
+    def outcome(self) -> Any:
+        """Its :class:`rockbatch.simulation.outcome.Outcome`."""
+
+    @property
+    def motion(self) -> Any:
+        """Its motion, as it was run."""
+
+    @property
+    def pier(self) -> Pier:
+        """The pier of its case."""
+
+
+class ReportFormat(NamedTuple):
+    """A quantity in the report: its heading with the unit there, its format, and the factor from the file's unit to the page's.
+
+    The page makes an index of a word after a low line: "θ_max/α". ``behind`` names the column after which it is put, if
+    that is not the one before it in the file. ``table`` is the section in whose tables it is.
+    """
+
+    head: str
+    form: str = ".10g"
+    factor: int = 1
+    behind: str = ""
+    table: Literal["peaks", "forces"] = "peaks"
+
+
+class OfSuite(NamedTuple):
+    """Heading of the statistics of a quantity over a suite, and the format of its numbers there."""
+
+    heading: str
+    form: str
+
+
+class Limit(NamedTuple):
+    """A demand that checks make of a quantity: by its own name, words, unit and columns unless given.
+
+    ``unit`` alone makes a name that ends with it; ``times`` is the factor from the columns to it.
+    """
+
+    name: str = ""
+    unit: str = ""
+    times: Lever = ONE
+    ceiling: Ceiling | None = None
+    words: str = ""
+    columns: tuple[str, ...] = ()
+    evaluate: Evaluate | None = None
+    reached: Evaluate | None = None
+    other_law: Callable[["pd.DataFrame", Case], Values] | None = None
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of a run.
+
+    Attributes
+    ----------
+    name : str
+        Of its column, with its unit, if any; fixed, since users' scripts read it.
+    words : str
+        Its meaning, as far as checks need it; the same for columns that are explained together.
+    source : str, function or None
+        Field of ``Outcome``, or function of a :class:`Run`; None for names of the run.
+    unit : str
+        Of a number, as pint reads it; "1" is none.
+    page : ReportFormat or None
+        Its place in the report; None: it has none.
+    more : str
+        What its meaning goes on with.
+    kind : str
+        "number", "count" (a whole one) or "text".
+    over_alpha : bool
+        True if the outcome's angle is divided by the pier's α.
+    bases : tuple of str
+        Bases to which it applies; it is empty on others.
+    stood : bool
+        True if it is empty for a pier that overturned, and a run that flight ended.
+    unbounded : bool
+        True if a number may be infinite.
+    sometimes : bool
+        True if only some of the runs to which it applies have one: a flight, a reason.
+    suite : OfSuite or None
+        Its statistics, if it has any; two studies are compared by it, too.
+    error : str
+        Column of its estimated error; empty without one.
+    limits : tuple of Limit
+        Demands that checks make of it.
+    needs : str
+        Key of [output] that brings it; empty if none does.
+    device : str
+        Kind of device that brings it; empty if none does.
+    weighed : bool
+        True if it takes the mass of the pier.
+    requested : function or None
+        True for a study that brings it otherwise.
+    """
+
+    name: str
+    words: str
+    source: str | Callable[[Run], Any] | None = None
+    unit: str = "1"
+    page: ReportFormat | None = None
+    more: str = ""
+    kind: Literal["number", "count", "text"] = "number"
+    over_alpha: bool = False
+    bases: tuple[str, ...] = ALL
+    stood: bool = False
+    unbounded: bool = False
+    sometimes: bool = False
+    suite: OfSuite | None = None
+    error: str = ""
+    limits: tuple[Limit, ...] = ()
+    needs: str = ""
+    device: str = ""
+    weighed: bool = False
+    requested: Callable[[Any], bool] | None = None
+
+    @property
+    def meaning(self) -> str:
+        """Its whole meaning, in a sentence."""
+        return f"{self.words}{self.more}" + (f"; with [output] {self.needs} = true" if self.needs else "")
+
+    @property
+    def applies(self) -> str:
+        """Runs to which it applies, in words; empty for all."""
+        base = BASES_IN_WORDS[self.bases]
+        run = "where the pier stood" if self.stood else "if it occurs" if self.sometimes else ""
+        return ", ".join(filter(None, (base, run)))
+
+    def requested_by(self, study: Any) -> bool:
+        """Return whether a :class:`rockbatch.study.Study` brings it."""
+        if self.requested:
+            return self.requested(study)
+        if self.needs:
+            return bool(getattr(study.output, self.needs))
+        return any(device.what == self.device for case in study.cases for device in case.base.restraints)
+
+    def demands(self) -> list[Demand]:
+        """Return the demands that checks make of it."""
+        return [self._demand(limit) for limit in self.limits]
+
+    def _demand(self, limit: Limit) -> Demand:
+        columns = limit.columns or (self.name,)
+        evaluate = limit.evaluate
+        if evaluate is None and self.needs == "forces":
+            evaluate = largest_force(columns, limit.times, self.error)
+        if evaluate is None:
+            error = "share" if self.error in SHARES else "error"
+            evaluate = largest(columns, limit.times, **{error: self.error})
+        name = limit.name or (f"{self._stem}_{limit.unit}" if limit.unit else self.name)
+        return Demand(
+            name, limit.words or self.words, evaluate, limit.unit or in_print(self.unit), self.bases, residual=self.stood,
+            other_law=limit.other_law, ceiling=limit.ceiling, needs=self.needs, weighed=self.weighed, device=self.device,
+            reached=limit.reached,
+        )  # fmt: skip
+
+    @property
+    def _stem(self) -> str:
+        """Its name without the unit."""
+        return self.name.removesuffix(f"_{ENDINGS[self.unit]}")
+
+
+def in_print(unit: str) -> str:
+    """Return a unit as people write it: "m/s²", "kN m"; empty for none."""
+    if unit == "1":
+        return ""
+    return unit.replace("standard_gravity", "g").replace("^2", "²").replace("*", " ")
