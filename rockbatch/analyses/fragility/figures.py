@@ -175,7 +175,8 @@ def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
         counted = [run for run in runs if run["counts"] == counts]
         up = np.array([run["demand"] if height is None else height for run in counted], dtype=float)
         titles = [
-            f"{run['x']:.3g} {info['unit']}, {counts}" + f": {run['demand']:.3g}" * (height is None) for run in counted
+            f"{run['x']:.3g} {info['unit']}, {counts}" + (f": {run['demand']:.3g}" if height is None else "")
+            for run in counted
         ]
         marks.append(
             Points(np.array([run["x"] for run in counted], dtype=float), up, None, titles, look=own, label=name)
