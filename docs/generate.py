@@ -24,6 +24,7 @@ from mkdocs.structure.pages import Page
 from printing import as_pdf
 
 import rockbatch
+from rockbatch import motions
 from rockbatch.cli import COMMANDS, main
 from rockbatch.quantities.demands import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
@@ -249,6 +250,9 @@ def _python() -> str:
         # rb.report is its package, which can be called
         home = documented.__name__ if isinstance(documented, ModuleType) else documented.__module__
         parts += [f"::: {home}.{name}", ""]
+    parts += ["# Ground motions alone", "", "`from rockbatch import motions` has these names beside those above.", ""]
+    further = (name for name in motions.__all__ if name not in rockbatch.__all__)
+    parts += [f"::: rockbatch.motions.{name}\n" for name in further]
     return "\n".join(parts)
 
 

@@ -1,9 +1,9 @@
 """rockbatch: peak rotations of stepping bridge piers under a folder of ground motions."""
 
-from importlib import import_module
 from typing import Any
 
 from rockbatch._version import __version__ as __version__
+from rockbatch.common.lazy import loading
 
 _NAMES = {
     "batch.running": "run",
@@ -12,6 +12,7 @@ _NAMES = {
     "checks.checking": "check",
     "errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
+    "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "report": "report",
@@ -24,19 +25,17 @@ _NAMES = {
 
 def _homes() -> dict[str, str]:
     """Return the module of each public name."""
-    from rockbatch.common.analyses import public_names
+    from rockbatch.common.analyses import ANALYSES
 
     homes = {name: f"rockbatch.{module}" for module, names in _NAMES.items() for name in names.split()}
-    return homes | public_names()
+    return homes | {name: f"rockbatch.analyses.{name}.analysis" for name in ANALYSES}
 
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used: the compiler costs 0.4 s, and a report needs none."""
     if name == "__all__":
         return sorted(_homes())
-    if not name.startswith("_") and name in (homes := _homes()):
-        return getattr(import_module(homes[name]), name)
-    raise AttributeError(f"module 'rockbatch' has no attribute '{name}'")
+    return loading(__name__, {} if name.startswith("_") else _homes())(name)
 
 
 def __dir__() -> list[str]:

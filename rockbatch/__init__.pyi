@@ -3,7 +3,6 @@
 from rockbatch._version import __version__ as __version__
 from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
 from rockbatch.analyses.fragility.analysis import fragility as fragility
-from rockbatch.analyses.fragility.hazard_curve import HazardCurve as HazardCurve
 from rockbatch.analyses.release.analysis import release as release
 from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity
 from rockbatch.analyses.spectrum.analysis import spectrum as spectrum
@@ -19,6 +18,7 @@ from rockbatch.motions import pair_spectrum as pair_spectrum
 from rockbatch.motions import pulse as pulse
 from rockbatch.motions import read_motions as read_motions
 from rockbatch.motions import sequence as sequence
+from rockbatch.motions.hazard import HazardCurve as HazardCurve
 from rockbatch.pier import Damper as Damper
 from rockbatch.pier import DeckSpring as DeckSpring
 from rockbatch.pier import ElasticBase as ElasticBase

@@ -38,6 +38,12 @@ def test_a_motion_of_an_obspy_stream_has_its_vertical_component():
     np.testing.assert_allclose(motion.vertical, 0.01 * VALUES)
 
 
+def test_a_vertical_component_is_known_by_other_names_and_points_up():
+    down = rb.Motion.from_obspy(stream("DWN", "N10E"), "cm/s2")
+    np.testing.assert_allclose(down.vertical, -0.01 * VALUES)
+    np.testing.assert_allclose(rb.Motion.from_obspy(stream("UP", "N10E"), "cm/s2").vertical, 0.01 * VALUES)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

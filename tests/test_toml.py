@@ -139,7 +139,7 @@ def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
         ("beta = [1,\neta = 2\n", 1, "the bracket that opens here does not close"),
     ],
 )
-def test_what_is_not_toml_is_told_with_its_line_and_what_to_write(tmp_path, text, line, advice):
+def test_what_is_not_toml_is_refused_with_its_line_and_what_to_write(tmp_path, text, line, advice):
     path = tmp_path / "study.toml"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
@@ -149,7 +149,7 @@ def test_what_is_not_toml_is_told_with_its_line_and_what_to_write(tmp_path, text
     assert advice in problem
 
 
-def test_a_file_that_is_not_utf8_is_told_with_its_line(tmp_path):
+def test_a_file_that_is_not_utf8_is_refused_with_its_line(tmp_path):
     path = tmp_path / "study.toml"
     path.write_bytes(b'title = "a"\nnotes = "\xb5"\n')
     with pytest.raises(InputError, match=r"study\.toml:2: not UTF-8"):
@@ -170,7 +170,7 @@ def test_absurd_values_are_refused_without_a_crash(tmp_path, text):
         TomlFile.read(path)
 
 
-def test_a_missing_file_and_a_folder_are_told(tmp_path):
+def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     (tmp_path / "fig7.toml").touch()
     with pytest.raises(InputError, match=r"no such file; did you mean .*fig7\.toml\?"):
         TomlFile.read(tmp_path / "fig77.toml")

@@ -28,7 +28,6 @@ from rockbatch.motions import MotionSet
 from rockbatch.report import REPORT, write_report
 from rockbatch.results.beside_peaks import SEMICOLONS, write
 from rockbatch.results.columns import PEAKS, unusable_rows
-from rockbatch.results.estimate import ESTIMATE, estimates
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import open_results
@@ -37,7 +36,7 @@ from rockbatch.results.run_json import INFO, describe, versions, write_info
 from rockbatch.results.shocks import SHOCKS
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, ESTIMATE, SHOCKS, HALF_CYCLES, CHECKS, REPORT, SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 
@@ -170,16 +169,12 @@ def finish(
 
 
 def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
-    """Write the tables that the study asks for beside the peaks, and take away those of another time."""
-    written = []
-    for name, requested, rows in (
-        (INTENSITY, study.output.intensity, intensities), (ESTIMATE, study.output.estimate, estimates)
-    ):  # fmt: skip
-        if requested:
-            written.append(write(saved.directory / name, rows(saved.peaks, study, motions.motions)))
-        else:
-            (saved.directory / name).unlink(missing_ok=True)
-    return written
+    """Write the intensity measures if the study asks for them beside the peaks, and take away those of another time."""
+    path = saved.directory / INTENSITY
+    if not study.output.intensity:
+        path.unlink(missing_ok=True)
+        return []
+    return [write(path, intensities(saved.peaks, study, motions.motions))]
 
 
 def _shocks(saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener) -> list[Path]:

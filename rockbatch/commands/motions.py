@@ -9,7 +9,7 @@ from rockbatch.commands.streams import in_width, say, show
 from rockbatch.common.files import csv_text, write_whole
 from rockbatch.errors import InputError
 from rockbatch.motions import LeftOut, MotionSet, ReadOptions, Unusable, read_motions
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
@@ -43,7 +43,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.write_manifest:
         if len(arguments.path) > 1:
             raise InputError("--write-manifest: give one folder, which it is written into")
-        say(str(write_draft(arguments.path[0], options)))
+        say(str(write_manifest(arguments.path[0], options)))
     suite = read_motions(arguments.path, options=options)
     rows = [row(motion) for motion in suite]
     if arguments.csv:

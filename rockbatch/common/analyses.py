@@ -35,8 +35,6 @@ class Door:
         Names of its tables at the top of the study file.
     options : mapping
         Arguments of its command beyond the study, with what ``ArgumentParser.add_argument`` takes beside.
-    names : mapping
-        Public names beyond its function, each with the module in its folder that has it.
     engine : bool
         True if its runs are carried out by an engine that the command line may choose.
     """
@@ -47,7 +45,6 @@ class Door:
     parts: tuple[ReportPart, ...]
     tables: tuple[str, ...] = ()
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    names: Mapping[str, str] = field(default_factory=dict)
     engine: bool = True
 
 
@@ -61,12 +58,3 @@ def from_analysis(name: str, function: str) -> Any:
     """Return what an analysis names ``function``, such as "section.section", loading its module."""
     module, _, attribute = function.partition(".")
     return getattr(import_module(f"rockbatch.analyses.{name}.{module}"), attribute)
-
-
-def public_names() -> dict[str, str]:
-    """Return the module of each public name of the analyses."""
-    return {
-        public: f"rockbatch.analyses.{name}.{module}"
-        for name, door in doors().items()
-        for public, module in {name: "analysis", **door.names}.items()
-    }

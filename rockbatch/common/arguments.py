@@ -123,8 +123,8 @@ def _shown(value: Any) -> str:
 def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
     if _has_nul(value):
         return "has a NUL character"
-    *first_ones, last = dict.fromkeys(map(_words, alternatives))
-    must = f"must be {', '.join(first_ones) + ' or ' if first_ones else ''}{last}"
+    *others, last = dict.fromkeys(map(_words, alternatives))
+    must = f"must be {', '.join(others) + ' or ' if others else ''}{last}"
     return f"is a class; {must}, such as {value.__name__}(…)" if isinstance(value, type) else must
 
 

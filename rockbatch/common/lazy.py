@@ -1,5 +1,6 @@
-"""Packages that take long to load, loaded when they are first used: ``from rockbatch.common.lazy import pd``."""
+"""Packages and names that take long to load, loaded when they are first used: ``from rockbatch.common.lazy import pd``."""
 
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -19,3 +20,14 @@ if TYPE_CHECKING:
     import pandas as pd
 else:
     h5py, obspy, pd = map(_Lazy, ("h5py", "obspy", "pandas"))
+
+
+def loading(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
+    """Return the ``__getattr__`` of a package whose public names are loaded when they are first used, from their modules."""
+
+    def load(name: str) -> Any:
+        if name in homes:
+            return getattr(import_module(homes[name]), name)
+        raise AttributeError(f"module '{package}' has no attribute '{name}'")
+
+    return load

@@ -192,7 +192,7 @@ def _opened(archive: Path) -> Iterator[zipfile.ZipFile]:
 
 
 def _refuse_long_lists(tail: bytes) -> None:
-    """Raise ``InputError`` where the end of an archive says that it lists more than any of records does, or is none."""
+    """Raise ``InputError`` where the end of an archive says that it lists too many files, or is missing."""
     start = tail.rfind(_END)
     if start < 0:
         raise InputError("not a zip archive, or a cut one; fetch it again")

@@ -35,13 +35,13 @@ def rotated_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> t
     obstacle = _obstacle(horizontals)
     if not obstacle:
         return [_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths], []
-    stay = [len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]) for c in horizontals]
+    unchanged = [len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]) for c in horizontals]
     refused = [
         Unusable(c.name, c.source, f"cannot be turned: {obstacle}")
-        for c, is_so in zip(horizontals, stay, strict=True)
-        if not is_so
+        for c, stays in zip(horizontals, unchanged, strict=True)
+        if not stays
     ]
-    return [c for c, is_so in zip(horizontals, stay, strict=True) if is_so], refused
+    return [c for c, stays in zip(horizontals, unchanged, strict=True) if stays], refused
 
 
 def _obstacle(horizontals: Sequence[Component]) -> str:

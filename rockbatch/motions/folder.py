@@ -20,7 +20,7 @@ from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.finding import MANIFESTS, Found, files_of
+from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
 from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
 from rockbatch.motions.leaving_out import LeaveOut, Reading
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
@@ -126,8 +126,8 @@ def read_motions(
     left_out = [*(reading for reading in placed if isinstance(reading, LeftOut)), *doubles]
     motions = leaving_out.motions(MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out))
     leaving_out.finish()
-    for manifest, of_manifest in grouped(sequences, lambda pair: pair[0]).items():
-        motions = with_sequences(motions, [sequence for _, sequence in of_manifest], source=manifest)[0]
+    for manifest, listed in grouped(sequences, lambda pair: pair[0]).items():
+        motions = with_sequences(motions, [sequence for _, sequence in listed], source=manifest)[0]
     return motions
 
 
@@ -135,16 +135,16 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
     """Return the readings that are no record, each with the station of the records that share its file or its name."""
     sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
     sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
-    of_file = {file_of(source): station for source, station in sources}
-    of_site = {
-        (_folder(reading), reading.site): of_file[file]
+    station_of_file = {file_of(source): station for source, station in sources}
+    station_of_site = {
+        (_folder(reading), reading.site): station_of_file[file]
         for reading in readings
-        if isinstance(reading, Component) and (file := file_of(reading.source)) in of_file
+        if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file
     }
 
     def station(reading: Unusable | LeftOut) -> str:
-        by_name = of_site.get((_folder(reading), reading.station), reading.station)
-        return of_file.get(file_of(reading.source), by_name)
+        by_name = station_of_site.get((_folder(reading), reading.station), reading.station)
+        return station_of_file.get(file_of(reading.source), by_name)
 
     return [replace(r, station=station(r)) for r in readings if not isinstance(r, Component)]
 
@@ -175,8 +175,7 @@ def read_files(
     gravity: float = GRAVITY,
     offset: Offset | None = None,
 ) -> tuple[list[Reading], dict[str, Path], list[tuple[str, ShockSequence]]]:
-    """Return components of all files, before they are paired, and what is none; with the path of each source, and the sequences
-    of each manifest.
+    """Return components of all files, before they are paired, and files without any; paths by source; sequences by manifest.
 
     Raises ``InputError`` with every mistake in the manifests.
     """
@@ -189,12 +188,12 @@ def read_files(
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
-    readings = [reading for file, state, of_file in read for reading in _unless_changed(of_file, file, state)]
+    readings = [reading for file, state, its_readings in read for reading in _unless_changed(its_readings, file, state)]
     companions = _without_companions(_without_renamed(readings, files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
 
 
-def _unless_changed(readings: list[Reading], file: Found, state: tuple[int, ...]) -> list[Reading]:
+def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...]) -> list[Reading]:
     """Return the readings of a file, but no records of one that was in another ``state`` before: it is being written."""
     records = any(isinstance(reading, Component) for reading in readings)
     if not records or archives.state(file.path) in (state, ()):
@@ -203,7 +202,7 @@ def _unless_changed(readings: list[Reading], file: Found, state: tuple[int, ...]
     return [Unusable(path.stem, file.source, CHANGED, station=_site(path, split_stem(path.stem)[0]))]
 
 
-def _with_progress(files: Sequence[Found]) -> Iterable[Found]:
+def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
     """Return the files, with a bar in a terminal if there are many and they take more than a second."""
     if len(files) < _MANY or sys.stderr is None or not sys.stderr.isatty():
         return files
@@ -229,19 +228,19 @@ def _folder(reading: Reading) -> str:
     return file_of(reading.source).rpartition("/")[0]
 
 
-def _without_renamed(readings: Sequence[Reading], files: Sequence[Found]) -> list[Reading]:
+def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
     """Return the readings with files left out that no reader takes by their names, but are copies of a record to the byte."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
-    unknown_ones = [
+    unrecognised = [
         file for file in files
         if file.source in refused and not file.refusal
         and format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
     ]  # fmt: skip
-    heads = {_content(file, HEAD) for file in unknown_ones}
+    heads = {_content(file, HEAD) for file in unrecognised}
     alike = [file for file in files if heads and file.source in records and _content(file, HEAD) in heads]
     by_content = {content: file.source for file in alike if (content := _content(file))}
-    copies = {file.source: by_content.get(_content(file)) for file in unknown_ones} if by_content else {}
+    copies = {file.source: by_content.get(_content(file)) for file in unrecognised} if by_content else {}
     return [
         LeftOut(reading.name, reading.source, f"a copy of {copies[reading.source]}")
         if copies.get(reading.source)
@@ -250,7 +249,7 @@ def _without_renamed(readings: Sequence[Reading], files: Sequence[Found]) -> lis
     ]
 
 
-def _content(file: Found, first: int | None = None) -> bytes:
+def _content(file: SourceFile, first: int | None = None) -> bytes:
     """Return the bytes of a file, or its ``first`` ones; none if it cannot be read."""
     try:
         return archives.content(file.path, first)
@@ -258,15 +257,15 @@ def _content(file: Found, first: int | None = None) -> bytes:
         return b""
 
 
-def _numbered(files: Sequence[Found]) -> set[Path]:
+def _numbered(files: Sequence[SourceFile]) -> set[Path]:
     """Return files whose names end in a number that is no azimuth, as those beside them tell."""
     folders = grouped((archives.bare(file.path) for file in files), lambda path: path.parent)
     numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
     return {file.path for file in files if archives.bare(file.path).stem in numbers[file.path.parent]}
 
 
-def _readings(file: Found, settings: _ReadSettings) -> list[Reading]:
-    """Return the readings of one file: components, and what its manifest leaves out, or the one reason why there are none.
+def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
+    """Return the readings of one file: components, and what its manifest leaves out, or the reason why it has no components.
 
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
     """
@@ -291,7 +290,7 @@ def _readings(file: Found, settings: _ReadSettings) -> list[Reading]:
     return [with_legible_texts(unusable)]
 
 
-def _used(file: Found, settings: _ReadSettings) -> list[Reading]:
+def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     """Return the readings of one file, as a manifest describes them; raises what comes up in its reading."""
     path = archives.bare(file.path)
     entries = settings.manifest.entries_for(file.path)
@@ -325,7 +324,7 @@ def _used(file: Found, settings: _ReadSettings) -> list[Reading]:
     return readings
 
 
-def _read(file: Found, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
+def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
     """Return components of one file."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)

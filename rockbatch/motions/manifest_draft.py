@@ -31,7 +31,7 @@ _HEAD = """\
 _ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
 
 
-def write_draft(folder: Path, options: ReadOptions | None = None) -> Path:
+def write_manifest(folder: Path, options: ReadOptions | None = None) -> Path:
     """Write ``motions.toml`` into ``folder``; ``InputError`` if there is a manifest, which is never written over."""
     target = folder / "motions.toml"
     if not folder.is_dir():
@@ -57,28 +57,28 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
     stated = options is not None and options.sensitivity is not None  # a unit alone would not say the sensitivity
     blocks = [_HEAD]
-    for source, of_file in grouped(
+    for source, file_readings in grouped(
         readings, lambda r: r.source if r.source in paths else r.source.rpartition(" (")[0]
     ).items():
         name = paths[source].relative_to(folder).as_posix()
-        for reading in of_file:
+        for reading in file_readings:
             if legible(name) != name:
                 blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
             elif isinstance(reading, Component):
                 double = doubles.get((reading.name, reading.source), "")
-                called = _called(reading, of_file)
+                called = _called(reading, file_readings)
                 blocks.append(_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
             elif isinstance(reading, Unusable):
                 blocks.append(_remark(name, reading))
     return "\n".join(blocks)
 
 
-def _called(component: Component, of_file: Sequence[Reading]) -> str | int | None:
+def _called(component: Component, file_readings: Sequence[Reading]) -> str | int | None:
     """Return the label, name or number that no other component of the file has; ``None`` if it is alone."""
-    if len(of_file) == 1:
+    if len(file_readings) == 1:
         return None
-    labels = [r.orientation.label if isinstance(r, Component) else getattr(r, "label", "") for r in of_file]
-    texts = [{label, reading.name} for label, reading in zip(labels, of_file, strict=True)]
+    labels = [r.orientation.label if isinstance(r, Component) else getattr(r, "label", "") for r in file_readings]
+    texts = [{label, reading.name} for label, reading in zip(labels, file_readings, strict=True)]
     names = (text for text in (component.orientation.label, component.name) if text)
     return next((text for text in names if sum(text in words for words in texts) == 1), component.number)
 

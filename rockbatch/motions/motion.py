@@ -13,6 +13,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.errors import InputError
+from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration
 
@@ -270,12 +271,17 @@ class Motion(Shown):
     def from_obspy(cls, stream: Any, unit: str, *, name: str = "") -> "Motion":
         """Return a motion of an ObsPy ``Stream`` of acceleration in ``unit``: a horizontal component, and a vertical one if any.
 
-        The vertical one is that whose channel ends with "Z". Raises ``InputError`` for another number of components, gaps, or
-        sampling that differs. Counts have to be freed of the instrument's response before.
+        The vertical one is that whose channel says so: "HNZ", "UD", or "DWN", which is reversed. Raises ``InputError`` for
+        another number of components, gaps, or sampling that differs. Counts have to be freed of the instrument's response before.
         """
         traces = list(stream)
-        vertical = [trace for trace in traces if trace.stats.channel.upper().endswith("Z")]
-        horizontal = [trace for trace in traces if trace not in vertical]
+        directions = [orientation_of(trace.stats.channel) or unknown() for trace in traces]
+        horizontal = [trace for trace, direction in zip(traces, directions, strict=True) if not direction.vertical]
+        vertical = [
+            -trace.data if direction.down else trace.data
+            for trace, direction in zip(traces, directions, strict=True)
+            if direction.vertical
+        ]
         if len(horizontal) != 1 or len(vertical) > 1:
             ids = ", ".join(trace.id for trace in traces) or "none"
             raise InputError(
@@ -288,7 +294,7 @@ class Motion(Shown):
             )
         (trace,) = horizontal
         return cls.from_array(
-            trace.data, trace.stats.delta, unit, name=name or trace.id, vertical=vertical[0].data if vertical else None
+            trace.data, trace.stats.delta, unit, name=name or trace.id, vertical=vertical[0] if vertical else None
         )
 
     def __eq__(self, other: object) -> bool:
@@ -427,6 +433,9 @@ class Unusable:
     companion: str | None = None
     station: str = ""
 
+    def __str__(self) -> str:
+        return f"{self.source}: {self.reason}"
+
 
 @dataclass(frozen=True)
 class LeftOut:
@@ -440,3 +449,6 @@ class LeftOut:
     reason: str
     station: str = ""
     named: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.source}: {self.reason}"

@@ -1,4 +1,4 @@
-"""Everything that was found in files and folders: motions in order, and what is none."""
+"""Everything that was read in files and folders: motions in order, and files that could not be used."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from numbers import Integral
 from typing import Any, overload
 
+from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import GRAVITY
@@ -84,6 +85,10 @@ class MotionSet(Shown):
     def without_vertical(self) -> list[str]:
         """Names of the motions whose vertical component was asked for, and is not there."""
         return [motion.name for motion in self.motions if motion.lacks_vertical]
+
+    def stations(self) -> dict[str, list[Motion]]:
+        """Return the motions that count as one record, mostly the two horizontal components of a station, by its name."""
+        return grouped(self.motions, lambda motion: motion.of_station)
 
     def __len__(self) -> int:
         return len(self.motions)

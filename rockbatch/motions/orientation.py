@@ -66,7 +66,7 @@ _NOISE = re.compile(
 def orientation_of(label: str) -> Orientation | None:
     """Return the orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none.
 
-    A number of one or two digits behind a word is none: "COMP 3" is the third component, not 3°.
+    A number of one or two digits behind a word is no azimuth: "COMP 3" is the third component, not 3°.
     """
     label = label.strip()
     key = _NOISE.sub("", label.upper())

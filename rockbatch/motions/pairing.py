@@ -61,8 +61,8 @@ def to_motions(
     verticals = [[c for c in station if c.orientation.vertical] for station in stations]
     horizontals = [(number[id(c)], c) for c in components if not c.orientation.vertical]
     if azimuths:
-        horizontals, refused_ones = _turned(horizontals, azimuths, known_as)
-        unusable += refused_ones
+        horizontals, not_turned = _turned(horizontals, azimuths, known_as)
+        unusable += not_turned
 
     used: set[int] = set()
     motions: list[Motion] = []
@@ -106,16 +106,16 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
     motions: list[Motion] = []
     unusable: list[Unusable] = []
     for station in judged:
-        motion, of_motion = station.motion, findings(station)
+        motion, motion_findings = station.motion, findings(station)
         keys = {*station.component.confirmed, *(key for key, names in patterns.items() if fits(motion.name, names))}
         if motion.lacks_vertical and required:
             reason = f"{motion.label} {_NO_VERTICAL}"
             unusable.append(Unusable(motion.name, motion.files, reason, station=motion.of_station))
-        elif refusal := doubt(motion.name, of_motion, keys):
+        elif refusal := doubt(motion.name, motion_findings, keys):
             unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station))
         else:
-            remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in of_motion]
-            motions.append(replace(motion, findings=of_motion, notes=(*motion.notes, *remarks)))
+            remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in motion_findings]
+            motions.append(replace(motion, findings=motion_findings, notes=(*motion.notes, *remarks)))
     return MotionSet(motions, unusable)
 
 

@@ -217,20 +217,22 @@ def gross_findings(component: Component) -> list[Finding]:
     alone = Motion(
         component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
     )
-    of_it = findings(Judged(alone, component, (), GRAVITY))
+    all_findings = findings(Judged(alone, component, (), GRAVITY))
     return [
-        finding for finding in of_it if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
+        finding
+        for finding in all_findings
+        if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
     ]
 
 
 def doubt(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
     """Return why the motion ``name`` has to be confirmed, and how; empty where it need not be, or ``confirmed`` has the key."""
-    open_ones = [f for f in findings if f.gross and not {"confirm", f.key}.intersection(confirmed)]
-    if not open_ones:
+    unconfirmed = [f for f in findings if f.gross and not {"confirm", f.key}.intersection(confirmed)]
+    if not unconfirmed:
         return ""
-    key = open_ones[0].key if len(open_ones) == 1 else "confirm"
+    key = unconfirmed[0].key if len(unconfirmed) == 1 else "confirm"
     return (
-        f'{"; ".join(finding.text for finding in open_ones)}; if it is right, write {key} = ["{name}"] under [motions] '
+        f'{"; ".join(finding.text for finding in unconfirmed)}; if it is right, write {key} = ["{name}"] under [motions] '
         f"in the study, or {key} = true in motions.toml"
     )
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rockbatch.common.grouping import grouped
+from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
@@ -48,8 +49,8 @@ class Target:
 
     def __str__(self) -> str:
         if self.sa_g is not None:
-            of_pairs = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
-            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){of_pairs} = {self.sa_g:g} g"
+            measure = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
+            return f"SA({self.period_s:g} s, {100 * self.damping:g} %){measure} = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
@@ -89,7 +90,7 @@ MOST_FACTOR = 4.0
 
 
 def at_target(
-    motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float, confirmed: Sequence[str] = ()
+    motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float = GRAVITY, confirmed: Sequence[str] = ()
 ) -> MotionSet:
     """Return all motions scaled to ``target``, with the factor noted; one without motion is unusable.
 
@@ -203,9 +204,9 @@ def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Un
             motion.files,
             f'{lacks}: {reason}; write pairs = "apart", or leave it out',
         )
-        for of_station in stations.values()
-        if (reason := unpaired(of_station))
-        for motion in of_station
+        for station in stations.values()
+        if (reason := unpaired(station))
+        for motion in station
     ]
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
@@ -35,7 +36,7 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 }
 
 
-def selected(motion_set: MotionSet, selection: Selection, gravity: float) -> MotionSet:
+def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVITY) -> MotionSet:
     """Return the motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
     chosen: list[Motion] = []
     unusable: list[Unusable] = []

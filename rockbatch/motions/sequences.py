@@ -308,8 +308,8 @@ def with_sequences(
             reason = f"a shock of the sequence {shown(whole)}; alone = true there runs it on its own, too"
             refused.append(LeftOut(name, by_name[name].files, reason))
     parts_only = parts.keys() - alone
-    of_pulses = {pulse.name for pulse in pulses}
-    as_pulses = [motion for motion in joined_motions if of_pulses.issuperset(shock.name for shock in motion.shocks)]
+    pulse_names = {pulse.name for pulse in pulses}
+    as_pulses = [motion for motion in joined_motions if pulse_names.issuperset(shock.name for shock in motion.shocks)]
     records = [motion for motion in motions.motions if motion.name not in parts_only]
     records += [motion for motion in joined_motions if motion not in as_pulses]
     unusable = [*motions.unusable, *(file for file in refused if isinstance(file, Unusable))]
@@ -321,7 +321,7 @@ def with_sequences(
 def _sequence_or_refusal(
     entry: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], source: str
 ) -> Motion | Unusable | LeftOut:
-    """Return a sequence, or why there is none; ``reasons`` says by name why records cannot be used."""
+    """Return a sequence, or why it cannot be made; ``reasons`` says by name why records cannot be used."""
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
     unknown = [_unknown(name, by_name) for name in missing if name not in reasons]

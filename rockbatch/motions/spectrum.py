@@ -134,11 +134,11 @@ def _march(
     blocks = -(-len(a) // _BLOCK)
     in_last = len(a) - (blocks - 1) * _BLOCK
     loads = np.pad(a, (0, _BLOCK - in_last)).reshape(blocks, _BLOCK)
-    left = loads @ factor ** np.arange(_BLOCK - 1, -1, -1)[:, None]
+    carried = loads @ factor ** np.arange(_BLOCK - 1, -1, -1)[:, None]
     state = np.empty((blocks, len(omega)), dtype=np.complex128)  # −w/(c₀ + λc₁)
     state[0] = -c1 * a[0] / load  # z = 0
     for block in range(1, blocks):
-        state[block] = left[block - 1] + factor**_BLOCK * state[block - 1]
+        state[block] = carried[block - 1] + factor**_BLOCK * state[block - 1]
 
     for k in range(_BLOCK):
         if k == in_last and not whole:

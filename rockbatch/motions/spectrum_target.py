@@ -137,15 +137,15 @@ class SpectrumTarget:
     ) -> list[Array]:  # fmt: skip
         """Return a spectrum [g] for each of ``members``, shape (periods,)."""
 
-        def of(i: int) -> Array:
+        def spectrum_of(i: int) -> Array:
             if spectra is not None:
                 return spectra[i]
             return spectral_acceleration(motions[i].horizontal, motions[i].dt, periods, self.spectrum.damping) / gravity
 
         if self.pairs == "apart":
-            return [of(i) for (i,) in members]
+            return [spectrum_of(i) for (i,) in members]
         if self.pairs == "srss":
-            return [np.sqrt((np.array([of(i) for i in places]) ** 2).sum(axis=0)) for places in members]
+            return [np.sqrt((np.array([spectrum_of(i) for i in places]) ** 2).sum(axis=0)) for places in members]
         return [station_spectrum([motions[i] for i in places], periods, self.spectrum.damping, self.pairs) / gravity
                 for places in members]  # fmt: skip
 
@@ -166,10 +166,10 @@ class SpectrumTarget:
             "period_s": _short(self.periods),
             "sa_g": _short(self.spectrum.at(self.periods)),
             "mean_sa_g": _short(np.nan_to_num(self.mean(motions, self.periods, gravity))),
-            **self._of_components(motions, gravity),
+            **self._components_mean(motions, gravity),
         }
 
-    def _of_components(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
+    def _components_mean(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
         """Return the mean spectrum of the components that are run, where those of pairs are fitted."""
         if self.pairs not in DIRECTIONS or not motions:
             return {}

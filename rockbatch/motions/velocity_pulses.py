@@ -48,7 +48,7 @@ class VelocityPulse:
 
     @property
     def kind(self) -> str:
-        """ "yes", "no", or "ambiguous"; "late" or "weak" where a pulse arrives late, or PGV is too small, and is none so."""
+        """ "yes", "no", or "ambiguous"; "late" or "weak", and so not pulse-like, if a pulse arrives late or PGV is too small."""
         if self.indicator <= 0.85:
             return "no" if self.indicator < 0.15 else "ambiguous"
         if self.pgv < LEAST_PGV:

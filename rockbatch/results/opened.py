@@ -14,7 +14,6 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.errors import InputError
 from rockbatch.results.columns import in_words
-from rockbatch.results.estimate import ESTIMATE
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
@@ -49,11 +48,6 @@ class Results(Shown, Saved):
         """The order in which each measure puts the peaks, a row for each case, scale and measure:
         :class:`rockbatch.results.intensity.Order`."""
         return orders(self.intensity, self.info["varied"])
-
-    @cached_property
-    def estimate(self) -> "pd.DataFrame":
-        """``estimate.csv``: the estimates of design practice beside the peaks ([output] estimate = true)."""
-        return self._beside(ESTIMATE, "estimate")
 
     @cached_property
     def shocks(self) -> "pd.DataFrame":

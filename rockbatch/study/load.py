@@ -88,14 +88,15 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "sa_pairs": Key(choice(*DIRECTIONS), '["rotd50", "rotd100"]',
         "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
         "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-    "estimate": Key(boolean, "true",
-        "Whether what the equivalent oscillators of design practice give is written beside the peaks."),
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
-}), instead=names({"write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file"}))  # fmt: skip
+}), instead=names({
+    "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
+    "the estimates of design practice are an example now, benchmarks/code_estimates.py; leave it out": "estimate estimates",
+}))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
@@ -206,12 +207,12 @@ class Study(Shown):
             With every mistake in the changed study, by table and key.
         """
         changes = tables | ({"motions": motions} if isinstance(motions, Mapping) else {})
-        instead = self.motions.instead if motions is None or isinstance(motions, Mapping) else motions
+        override = self.motions.override if motions is None or isinstance(motions, Mapping) else motions
         if not changes:
-            return _checked(self.file(), instead)
+            return _checked(self.file(), override)
         before = tomllib.loads(self.text)
         after = without_lost_cases(before, changed(before, changes))
-        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), instead)
+        return _checked(TomlFile.parse(self.path, as_toml(after), SECTIONS, lined=False), override)
 
     @property
     def in_file(self) -> bool:
@@ -230,7 +231,7 @@ class Study(Shown):
         piers = {f"alpha {case.pier.alpha:.4g} rad, R0 {case.pier.size:.4g} m" for case in self.cases}
         names = Counter(case.name for case in self.cases)
         spec, step = self.motions, self.numerics
-        given = len(spec.instead) if isinstance(spec.instead, MotionSet) else 0
+        given = len(spec.override) if isinstance(spec.override, MotionSet) else 0
         counts = several(given, "motion"), several(len(spec.fema_p695), "record"), several(len(spec.pulses), "pulse")
         still = f"still ground for {spec.still_s:g} s" if spec.still_s is not None else ""
         fixed, error = f"{step.substeps} steps per sample", f"error of theta_max/alpha below {step.tolerance or 0:g}"

@@ -182,11 +182,11 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
     read["sequences"] = read_sequences(file, "motions", "sequence")
     paths = read.pop("path", ())
     if isinstance(replaced_by, MotionSet):
-        return MotionSpec(instead=replaced_by, **read)
+        return MotionSpec(override=replaced_by, **read)
     if replaced_by is not None:
         if not replaced_by.exists():
             file.complain((), f"--motions {replaced_by}: {_missing(replaced_by, str(replaced_by))}")
-        return MotionSpec(paths=(replaced_by,), instead=replaced_by, **read)
+        return MotionSpec(paths=(replaced_by,), override=replaced_by, **read)
     if ("motions",) not in file.misspelt and not (table and any(map(table.has, SOURCES))):
         file.complain(
             ("motions",),

@@ -50,7 +50,7 @@ class MotionSpec:
     ``paths`` are files and folders that exist, ``azimuths`` the directions [degrees from north] that horizontal pairs are turned
     to, none: as recorded, and ``target`` what records are scaled to, with ``scale`` on top; pulses have their own amplitude.
     ``vertical_target`` is what vertical components are scaled to on their own, with ``vertical_scale`` on top.
-    ``instead`` are motions from Python or a path that take the place of all sources.
+    ``override`` are motions from Python or a path that take the place of all sources.
     """
 
     paths: tuple[Path, ...] = ()
@@ -77,7 +77,7 @@ class MotionSpec:
     pulses: tuple[PulseSpec, ...] = ()
     sequences: tuple[ShockSequence, ...] = ()
     still_s: float | None = None
-    instead: Path | MotionSet | None = None
+    override: Path | MotionSet | None = None
 
     @property
     def simulated(self) -> str:
@@ -116,7 +116,6 @@ class Output:
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     sa_pairs: tuple[str, ...] = ()
-    estimate: bool = False
     half_cycles: bool = False
 
 

@@ -21,8 +21,8 @@ def ground_motions(study: Study) -> MotionSet:
     """
     spec = study.motions
     gravity, azimuths = study.cases[0].pier.gravity, _azimuths(study)
-    if isinstance(spec.instead, MotionSet):
-        records = _as_given(spec.instead, spec.vertical)
+    if isinstance(spec.override, MotionSet):
+        records = _as_given(spec.override, spec.vertical)
     else:
         records = read_motions(
             spec.paths,
@@ -34,7 +34,7 @@ def ground_motions(study: Study) -> MotionSet:
             azimuths=azimuths,
             confirmed=spec.confirm,
             confirmed_pga=spec.confirm_pga,
-            leave_out=spec.leave_out if spec.instead is None else (),
+            leave_out=spec.leave_out if spec.override is None else (),
         )
         if azimuths != spec.azimuths:
             records = _along_the_axis(records, azimuths)
@@ -48,7 +48,7 @@ def ground_motions(study: Study) -> MotionSet:
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]
     if spec.strict and reasons:
         raise InputError(*reasons, f"{len(reasons)} of the records cannot be used, and the study is strict")
-    if spec.still_s is not None and spec.instead is None:
+    if spec.still_s is not None and spec.override is None:
         pulses.append(Motion.still(spec.still_s))
     if not records.motions and not pulses:
         reasons += [f"{file.source}: {file.reason}" for file in records.left_out]

@@ -162,16 +162,16 @@ def _by_name(meant: Also, keys: Mapping[str, str], quantity: str, size: float) -
 
 def _in_unit_of(key: str, unit: str, quantity: str, size: float) -> Meant | None:
     """Return the key with the factor on a value of a ``quantity``; None if it is of another one."""
-    _, of_key, its_size = quantity_of(key)
-    if not of_key and unit:
-        _, of_key, its_size = quantity_of(f"x_{unit}")
-    if quantity == "ratio" and not of_key:
+    _, key_quantity, its_size = quantity_of(key)
+    if not key_quantity and unit:
+        _, key_quantity, its_size = quantity_of(f"x_{unit}")
+    if quantity == "ratio" and not key_quantity:
         return Meant(key, size)
-    if not of_key:
+    if not key_quantity:
         return Meant(key) if not quantity or quantity == "angle" or (quantity == "time" and size == 1.0) else None
     if not quantity:
         return Meant(key)
-    return Meant(key, size / its_size) if quantity == of_key else None
+    return Meant(key, size / its_size) if quantity == key_quantity else None
 
 
 def number_meant(key: str, unit: str, text: str) -> list[str]:
@@ -180,11 +180,11 @@ def number_meant(key: str, unit: str, text: str) -> list[str]:
     behind = re.sub(r"[/*·]|(?<=\w) (?=\w)", "_", written.strip().lower().replace("%", "percent").replace("°", "deg"))
     if not behind:
         return values
-    _, of_key, its_size = quantity_of(f"x_{unit}" if unit and not quantity_of(key)[1] else key)
-    of_text, size = _UNITS.get(behind, ("", 0.0))
-    if (not of_key and of_text == "angle") or size == (1.0 if not of_key else its_size):
-        return values if of_text == of_key or not of_key else []
-    same = of_text == (of_key or "ratio")
+    _, key_quantity, its_size = quantity_of(f"x_{unit}" if unit and not quantity_of(key)[1] else key)
+    text_quantity, size = _UNITS.get(behind, ("", 0.0))
+    if (not key_quantity and text_quantity == "angle") or size == (1.0 if not key_quantity else its_size):
+        return values if text_quantity == key_quantity or not key_quantity else []
+    same = text_quantity == (key_quantity or "ratio")
     return [f"{size / its_size * float(value):.6g}" for value in values] if same else []
 
 

@@ -33,7 +33,7 @@ _PLAIN = str.maketrans({
 
 
 def numeral(text: str) -> Numeral:
-    """Return what a text means as a number; no values if it is none. "1,800" is 1800, or 1.8 where the comma parts decimals."""
+    """Return what a text means as a number; no values if it has none. "1,800" is 1800, or 1.8 where the comma parts decimals."""
     text = ascii_marks(text[:_LONGEST]).strip()
     bearing = _BEARING.fullmatch(text)
     if bearing:

@@ -24,7 +24,7 @@ LARGEST = 4 * 2**20
 
 _LONGEST = 200  # characters of a name that is shown as it is
 
-MOST_TOLD = 100
+MOST_REPORTED = 100
 """Mistakes of a file that are reported at once."""
 
 
@@ -48,7 +48,7 @@ class TomlFile:
     misspelt: set[KeyPath] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
     problems: list[tuple[int, str]] = field(default_factory=list)
-    """The first ones, ``MOST_TOLD`` at most: line and message."""
+    """The first ones, ``MOST_REPORTED`` at most: line and message."""
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
@@ -104,12 +104,14 @@ class TomlFile:
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
         """Note the mistakes of another file, whose name stands at ``key_path``."""
         line = self.lines.get(key_path, 0)
-        self.problems += [(line, message) for _, message in sorted(other.problems)][: MOST_TOLD - len(self.problems)]
+        self.problems += [(line, message) for _, message in sorted(other.problems)][
+            : MOST_REPORTED - len(self.problems)
+        ]
 
     @property
     def is_full(self) -> bool:
         """Return whether there are as many mistakes as are reported at once, so that nobody need look for more."""
-        return len(self.problems) >= MOST_TOLD
+        return len(self.problems) >= MOST_REPORTED
 
     def is_sound_since(self, before: int) -> bool:
         """Return whether no mistake was noted after the first ``before``; never of a file that notes no more."""
@@ -119,7 +121,7 @@ class TomlFile:
         """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
         in_order = [message for _, message in sorted(self.problems, key=lambda problem: problem[0])]
         if self.is_full:
-            in_order.append(f"{self.path}: {MOST_TOLD} mistakes are reported at once; there may be more")
+            in_order.append(f"{self.path}: {MOST_REPORTED} mistakes are reported at once; there may be more")
         if in_order:
             raise InputError(*in_order)
 

@@ -97,13 +97,13 @@ def _meant(line: str, sections: Sequence[Section]) -> str:
             if meant != line and _is_toml(meant):
                 return _written(line, meant, slip, sections)
     pair = _PAIR.fullmatch(line)
-    of_unit = pair is not None and numeral(pair["value"]).unit
-    return "write the number alone, in the unit of the key" if of_unit else ""
+    has_unit = pair is not None and numeral(pair["value"]).unit
+    return "write the number alone, in the unit of the key" if has_unit else ""
 
 
 def _written(line: str, meant: str, slip: "Slip", sections: Sequence[Section]) -> str:
-    other = [one for one in slip(line, sections) if one != meant and _is_toml(one)]
-    instead = f", or {other[0]} if the comma parts decimals" if other else ""
+    readings = [reading for reading in slip(line, sections) if reading != meant and _is_toml(reading)]
+    instead = f", or {readings[0]} if the comma parts decimals" if readings else ""
     return f"write {meant}{instead}"
 
 
@@ -117,7 +117,7 @@ def _is_toml(line: str) -> bool:
 Slip = Callable[[str, Sequence[Section]], Iterator[str]]
 
 
-def _of_pairs(correct: Callable[[str, str], str]) -> Slip:
+def _pair_slip(correct: Callable[[str, str], str]) -> Slip:
     """Return a slip of key and value."""
 
     def slip(line: str, sections: Sequence[Section]) -> Iterator[str]:
@@ -228,6 +228,6 @@ def _all_slips(line: str, sections: Sequence[Section]) -> Iterator[str]:
 
 
 _SLIPS: tuple[Slip, ...] = (
-    _typography, _of_pairs(_truth), _numbers, _equals, _header, _of_pairs(_list), _of_pairs(_behind), _of_pairs(_quotes),
+    _typography, _pair_slip(_truth), _numbers, _equals, _header, _pair_slip(_list), _pair_slip(_behind), _pair_slip(_quotes),
 )  # fmt: skip
 """In the order in which they are tried."""

@@ -67,7 +67,6 @@ OUTPUTS = {
         "histories.h5",
         "intensity.csv",
         "checks.csv",
-        "estimate.csv",
         "shocks.csv",
         "report.html",
     ),

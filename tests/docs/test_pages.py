@@ -1,11 +1,13 @@
 """What the pages tell a reader to write is taken by the program as it is now."""
 
+import doctest
 import re
 import shutil
 import tomllib
 from pathlib import Path
 from textwrap import dedent
 
+import motion_files  # noqa: F401  loads ObsPy, which warns
 import pytest
 from jsonschema import Draft7Validator
 
@@ -91,3 +93,15 @@ def test_the_readme_stays_one_page_and_its_links_lead_somewhere():
     text = README.read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 180
     assert [link for link in re.findall(r"\]\(([\w./-]+)", text) if not (ROOT / link).exists()] == []
+
+
+def test_the_examples_on_the_page_about_records_come_to_what_they_say(tmp_path, monkeypatch):
+    (tmp_path / "motions").symlink_to(ROOT / "motions")
+    monkeypatch.chdir(tmp_path)
+    text = "\n".join(blocks(ROOT / "docs" / "pages" / "records.md", "python"))
+    test = doctest.DocTestParser().get_doctest(text, {}, "records.md", None, 0)
+    wrong = []
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE, verbose=False)
+    runner.run(test, out=wrong.append)
+    assert not wrong, "".join(wrong)
+    assert len(test.examples) > 20

@@ -3,10 +3,8 @@
 from pathlib import Path
 
 import numpy as np
-from hypothesis import strategies as st
 from motion_files import wiggle
 
-from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.motion import Unusable
@@ -242,30 +240,3 @@ def film_text(values=A, times=None, **header) -> str:
     return smc_text(
         pairs, **{"title": "1 UNCORRECTED ACCELEROGRAM", "rate": 1.7e38, "peak": np.abs(values).max(), **header}
     )
-
-
-def damaged(good: bytes) -> st.SearchStrategy[bytes]:
-    """Return a strategy of ``good`` cut anywhere, with bytes changed, among them large counts and numbers."""
-    spots = st.tuples(
-        st.integers(0, len(good)), st.binary(min_size=1, max_size=4) | st.sampled_from([b"9" * 9, b"1e308", b"-999"])
-    )
-
-    def put(length: int, changes: list[tuple[int, bytes]]) -> bytes:
-        data = bytearray(good[:length])
-        for start, new in changes:
-            data[start : start + len(new)] = new
-        return bytes(data)
-
-    # whole files more often than not: damage in the data is found behind a sound header
-    lengths = st.just(len(good)) | st.integers(0, len(good))
-    return st.builds(put, lengths, st.lists(spots, max_size=5))
-
-
-def assert_components_or_input_error(data: bytes, name: str) -> None:
-    """Assert that a file of any content gives finite components, or ``InputError`` and no other exception."""
-    try:
-        readings = read(data, name)
-    except InputError:
-        return
-    for reading in readings:
-        assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()

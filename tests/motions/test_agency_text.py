@@ -24,9 +24,8 @@ from agency_files import (
     renadic_text,
     resorce_text,
 )
+from damaged_files import SAMPLES
 from fixed_column_files import read
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from national_files import (
     afad_text,
     bhrc_text,
@@ -170,12 +169,17 @@ def plugins() -> dict[str, dict[str, Callable]]:
     return found
 
 
-@every_format
-def test_one_registered_plugin_and_no_other_takes_a_file_for_its_own(case):
-    data = case.text.encode("latin-1")
-    takers = {name for name, functions in plugins().items() if functions["isFormat"](io.BytesIO(data))}
-    assert takers == {case.name}
-    assert plugins()[case.name] == dict(zip(("isFormat", "readFormat"), case.plugin, strict=True))
+WITH_A_PLUGIN = {"PEER AT2": "AT2", "COSMOS": "COSMOS", "CSMIP": "CSMIP", "USGS SMC": "SMC"}
+FILES = [(case.name, case.text.encode("latin-1")) for case in CASES]
+FILES += [(name, data) for known, name in WITH_A_PLUGIN.items() for _, data in SAMPLES[known]]
+
+
+@pytest.mark.parametrize(("name", "data"), FILES, ids=[name for name, _ in FILES])
+def test_one_registered_plugin_and_no_other_takes_a_file_for_its_own(name, data):
+    takers = {plugin for plugin, functions in plugins().items() if functions["isFormat"](io.BytesIO(data))}
+    assert takers == {name}
+    made = [case.plugin for case in CASES if case.name == name]
+    assert all(dict(zip(("isFormat", "readFormat"), pair, strict=True)) == plugins()[name] for pair in made)
 
 
 def test_no_plugin_takes_anything_else_nor_minds_it(tmp_path):
@@ -187,12 +191,17 @@ def test_no_plugin_takes_anything_else_nor_minds_it(tmp_path):
         io.StringIO("text"),
         io.BytesIO(b""),
         io.BytesIO(b"\x00\xff" * 900),
+        *(
+            io.BytesIO(line * 20)
+            for line in (b"2 CORRECTED ACCELEROGRAM\n", b"1 2 3\n", b"NPTS= 4, DT= .1\n", b"Origin Time  2018\n")
+        ),
+        *(io.BytesIO(data) for name in ("K-NET/KiK-net", "RESORCE", "MiniSEED", "SAC") for _, data in SAMPLES[name]),
     ]
     for functions in plugins().values():
         assert not any(functions["isFormat"](stranger) for stranger in strangers)
 
 
-def test_values_that_touch_are_told_apart_by_their_columns():
+def test_values_that_touch_are_separated_by_their_columns():
     values = -11024.7 + np.arange(NPTS)  # 8 characters each: GeoNet's own V2A of Waiau has -11024.7
     text = "\n".join(geonet_component("N28W", values))
     assert "-11024.7-11023.7" in text
@@ -344,20 +353,13 @@ def test_a_second_volume_of_usc_with_another_peak_is_not_used():
 
 @pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
 @pytest.mark.parametrize("name", ["x.txt", "x.dat", "STATION", "x.V1", "x.191"])
-def test_national_files_are_told_by_their_content_in_a_file_of_any_name(case, name):
+def test_national_files_are_recognised_by_their_content_in_a_file_of_any_name(case, name):
     assert [component.orientation.label for component in read(case.text, name)] == list(case.labels)
 
 
 def test_taiwanese_local_time_is_eight_hours_ahead():
     (up, *_) = read(cwa_text(start="#StartTime(GMT+08): 2018/02/06-23:50:29.000"), "x.txt")
     assert up.start == moment(2018, 2, 6, 15, 50, 29)
-
-
-def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
-    peak = A[np.abs(A).argmax()]
-    assert read(dyna_text(**{"PGA_CM/S^2": f"{-peak:.6f}"}), "x.ASC")[0].findings == ()
-    (component,) = read(dyna_text(**{"PGA_CM/S^2": f"{peak * 1.02:.6f}"}), "x.ASC")
-    assert "header states a peak of" in component.findings[0].text
 
 
 def test_film_digitised_at_uneven_times_is_interpolated_and_it_is_said():
@@ -395,24 +397,18 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (geonet_text().replace(f"{A[20]:8.1f}", "    1_00", 1), "x.V1A", 'line 29: found "1_00"; expected a number'),
         (geonet_text() + "1.0\n", "x.V1A", r'line 94: found "1.0"; expected ".*after the last declared value"'),
         (dyna_text(NDATA="44", DURATION_S=None), "x.ASC", "says 44 values, 44 lines from line 18 on, but there are 43"),
-        (dyna_text(NDATA="1e12", DURATION_S=None), "x.ASC", "says 1000000000000 values, .* but there are 43"),
         (dyna_text(NDATA="4.5"), "x.ASC", "expected a whole number"),
         (dyna_text(NDATA=None, UNITS=None), "x.ASC", "the header lacks NDATA, UNITS"),
         (dyna_text(DURATION_S="0.43"), "x.ASC", "43 values every 0.005 s, but also 0.43 s"),
         (dyna_text(DATA_TYPE="VELOCITY"), "x.ASC", "DATA_TYPE: VELOCITY; expected ACCELERATION"),
         (dyna_text(np.tile(A, 3)).rstrip()[:-1], "x.ASC", "line 147: .*the file is cut"),
         (dyna_text().replace("\n0.000000", "\nnan", 1) + "nan", "x.ASC", r'line \d+: found "nan"|there are 44'),
-        (renadic_text().replace("POINTS =     43", "POINTS =     42", 1), "x.v1", "line 36: found .*expected"),
         (renadic_text().replace("POINTS =     43", "POINTS = 999999999", 1), "x.v1", "take 200000000 lines"),
         (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after 43 pairs'),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
         (csmnc_text(count=44), "x.dat", "line 22: found 3 numbers; expected 4"),
-        (csmnc_text(count=999999999), "x.dat", "says 999999999 values, 125000000 lines from line 17 on, .*there are 6"),
         (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'found "VELOCITY"; expected accelerations'),
-        (csmnc_text().replace("E+2 ", "E+x ", 1), "x.dat", r"line \d+: found .*expected a number"),
-        (afad_text(**{"NUMBER OF DATA": "44"}), "x.txt", "132 values, 44 lines from line 19 on, but there are 43"),
         (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
-        (afad_text(**{"SAMPLING INTERVAL (sec)": None}), "x.txt", "the header lacks SAMPLING INTERVAL"),
         (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "44 samples from line .*it is cut"),
@@ -427,7 +423,6 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (bhrc_text(volume=2), "x.V1", "Volume 2, whose layout is not known; take the .V1 file"),
         (bhrc_text(rate=100.0), "x.V1", "43 points in 0.215 s, line 22 100 samples per second"),
         (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/&" after 43 values'),
-        (bhrc_text().replace("POINTS =     43", "POINTS =     42", 1), "x.V1", "line 32: found .*expected 2 values"),
         (
             usc_text().replace("=   0.210 SEC", "=   0.310 SEC", 1),
             "x.s0a",
@@ -514,36 +509,3 @@ def test_one_component_that_is_not_understood_can_be_left_out_and_the_others_sta
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "X"\nuse = false\n')
     with pytest.raises(InputError, match='the file has "L", "V", "T", "TILT"'):
         read_motions(tmp_path)
-
-
-@every_format
-def test_a_file_cut_after_any_line_but_its_components_last_is_refused(case):
-    lines = case.text.encode("latin-1").splitlines(keepends=True)
-    whole = len(read(case.text, f"x{case.suffix}"))
-    for end in range(1, len(lines)):
-        try:
-            found = read(b"".join(lines[:end]), f"x{case.suffix}")
-        except InputError:
-            continue
-        # without a count nobody can tell (BBP); whole components of a file of three stand at the cut
-        assert case.name in ("BBP", "CWA") or len(found) < whole
-        assert case.name in ("BBP", "CWA") or all(len(component.acceleration) == NPTS for component in found)
-
-
-@every_format
-@settings(max_examples=60, deadline=1000, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(data=st.data())
-def test_a_damaged_file_ends_in_components_or_an_input_error(case, data):
-    good = case.text.encode("latin-1")
-    damaged = bytearray(good[: data.draw(st.integers(0, len(good)), "length")])
-    spots = st.tuples(
-        st.integers(0, len(good)), st.binary(min_size=1, max_size=4) | st.sampled_from([b"9" * 9, b"1e308"])
-    )
-    for at, put in data.draw(st.lists(spots, max_size=5)):
-        damaged[at : at + len(put)] = put
-    try:
-        found = read(bytes(damaged), f"x{case.suffix}")
-    except InputError:
-        return
-    for reading in found:
-        assert isinstance(reading, Unusable) or np.isfinite(reading.acceleration).all()

@@ -16,7 +16,7 @@ from motion_files import at2_text, wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import archives, read_motions
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 NAMES = {"RSN1063_NORTHR_RRS228.AT2": 1, "RSN1063_NORTHR_RRS318.AT2": 2, "RSN1063_NORTHR_RRS-UP.AT2": 3}
 
@@ -57,7 +57,7 @@ def test_a_zip_gives_what_its_files_give_in_a_folder_under_names_that_lead_to_it
     assert not packed.unusable
 
 
-def test_files_of_two_archives_are_not_paired_and_told_apart_by_their_archives(tmp_path):
+def test_files_of_two_archives_are_not_paired_and_bear_the_names_of_their_archives(tmp_path):
     for name, seed in (("a.zip", 1), ("b.zip", 2)):
         write_zip(tmp_path / name, {"Y000.AT2": at2_text(wiggle(50, seed), title="nothing")})
     write_zip(tmp_path / "c.zip", {"Y-UP.AT2": at2_text(wiggle(50, 3), title="nothing")})
@@ -113,7 +113,7 @@ def test_manifest_and_draft_reach_into_archives(tmp_path):
     peer_zip(tmp_path / "peer.zip")
     (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(at2("000.AT2", 4).encode()))
     before = read_motions(tmp_path)
-    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert [(m.name, m.vertical_source, m.notes) for m in read_motions(tmp_path).motions] == [
         (m.name, m.vertical_source, m.notes) for m in before.motions
     ]
@@ -249,7 +249,7 @@ def test_a_damaged_archive_ends_in_records_or_reasons(tmp_path):
     assert reasons > 100
 
 
-def test_a_record_in_a_file_without_a_known_suffix_is_told_by_its_header(tmp_path):
+def test_a_record_in_a_file_without_a_known_suffix_is_recognised_by_its_header(tmp_path):
     write_at2(tmp_path, "RSN1063_NORTHR_RRS228.AT2.90", wiggle(50, 1))
     (tmp_path / "unknown").write_text("hello\n")
     found = read_motions(tmp_path)

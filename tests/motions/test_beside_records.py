@@ -14,7 +14,7 @@ from waveform_files import trace
 
 from rockbatch.cli import main
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.manifest_draft import draft, write_draft
+from rockbatch.motions.manifest_draft import draft, write_manifest
 
 TITLE = "Somewhere, 1/17/1994, STA, 000"
 
@@ -171,7 +171,7 @@ def test_the_draft_of_a_building_addresses_its_channels_by_number(tmp_path):
         )
     (tmp_path / "x.V2").write_text("\n".join([*lines, ""]), encoding="latin-1")
     before = state_of(read_motions(tmp_path))
-    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert "component = 12\n" in text
     assert state_of(read_motions(tmp_path)) == before
     assert main(["motions", str(tmp_path)]) < 2
@@ -195,7 +195,7 @@ def test_an_untouched_draft_changes_no_name_and_what_joins_components_is_no_name
     write_at2(tmp_path, "RSN7_X_SUP.AT2", wiggle(60, 2), title="New Brighton, 1/17/1994, New Brighton Library, UP")
     (tmp_path / "NB.V2").write_text(csmip_text(2), encoding="latin-1")
     before = state_of(read_motions(tmp_path))
-    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert state_of(read_motions(tmp_path)) == before
     (tmp_path / "motions.toml").write_text(text.replace("# station =", "station ="), encoding="utf-8")
     assert all("New Brighton Library" in m.named for m in read_motions(tmp_path).motions if m.name.startswith("RSN"))

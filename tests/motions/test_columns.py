@@ -188,7 +188,7 @@ def test_four_columns_that_nobody_names_are_not_guessed(tmp_path):
     assert 'columns = ["time", "000", "090", "up"]' in reason(tmp_path, unit="g")
 
 
-def test_a_wrong_number_of_stated_columns_is_told(tmp_path):
+def test_a_wrong_number_of_stated_columns_is_refused(tmp_path):
     write(tmp_path, "", T, NS, EW)
     assert "found 3 columns" in reason(tmp_path, unit="g", columns=("time", "000"))
 
@@ -274,7 +274,7 @@ def test_a_small_text_file_reads_the_same_in_latin_1_and_utf_8_with_a_mark(tmp_p
     np.testing.assert_allclose(first.horizontal, [0.01, 0.02, 0.03])
 
 
-def test_stated_options_that_cannot_be_are_told_all_at_once():
+def test_all_impossible_options_are_one_error():
     with pytest.raises(InputError) as caught:
         ReadOptions(unit="furlongs", dt=-1.0, columns=("time", "-"), sensitivity=0.0)
     assert len(caught.value.problems) == 4

@@ -10,14 +10,11 @@ from fixed_column_files import (
     A,
     B,
     C,
-    assert_components_or_input_error,
     cosmos_header,
     cosmos_series,
     cosmos_text,
-    damaged,
     read,
 )
-from hypothesis import given, settings
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
@@ -165,26 +162,19 @@ def test_the_mark_of_missing_values_is_no_acceleration_unless_the_peak_reaches_i
     ("text", "message"),
     [
         (cosmos_text(series={"unit": "counts(50)"}), r'line 46: found the unit "counts\(50\)".*take the V1 or V2'),
-        (cosmos_text(series={"unit": "furlongs(77)"}), r'the unit "furlongs\(77\)"; expected'),
         (cosmos_text(series={"unit": "g(04)"}), r'"g\(04\)", and code 4 as integer 3.*expected them to agree'),
         (cosmos_text(unit_code=2), r'"cm/sec2\(04\)", and code 2 as integer 3'),
         (cosmos_text(interval_ms=-999.0), "an interval of -999 ms"),
-        (cosmos_text(interval_ms=50.0), "43 values in approximately 0 s, but an interval of 50 ms"),
         (cosmos_text(series={"seconds": 9}), "43 values in approximately 9 s, but an interval of 5 ms"),
-        (cosmos_text(series={"count": 42}), "line 52: found .*; expected 2 values of 10 characters"),
         (cosmos_text(series={"count": 40}), 'line 52: found .*expected "End-of-data'),
-        (cosmos_text(series={"count": 999999999}), "take 125000000 lines, but the file ends"),
         (cosmos_text(series={"count": 0}), "found 0 values"),
         (cosmos_text(series={"layout": "free"}), r'line 46: found the format "\(free\)"; expected one such as'),
         (cosmos_text(series={"layout": "0F10.5"}), "found the format"),
-        (cosmos_text().replace("(10I8)", "(10I)"), r'line 14: found the format "\(10I\)"'),
         (cosmos_text().replace("100 Integer", " 90 Integer"), "line 14: found .*expected 100 Integer-header values"),
         (cosmos_text().replace("with 13", "with 12"), 'line 13: found .*expected "100 Integer-header'),
         (cosmos_text().replace("2 Comment", "1 Comment"), 'line 45: found .*expected ".*acceleration pts'),
-        (cosmos_text().replace("End-of-data", "and so on"), 'line 53: found .*expected "End-of-data'),
         (cosmos_text() + "1.0\n", "line 54: found "),
         (cosmos_text(direction="Up", scnl="8040.HNE.NP.D0"), "directions contradict each other: Up and HNE"),
-        (cosmos_text(direction="Up", scnl="", azimuth_code=401), "directions contradict each other: Up and Down"),
         ("\n".join(cosmos_header("Response spectra", A, "Up")), "line 1: spectra; expected accelerations"),
         (
             "\n".join(
@@ -203,17 +193,6 @@ def test_what_cannot_be_used_is_refused_with_place_and_finding(text, message):
         read(text, "x.V1")
 
 
-def test_a_file_cut_after_any_line_keeps_whole_channels_only():
-    lines = three_channels().splitlines(keepends=True)
-    each = len(lines) // 3
-    for end in range(1, len(lines)):
-        if end % each:
-            with pytest.raises(InputError):
-                read("".join(lines[:end]), "x.V1")
-        else:
-            assert [len(c.acceleration) for c in read("".join(lines[:end]), "x.V1")] == [NPTS] * (end // each)
-
-
 def test_obspy_gets_the_files_own_unit_and_the_channels_codes(tmp_path):
     path = tmp_path / "x.V1c"
     path.write_bytes(cosmos_text().encode("latin-1"))
@@ -226,12 +205,3 @@ def test_obspy_gets_the_files_own_unit_and_the_channels_codes(tmp_path):
     assert [trace.stats.npts for trace in read_cosmos_stream(io.BytesIO(three_channels().encode("latin-1")))] == [
         NPTS
     ] * 3
-
-
-GOOD = cosmos_text().encode("latin-1")
-
-
-@settings(max_examples=100, deadline=1000)
-@given(damaged(GOOD))
-def test_a_damaged_file_ends_in_components_or_an_input_error(data):
-    assert_components_or_input_error(data, "x.V1c")

@@ -10,21 +10,16 @@ from fixed_column_files import (
     A,
     B,
     C,
-    assert_components_or_input_error,
     cosmos_text,
     csmip_channel,
     csmip_text,
-    damaged,
     in_columns,
     read,
-    smc_text,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.formats.csmip import is_csmip_file, read_csmip_stream
+from rockbatch.motions.formats.csmip import read_csmip_stream
 from rockbatch.motions.motion import Unusable
 
 START = datetime(2019, 7, 6, 3, 19, 37, tzinfo=UTC).timestamp() + 0.5
@@ -65,7 +60,7 @@ def test_every_channel_comes_out_in_m_s2_with_step_direction_and_time(volume, mo
     assert len({component.station for component in found}) == 1
 
 
-def test_values_that_touch_are_told_apart_by_the_declared_format():
+def test_values_that_touch_are_separated_by_the_declared_format():
     values = -np.abs(A) - 10.5
     text = one_channel(values=values)
     assert "0-1" in text.split("(8f10.6)")[1][:80]
@@ -126,28 +121,6 @@ def test_channels_may_differ_in_length():
     assert [len(component.acceleration) for component in read(text, "x.V2")] == [NPTS, NPTS - 3]
 
 
-def test_a_header_peak_that_is_not_in_the_data_is_said_whatever_its_sign():
-    text = one_channel()
-    line = next(line for line in text.splitlines() if line.startswith("Peak acc"))
-    assert "-" in line
-    assert read(text.replace(line, line.replace("-", " ")), "x.V2")[0].findings == ()
-    (component,) = read(text.replace(line, line.replace("-", "9")), "x.V2")
-    assert "header states a peak of" in component.findings[0].text
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (one_channel(unit="cm/sec"), 'component "90": unknown acceleration unit "cm/sec"'),
-        (one_channel(volume=1, unit="counts"), 'component "90": unknown acceleration unit "counts"'),
-    ],
-)
-def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, message):
-    unusable, _ = read(text + one_channel("Up"), "x.V2")
-    assert isinstance(unusable, Unusable)
-    assert message in unusable.reason
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -156,8 +129,6 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, m
             "line 1: Volume 3, spectra; expected accelerations: take the .V2 file",
         ),
         (one_channel().replace("43 points of accel", "42 points of accel"), "line 52: found .*expected 2 values"),
-        (one_channel().replace("43 points of veloc", "44 points of veloc"), "line 59: found .*expected 4 values"),
-        (one_channel().replace("43 points of accel", "999999999 points of accel"), "take 125000000 lines"),
         (one_channel().replace("43 points of accel", "0 points of accel"), "line 46: found .*expected a count"),
         (one_channel(unit="?"), "line 46: found .*expected a count, an interval and a unit of accel"),
         (one_channel().replace("43 points of accel", "43 points of displ"), "line 46: found .*unit of accel"),
@@ -165,12 +136,10 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, m
         (one_channel().replace("    43 points of inst", "    44 points of inst"), "44 points of.* contradicts line 46"),
         (one_channel().replace("intervals of    .010", "intervals of    .020"), "intervals of .* contradicts line 46"),
         (one_channel(volume=1).replace("Points =     43", "Points =     44"), "No. of Points .* contradicts line 28"),
-        (one_channel(volume=1).replace("at 100 Samples", "at 200 Samples"), "at 200 Samples/sec.* contradicts line 28"),
         (one_channel().replace("/&", "//"), 'line 67: found "// .*expected "/&" after the declared values'),
         (one_channel() + "1.0\n", 'line 68: found "1.0"; expected "Uncorrected accelerogram data"'),
         (one_channel().replace("Station Id.", "Somewhere"), "line 6: found"),
         (one_channel().replace("Chan  1: 90 Deg      (", "no such line"), "line 8: found"),
-        (one_channel(modern=False).replace("SEC.  (UNITS: CM/SEC2)", "SEC."), "line 46: found .*a unit of accel"),
         (one_channel().replace(f"{A[20]:10.6f}", "**********", 1), r'line 49: found "\*+"; expected a number'),
     ],
 )
@@ -186,7 +155,7 @@ def test_pairs_of_time_and_value_are_read_whatever_the_suffix():
 
 
 @pytest.mark.parametrize("suffix", [".V1", ".v2", ".RAW"])
-def test_suffixes_that_several_agencies_use_are_told_apart_by_the_header(suffix):
+def test_the_header_decides_between_agencies_that_share_a_suffix(suffix):
     texts = [csmip_text(1), csmip_text(2)]
     if suffix != ".RAW":
         texts += [cosmos_text(stage="Uncorrected"), cosmos_text(stage="Corrected")]
@@ -194,28 +163,6 @@ def test_suffixes_that_several_agencies_use_are_told_apart_by_the_header(suffix)
         assert all(not isinstance(reading, Unusable) for reading in read(text, f"x{suffix}"))
     with pytest.raises(InputError, match=r"not a .*CSMIP.* file, as its suffix"):
         read("hello\nworld\n", f"x{suffix}")
-
-
-def test_only_csmip_files_are_taken_for_csmip(tmp_path):
-    for text in (csmip_text(1), csmip_text(2), csmip_text(1, modern=False)):
-        assert is_csmip_file(io.BytesIO(text.encode("latin-1")))
-    geonet = "Uncorrected accelerogram 20161113_110256_WTMC_20 GNS Science\nSite WTMC\n"
-    for other in (pairs_text(), cosmos_text(), smc_text(), geonet, "", "hello"):
-        assert not is_csmip_file(io.BytesIO(other.encode("latin-1")))
-    for nonsense in (None, 7, tmp_path, io.StringIO("text")):
-        assert not is_csmip_file(nonsense)
-
-
-@pytest.mark.parametrize("volume", [1, 2])
-def test_a_file_cut_after_any_line_keeps_whole_channels_only(volume):
-    lines = csmip_text(volume).splitlines(keepends=True)
-    each = len(lines) // 3
-    for end in range(1, len(lines)):
-        if end % each:
-            with pytest.raises(InputError):
-                read("".join(lines[:end]), "x.V2")
-        else:
-            assert [len(c.acceleration) for c in read("".join(lines[:end]), "x.V2")] == [NPTS] * (end // each)
 
 
 def test_obspy_gets_the_files_own_unit_and_the_codes_of_its_record(tmp_path):
@@ -229,10 +176,3 @@ def test_obspy_gets_the_files_own_unit_and_the_codes_of_its_record(tmp_path):
     assert stream[0].stats.starttime.timestamp == START
     numbered = one_channel(station="1336", record="01336-C0165-79290.04").encode("latin-1")
     assert read_csmip_stream(io.BytesIO(numbered))[0].id == ".1336..90"
-
-
-@pytest.mark.parametrize("good", [csmip_text(1).encode("latin-1"), csmip_text(2).encode("latin-1")], ids=["V1", "V2"])
-@settings(max_examples=80, deadline=1000)
-@given(data=st.data())
-def test_a_damaged_file_ends_in_components_or_an_input_error(good, data):
-    assert_components_or_input_error(data.draw(damaged(good)), "x.V1")

@@ -14,7 +14,7 @@ from studies import FOLDER_STUDY, write_study
 from rockbatch.cli import main
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.orientation import counted, orientation_in, orientation_of, split_stem
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -254,7 +254,7 @@ def test_a_manifest_that_says_something_else_does_not_make_a_direction_known(tmp
 def test_the_drafted_manifest_has_the_line_to_fill_in(tmp_path):
     write_text(tmp_path, "mine.txt")
     write_text(tmp_path, "three.txt", 3, "# time(s) ch1(g) ch2(g) ch3(g)")
-    draft = write_draft(tmp_path)
+    draft = write_manifest(tmp_path)
     text = draft.read_text(encoding="utf-8")
     assert text.count('# role = "horizontal"   # or "vertical"') == 4
     assert len(read_motions(tmp_path).unusable) == 4  # a draft says nothing of its own

@@ -44,7 +44,7 @@ def test_the_corrected_one_of_two_volumes_is_used_and_the_other_named(tmp_path):
 
 
 @pytest.mark.parametrize("modern", [True, False])
-def test_old_headers_without_a_time_are_told_by_their_event(tmp_path, modern):
+def test_old_headers_without_a_time_are_compared_by_their_event(tmp_path, modern):
     write(tmp_path, a_RAW=csmip_text(1, modern=modern), b_V2=csmip_text(2, modern=modern))
     assert {m.source.partition(" ")[0] for m in read_motions(tmp_path).motions} == {"b.V2"}
     another = (
@@ -125,7 +125,7 @@ def test_files_of_one_recording_that_are_whole_sets_are_used_once_if_their_sampl
     assert all(motion.vertical is not None for motion in found.motions)
 
 
-def test_the_same_recording_in_another_unit_is_told_by_its_header(tmp_path):
+def test_the_same_recording_in_another_unit_is_recognised_by_its_header(tmp_path):
     write_at2(tmp_path, "RSN7_X_STA000.AT2", wiggle(60), title=title("0"))
     write_at2(tmp_path, "sta.AT2", wiggle(60) * 981, title=title("0"), unit="ACCELERATION IN UNITS OF CM/S2")
     found = read_motions(tmp_path)
@@ -195,7 +195,7 @@ def test_an_smc_file_beside_its_uncorrected_one(tmp_path):
         (Sensor("A"), Sensor("B"), False),
     ],
 )
-def test_a_sensor_is_told_by_what_both_headers_say_of_it(one, two, same):
+def test_a_sensor_is_recognised_by_what_both_headers_say_of_it(one, two, same):
     assert one.may_be_same_as(two) == two.may_be_same_as(one) == same
 
 

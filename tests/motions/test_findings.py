@@ -104,7 +104,7 @@ def test_confirm_in_a_study_confirms_the_pga_too_and_confirm_pga_nothing_else(tm
             assert [motion.name for motion in ground_motions(study).motions] == used
 
 
-def test_two_gross_findings_are_told_together_and_one_key_confirms_both(tmp_path):
+def test_two_gross_findings_are_one_reason_and_one_key_confirms_both(tmp_path):
     write_at2(tmp_path, "x.AT2", 20 * ringing(), title="nothing, 000")
     reason = only_reason(read_motions(tmp_path))
     assert "outside 0.001–5 g: check the unit; it alternates" in reason
@@ -161,7 +161,7 @@ def test_alternation_is_the_least_of_seven_swings_to_and_fro():
         "Top of Pier 2", "21st Floor", "Second floor",
     ],
 )  # fmt: skip
-def test_a_sensor_in_a_structure_is_told_by_its_place(tmp_path, place):
+def test_a_sensor_in_a_structure_is_recognised_by_its_place(tmp_path, place):
     (tmp_path / "x.V2").write_text(
         "\n".join([*csmip_channel("90 Deg", A, volume=2, place=place), ""]), encoding="latin-1"
     )
@@ -188,7 +188,7 @@ def test_the_station_of_an_smc_file_may_be_a_dam_s_crest(tmp_path):
     assert '"ANDERSON DAM, CREST" is in a structure' in only_reason(read_motions(tmp_path))
 
 
-def test_one_horizontal_many_times_the_other_is_told_of_both(tmp_path):
+def test_one_horizontal_many_times_the_other_is_a_finding_of_both(tmp_path):
     write_at2(tmp_path, "x000.AT2", wiggle(200, 1, 0.5), title=title("0"))
     write_at2(tmp_path, "x090.AT2", wiggle(200, 2, 0.05), title=title("90"))
     motions = read_motions(tmp_path).motions
@@ -198,7 +198,7 @@ def test_one_horizontal_many_times_the_other_is_told_of_both(tmp_path):
     assert [whats(motion) for motion in read_motions(tmp_path).motions] == [[], []]
 
 
-def test_unprocessed_is_a_property_that_is_told(tmp_path, capsys):
+def test_an_unprocessed_record_has_a_finding(tmp_path, capsys):
     for name, text in (("a.V1", cosmos_text(A)), ("b.V2", cosmos_text(B, "360 Deg", stage="Corrected"))):
         (tmp_path / name).write_text(text, encoding="latin-1")
     write_at2(tmp_path, "c.AT2", wiggle(300, 2), title="nothing, 000")
@@ -261,7 +261,7 @@ def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
 
 
 @needs_records
-def test_what_lasts_is_told_from_what_runs_away_in_real_records():
+def test_lasting_displacements_of_real_records_do_not_count_as_running_away():
     """Lucerne moved for good, by 2.4 m; straight lines take a third off that, and three fifths off what runs away."""
     pytest.importorskip("hdf5plugin")
     away = {True: 0, False: 0, None: 0}

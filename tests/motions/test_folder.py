@@ -258,7 +258,7 @@ def test_motions_of_one_name_get_their_folder_in_front(tmp_path):
     assert [motion.name for motion in read_motions(tmp_path).motions] == ["a/x", "b/x", "y"]
 
 
-def test_a_missing_path_is_an_error_with_a_suggestion_and_all_are_told_at_once(tmp_path):
+def test_all_missing_paths_are_one_error_with_suggestions(tmp_path):
     (tmp_path / "records").mkdir()
     with pytest.raises(InputError) as caught:
         read_motions([tmp_path / "recods", tmp_path / "nowhere"])

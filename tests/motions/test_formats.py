@@ -14,7 +14,7 @@ from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write
 from rockbatch.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, with_obspy
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 
 def only_reason(found) -> str:
@@ -157,7 +157,7 @@ def test_two_events_in_a_file_are_two_records_each_with_its_vertical_and_turned_
     turned = read_motions(tmp_path, confirmed=["*"], options=options, azimuths=(0.0, 90.0))
     assert len(turned.motions) == 4
     assert not turned.unusable
-    draft = write_draft(tmp_path, options)
+    draft = write_manifest(tmp_path, options)
     again = read_motions(tmp_path, confirmed=["*"], options=options)
     assert draft.read_text().count(f'{second}"') == 3
     assert [motion.name for motion in again.motions] == names
@@ -267,7 +267,7 @@ def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["TST.EW.txt", "AOM003", "20180124.asc", "TST.ew.90"])
-def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+def test_knet_is_recognised_by_its_content_in_a_file_of_any_name(tmp_path, name):
     text, counts = knet_text("E-W")
     (tmp_path / name).write_text(text)
     (motion,) = read_motions(tmp_path).motions
@@ -276,7 +276,7 @@ def test_knet_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["x.seed", "x.msd", "CI.LRL..HNN.D.2019.187", "x", "x.dat"])
-def test_miniseed_is_told_by_its_content_in_a_file_of_any_name(tmp_path, name):
+def test_miniseed_is_recognised_by_its_content_in_a_file_of_any_name(tmp_path, name):
     write_mseed(tmp_path / name, trace("HNN"))
     (motion,) = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2")).motions
     np.testing.assert_allclose(motion.horizontal, (COUNTS - COUNTS.mean()) / 100, atol=1e-12)

@@ -84,6 +84,29 @@ def test_a_damaged_file_ends_in_components_or_a_reason(name):
     assert counts.refused > 20
 
 
+WITHOUT_A_COUNT = ("text columns", "CWA free field")  # of samples in the header
+WHOLE = [(name, file, whole) for name, files in SAMPLES.items() for file, whole in files if name not in WITHOUT_A_COUNT]
+
+
+@pytest.mark.parametrize(("name", "file", "whole"), WHOLE, ids=[f"{name} {file}" for name, file, _ in WHOLE])
+def test_a_file_cut_after_any_line_has_whole_components_or_is_refused(name, file, whole):
+    """What comes out has all of its samples, whatever a count in the header promised."""
+    options = ReadOptions(unit="m/s2")
+    components = read_record(RecordFile(Path(file), file, whole, options=options))
+    binary = b"\x00" in whole
+    lines = [whole[i : i + 64] for i in range(0, len(whole), 64)] if binary else whole.splitlines(keepends=True)
+    refused = 0
+    for end in range(1, len(lines)):
+        try:
+            found = read_record(RecordFile(Path(file), file, b"".join(lines[:end]), options=options))
+        except InputError:
+            refused += 1
+            continue
+        for reading, component in zip(found, components, strict=False):
+            np.testing.assert_array_equal(reading.acceleration, component.acceleration)
+    assert refused > 0.9 * (len(lines) - 1)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [2_000, pytest.param(10_000, marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("name", sorted(SAMPLES))

@@ -16,7 +16,7 @@ from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions, columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 
 def names(found) -> list[str]:
@@ -48,7 +48,7 @@ def test_no_word_of_a_sac_header_keeps_its_reader_for_ever(tmp_path, value):
     assert {"w35_HNE", "w36_HNE"} <= {*used}
 
 
-def test_a_damaged_word_of_a_sac_header_is_told_by_its_name(tmp_path):
+def test_a_damaged_word_of_a_sac_header_is_refused_by_its_name(tmp_path):
     for word, value in ((0, -0.01), (71, 4000), (79, -1), (85, 2), (105, 0)):
         (tmp_path / f"w{word}.sac").write_bytes(sac_with(word, value))
     reasons = {one.name: one.reason for one in read_motions(tmp_path, options=ReadOptions(unit="g")).unusable}
@@ -165,7 +165,7 @@ def test_a_scale_that_takes_a_record_beyond_all_numbers_costs_this_record_only(t
 
 
 @pytest.mark.parametrize("dt", [1e-5, 2e-5])
-def test_a_vertical_of_a_far_finer_step_is_left_and_its_reason_told(tmp_path, dt):
+def test_a_vertical_of_a_far_finer_step_is_not_used(tmp_path, dt):
     """A grid of the finer step over the whole of the coarser record would be a thousand times its size."""
     write_at2(tmp_path, "a000.AT2", wiggle(60_000), dt="0.02", title="X, 1/17/1994, S, 000")
     write_at2(tmp_path, "aUP.AT2", wiggle(200, 2), dt=f"{dt:g}", title="X, 1/17/1994, S, UP")
@@ -256,7 +256,7 @@ def test_words_of_a_header_come_no_further_than_the_reader(tmp_path):
 def test_a_delete_sign_in_a_header_leaves_the_drafted_manifest_one_that_can_be_read(tmp_path):
     write_at2(tmp_path, "a.AT2", wiggle(), title="Event, 1/17/1994, Sta\x7ftion\x1b, 000")
     write_at2(tmp_path, "b.AT2", wiggle(seed=2), title="Event, 1/17/1994, Sta\x7ftion\x1b, UP")
-    write_draft(tmp_path)
+    write_manifest(tmp_path)
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical_source == "b.AT2"
 
@@ -293,7 +293,7 @@ def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
         assert names(read_motions(tmp_path)) == ["x"]
 
 
-def test_station_xml_is_read_up_to_a_size_that_is_told_and_no_tree_is_built(tmp_path, monkeypatch):
+def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, monkeypatch):
     from rockbatch.motions.formats import stationxml
 
     write_mseed(tmp_path / "x.mseed", trace("HNN"))

@@ -12,7 +12,7 @@ from waveform_files import trace
 
 from rockbatch.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 
 
 def title(component: str, station: str = "STA") -> str:
@@ -134,7 +134,7 @@ def test_a_motions_csv_without_a_column_of_files_is_a_record(tmp_path):
     assert list(motions_of(tmp_path)) == ["motions"]
 
 
-def test_every_mistake_is_told_at_once_with_its_line(tmp_path):
+def test_all_mistakes_are_one_error_with_their_lines(tmp_path):
     write_records(tmp_path)
     (tmp_path / "outside").mkdir()
     (tmp_path / "motions.toml").write_text("""\
@@ -179,7 +179,7 @@ component = "NS"
     assert "did you mean a0" in problems[1]
 
 
-def test_mistakes_in_a_csv_are_told_with_their_lines_too(tmp_path):
+def test_mistakes_in_a_csv_have_their_lines_too(tmp_path):
     write_records(tmp_path)
     (tmp_path / "motions.csv").write_text("file,azimut,scale\na000.AT2,,x\n\na09.AT2,,1,2\n")
     first, second, third, fourth = problems_of(tmp_path)
@@ -223,7 +223,7 @@ def test_the_draft_changes_nothing_until_it_is_edited(tmp_path):
     write_at2(tmp_path / "deep", "RSN9_X_Y--V.AT2", wiggle(50, 5), title=title("V", "ß, another header"))
     (tmp_path / "broken.AT2").write_text("no record")
     before = read_motions(tmp_path)
-    draft = write_draft(tmp_path)
+    draft = write_manifest(tmp_path)
     after = read_motions(tmp_path)
     assert [(m.name, m.vertical_source, m.notes) for m in after.motions] == [
         (m.name, m.vertical_source, m.notes) for m in before.motions
@@ -240,7 +240,7 @@ def test_the_draft_of_a_header_with_odd_characters_is_a_manifest(tmp_path):
     write_at2(tmp_path, "a000.AT2", wiggle(50, 1), title=title("000", odd))
     write_at2(tmp_path, "b.AT2", wiggle(50, 2), title=title("090", odd))
     before = read_motions(tmp_path)
-    text = write_draft(tmp_path).read_text(encoding="utf-8")
+    text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert not set(text) & {"\x7f", "\x1b"}
     assert [motion.name for motion in read_motions(tmp_path).motions] == [motion.name for motion in before.motions]
 
@@ -254,7 +254,7 @@ def test_the_draft_has_a_line_to_fill_in_for_each_unit_and_interval_that_a_file_
     write_at2(tmp_path, "bare.AT2", wiggle(50, 4), unit="ACCELERATION TIME SERIES")
     trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
     assert len(read_motions(tmp_path).unusable) == 5
-    draft = write_draft(tmp_path)
+    draft = write_manifest(tmp_path)
     assert len(read_motions(tmp_path).unusable) == 5
     text = draft.read_text(encoding="utf-8")
     asked = '# unit =   # of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"\n'
@@ -273,10 +273,10 @@ def test_a_draft_is_never_written_over_a_manifest(tmp_path):
     for name in ("motions.toml", "motions.csv"):
         (tmp_path / name).write_text("file\n")
         with pytest.raises(InputError, match="is there already"):
-            write_draft(tmp_path)
+            write_manifest(tmp_path)
         (tmp_path / name).unlink()
     with pytest.raises(InputError, match="a manifest is for a folder"):
-        write_draft(tmp_path / "a000.AT2")
+        write_manifest(tmp_path / "a000.AT2")
 
 
 def test_mistakes_come_in_one_order_whatever_the_hashes_of_texts(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.motions import Unusable
+from rockbatch.motions import LeftOut, Unusable
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 
 
@@ -29,7 +29,7 @@ def test_a_set_is_gone_through_as_a_list_of_its_motions():
     assert "bad" not in FOUND
 
 
-def test_a_name_that_is_not_there_is_told_with_those_that_are():
+def test_an_unknown_name_is_an_error_with_the_known_ones():
     with pytest.raises(rb.InputError, match='"stron"; did you mean "strong"'):
         FOUND["stron"]
     with pytest.raises(rb.InputError, match="there are weak, strong"):
@@ -72,6 +72,15 @@ def test_a_set_and_a_motion_tell_of_themselves_in_a_few_lines():
         "  PGA      0.500 g, vertical 0.200 g",
         "  from     strong.txt",
     ]
+
+
+def test_components_of_a_station_stand_together():
+    pair = [rb.Motion(name, 0.02, np.ones(3), station="S") for name in ("a", "b")]
+    assert rb.MotionSet([*pair, motion("c", 1.0)]).stations() == {"S": pair, "c": [motion("c", 1.0)]}
+
+
+def test_what_could_not_be_used_is_printed_as_its_file_and_the_reason():
+    assert str(FOUND.unusable[0]) == str(LeftOut("bad", "bad.txt", "it ends early")) == "bad.txt: it ends early"
 
 
 def test_a_notebook_shows_the_first_of_many_rows_and_escapes_names():

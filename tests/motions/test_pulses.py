@@ -111,7 +111,7 @@ def test_a_mistake_says_what_to_write(wrong, message):
         make(**wrong)
 
 
-def test_an_amplitude_that_only_a_wrong_unit_explains_is_told_as_typed_and_in_g():
+def test_an_amplitude_that_only_a_wrong_unit_explains_is_refused_as_typed_and_in_g():
     with pytest.raises(InputError, match=re.escape("amplitude = 40 m/s², 4.08 g: more than 3 g")):
         make("sine", amplitude=40.0)
     confirmed = make("sine", amplitude=40.0, confirm=["amplitude"])

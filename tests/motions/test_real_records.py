@@ -13,7 +13,7 @@ from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import correlation
 from rockbatch.motions.formats import RecordFile, read_record
-from rockbatch.motions.manifest_draft import write_draft
+from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.plausible import FARTHEST_MEAN
 
 pytestmark = needs_records
@@ -205,5 +205,5 @@ def test_the_draft_of_real_records_loads_and_changes_no_name_and_no_number(tmp_p
         if path.is_file():
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(path.read_bytes())
-    write_draft(tmp_path / "copy" / folder)
+    write_manifest(tmp_path / "copy" / folder)
     assert state_of(read_motions(tmp_path / "copy" / folder)) == state_of(real_motions(folder)) != []

@@ -44,7 +44,7 @@ def test_a_stiff_oscillator_feels_the_peak_of_the_ground_and_a_soft_one_its_disp
     assert soft == pytest.approx((2 * math.pi / 1000) ** 2 * pgd(motion.horizontal, 0.01), rel=1e-3)
 
 
-def test_a_period_or_damping_out_of_range_is_told():
+def test_a_period_or_damping_out_of_range_is_refused():
     with pytest.raises(InputError, match="period = 0: must be a number above 0") as caught:
         spectral_acceleration(np.ones(3), 0.01, [0.0], damping=1.0)
     assert "damping = 1: must be within 0" in str(caught.value)

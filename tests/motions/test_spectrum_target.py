@@ -88,7 +88,7 @@ def test_a_spectrum_is_read_from_columns_of_any_kind(tmp_path, text):
         ("0.0, 0.8\n1, 1\n", "above 0"),
     ],
 )
-def test_a_damaged_spectrum_is_told(tmp_path, text, said):
+def test_a_damaged_spectrum_is_refused_with_its_line(tmp_path, text, said):
     (tmp_path / "t.csv").write_text(text)
     with pytest.raises(InputError, match=said):
         read_spectrum(tmp_path / "t.csv")
@@ -265,7 +265,7 @@ def test_a_study_names_codes_tables_and_files(tmp_path):
         ({"pga_g": 0.4, "ground": "B"}, "is for a target with spectrum"),
     ],
 )
-def test_what_is_wrong_about_a_target_is_told(tmp_path, target, said):
+def test_a_wrong_target_is_refused_with_the_reason(tmp_path, target, said):
     with pytest.raises(InputError, match=said):
         study_with(tmp_path, target)
 

@@ -70,7 +70,7 @@ def test_a_unit_of_the_last_digit_is_rounding(tmp_path, last):
     assert len(read_motions(tmp_path).motions) == 1
 
 
-def test_a_digit_lost_from_a_scale_and_lines_lost_from_the_data_are_told(tmp_path):
+def test_a_digit_lost_from_a_scale_and_lines_lost_from_the_data_are_found(tmp_path):
     text = knet_text()[0]
     (tmp_path / "x.EW").write_text(text.replace("/8223790", "/822379"))
     (unusable,) = read_motions(tmp_path).unusable

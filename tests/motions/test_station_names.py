@@ -111,7 +111,7 @@ def test_records_of_one_station_in_many_earthquakes_are_not_all_compared_to_each
     assert len(compared) < 1000
 
 
-def test_several_records_of_one_station_are_told_apart_by_event_or_folder():
+def test_several_records_of_one_station_differ_in_event_or_folder():
     kobe, niigata = ([component("c", sensor=Sensor("TAK"), event=event)] for event in ("1995", "2004"))
     assert station_names([kobe, niigata]) == ["TAK 1995", "TAK 2004"]
     one, two = ([component("c", site="LGP", folder=f"/{folder}")] for folder in ("loma", "other"))

@@ -72,7 +72,7 @@ def test_an_offset_that_cannot_be_is_refused(rule, window):
 # Selection
 
 
-def test_records_are_selected_by_every_measure_and_the_others_are_told_why():
+def test_records_are_selected_by_every_measure_and_the_others_have_a_reason():
     found = MotionSet([motion("weak", 0.5), motion("fit", 2.0), motion("strong", 9.0)])
     chosen = selected(found, Selection(pga_g=(0.1, 0.5)), gravity=10.0)
     assert [m.name for m in chosen.motions] == ["fit"]

@@ -1,4 +1,4 @@
-"""Sections on the suite: its distribution, target spectrum and pulses, intensity measures and code estimates."""
+"""Sections on the suite: its distribution, target spectrum and pulses, intensity measures."""
 
 import json
 import math
@@ -7,13 +7,13 @@ import pandas as pd
 import pytest
 from report_page import Page
 from report_samples import case_entry, write_results
-from studies import COSINE, RIGID, SINE, study_text, write_study
+from studies import COSINE, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.report import write_report
 from rockbatch.report.finished import read
-from rockbatch.report.sections import distribution, estimate, forces, intensity, studied, target
+from rockbatch.report.sections import distribution, forces, intensity, studied, target
 
 PULSES = tuple(
     {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}
@@ -30,7 +30,7 @@ def asked(tmp_path_factory):
         pier={"alpha": [0.2, 0.3], "p": 1.0},
         motions={"target": {"spectrum": [[0.1, 1.0], [2.0, 0.4]], "period_range_s": [0.2, 1.5], "factors": "none"}},
         pulses=PULSES,
-        output={"intensity": True, "estimate": True, "histories": "none"},
+        output={"intensity": True, "histories": "none"},
     )
     rb.run(write_study(folder, text), out=folder / "out")
     return folder / "out"
@@ -97,58 +97,6 @@ def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
         assert row[-len(measures) :] == ["—" if value != value else f"{value:.2f}" for value in measures["dispersion"]]
 
 
-# Code estimates
-
-
-def test_estimates_are_labelled_as_a_comparison_that_need_not_converge(asked):
-    page = page_of(asked, estimate)
-    for words in (
-        "A comparison, not a result",
-        "need not converge",
-        "could not be checked",
-        "g tan α",
-        "FEMA 356 (ζ =",
-    ):
-        assert words in page.text
-    table = rb.open_results(asked).estimate
-    outcomes = table.drop_duplicates(["record", "alpha"])["priestley_outcome"].value_counts()
-    assert f"below the threshold {outcomes['stays']}" in page.text
-    estimates = table[table["priestley_outcome"] == "rocks"]["priestley_theta_over_alpha"]
-    assert all(f"{value:.4f}" in page.text for value in estimates)
-
-
-def test_estimates_count_each_motion_once_and_are_compared_with_rigid_ground_alone(tmp_path):
-    """Count each motion once: the formulas are of a block on rigid ground, not of one on pads or with dampers."""
-    pads = {"name": "pads", "base": "elastic", "beta": [20, 30], "epsilon": 0.05}
-    damped = {"name": "damped", "base": "rigid", "damper": [{"kind": "friction", "f": 0.02}]}
-    output = {"estimate": True, "histories": "none"}
-    text = study_text(pulses=PULSES[:3], cases=(RIGID, pads, damped), output=output, numerics={"substeps": 2})
-    table = rb.run(write_study(tmp_path, text), out=tmp_path / "out")
-    page = page_of(tmp_path / "out", estimate)
-    assert page.text.count("of 3 motions: ") == 2
-    rows = page.tables[""]
-    assert rows[1][-1] == "rigid"
-    bare = table[table["case"] == "rigid"].set_index("record")["theta_max_over_alpha"]
-    assert [row[-1] for row in rows[2:]] == [f"{bare[row[0]]:.4f}" for row in rows[2:]]
-    estimates = rb.open_results(tmp_path / "out").estimate
-    rocks = estimates[(estimates["case"] == "rigid") & (estimates["fema_356_outcome"] == "rocks")]
-    rocks = rocks[rocks["theta_max_over_alpha"] > 0]
-    ratios = rocks["fema_356_theta_over_alpha"] / rocks["theta_max_over_alpha"]
-    assert (
-        f"{ratios.median():.2f} in the median of {'one run' if len(ratios) == 1 else f'{len(ratios)} runs'}"
-        in page.text
-    )
-
-
-def test_without_a_block_on_rigid_ground_there_is_nothing_to_compare_estimates_with(tmp_path):
-    pads = {"name": "pads", "base": "elastic", "beta": 30, "epsilon": 0.05}
-    text = study_text(pulses=PULSES[:2], cases=(pads,), output={"estimate": True}, numerics={"substeps": 2})
-    rb.run(write_study(tmp_path, text), out=tmp_path / "out")
-    page = page_of(tmp_path / "out", estimate)
-    assert "nothing computed compares with them" in page.text
-    assert "times the computed one" not in page.text
-
-
 # The target spectrum
 
 
@@ -197,7 +145,7 @@ def test_the_page_of_it_all_is_whole_and_spectra_are_drawn_once(asked):
     assert text.count('aria-label="Response spectra of') == 1
     headings = Page(text).headings
     names = (
-        "The suite in each case", "One record and the suite", "Intensity measures", "Code estimates, for comparison",
+        "The suite in each case", "One record and the suite", "Intensity measures",
         "What was studied", "Statics", "The suite against its target spectrum", "Ground motions",
     )  # fmt: skip
     places = [headings.index(name) for name in names]

@@ -1,4 +1,4 @@
-"""Intensity measures and code estimates beside the peaks: their values, who is asked, and what overturned runs count for."""
+"""Intensity measures beside the peaks: their values, who is asked, and what overturned runs count for."""
 
 import math
 
@@ -12,8 +12,6 @@ import rockbatch as rb
 from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.pier import Pier
-from rockbatch.results.estimate import DAMPING, Estimate, estimate, rocking_period
 from rockbatch.results.intensity import order_of
 from rockbatch.results.suite_statistics import distribution
 
@@ -22,7 +20,7 @@ PULSES = tuple(
     for shape in (SINE, COSINE)
     for size in (0.15, 0.3, 0.6)
 )
-ASKED = {"intensity": True, "estimate": True, "sa_periods_s": [0.5, 1.25], "histories": "none"}
+ASKED = {"intensity": True, "sa_periods_s": [0.5, 1.25], "histories": "none"}
 
 
 def written(folder, output=ASKED, **more):
@@ -110,73 +108,16 @@ def test_nobody_gets_what_nobody_asked_for_and_tables_of_another_time_go(tmp_pat
     results = written(tmp_path)
     assert {record["pulse"] for record in results.info["records"]} <= {"yes", "no", "ambiguous", "late", "weak"}
     plain = written(tmp_path, {"histories": "none"})
-    assert not any((tmp_path / "out" / name).exists() for name in ("intensity.csv", "estimate.csv"))
+    assert not (tmp_path / "out" / "intensity.csv").exists()
     assert "pulse" not in plain.info["records"][0]
     assert "target" not in plain.info
     with pytest.raises(InputError, match=r"write \[output\] intensity = true"):
         plain.intensity  # noqa: B018
-    with pytest.raises(InputError, match=r"write \[output\] estimate = true"):
-        plain.estimate  # noqa: B018
 
 
 def test_periods_without_the_table_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"sa_periods_s = \[1\.0\]: is for intensity = true"):
         rb.load_study(write_study(tmp_path, study_text(output={"sa_periods_s": [1.0]})))
-
-
-# What design practice would estimate
-
-
-def test_the_period_of_free_rocking_is_housners():
-    """Four quarters of θ̈ = p²(θ − α) from rest at φα: 1 − (1 − φ) cosh pt = 0."""
-    for share in (0.01, 0.3, 0.9):
-        quarter = float(rocking_period(share, 0.5)) / 4
-        assert (1 - share) * math.cosh(0.5 * quarter) == pytest.approx(1.0)
-
-
-def test_the_damping_of_priestley_is_that_of_the_decay_of_free_rocking():
-    """After n impacts φ_n = 1 − √(1 − rⁿ (1 − (1 − φ0)²)) (Housner 1963); a cycle has two: ζ = ln(φ0/φ_n)/(π n)."""
-    for alpha in (0.1, 0.15, 0.2):
-        pier = Pier(alpha=alpha, p=1.0)
-        r = pier.restitution**2
-        for start in (0.1, 0.15, 0.2):
-            left = 1 - math.sqrt(1 - r**4 * (1 - (1 - start) ** 2))
-            # 0.34 is a fit; it grows with the amplitude, to 0.46 at φ0 = 0.5
-            assert DAMPING["priestley"](pier) == pytest.approx(math.log(start / left) / (math.pi * 4), rel=0.05)
-        assert DAMPING["fema_356"](pier) == pytest.approx(0.4 * (1 - math.sqrt(r)))
-
-
-def test_the_iteration_ends_at_a_fixed_point_or_says_why_not():
-    assert estimate(lambda share: 0.1 + 0.5 * share) == Estimate(pytest.approx(0.2, rel=1e-3), "rocks")
-    assert estimate(lambda share: 0.1 * share) == Estimate(0.0, "stays")
-    assert estimate(lambda share: 2.0 * share).outcome == "overturns"
-    turning = estimate(lambda share: 0.7 - share)  # goes to and fro between START and 0.2
-    assert (turning.outcome, math.isnan(turning.theta_over_alpha)) == ("no convergence", True)
-
-
-def test_an_estimate_stays_below_the_uplift_threshold_and_is_a_fixed_point_of_the_spectrum_above(results):
-    table = results.estimate
-    assert len(table) == len(results.intensity)
-    low = table["pga_over_g_tan_alpha"] <= 1
-    assert low.any()
-    assert set(table["priestley_outcome"][low]) == set(table["fema_356_outcome"][low]) == {"stays"}
-    assert set(table["theta_max_over_alpha"][low & (table["case"] == "rigid")]) == {0.0}
-    found = table[(table["priestley_outcome"] == "rocks")].drop_duplicates(["record", "alpha", "scale"])
-    assert len(found) > 0
-    for row in found.to_dict("records"):
-        pulse = next(pulse for pulse in PULSES if pulse["name"] == row["record"])
-        a = rb.pulse(
-            pulse["shape"], name="p", amplitude=pulse["amplitude_g"] * 9.81 * row["scale"], period=pulse["period_s"],
-            dt=pulse["dt_s"], duration=pulse["duration_s"],
-        ).horizontal  # fmt: skip
-        pier = Pier(alpha=row["alpha"], p=1.0)
-        share = row["priestley_theta_over_alpha"]
-        period = float(rocking_period(share, pier.p))
-        moved = (
-            spectral_acceleration(a, pulse["dt_s"], [period], row["priestley_damping"])[0] * (period / 2 / math.pi) ** 2
-        )
-        # the spectrum is tabulated at 120 periods and straight between them
-        assert moved / pier.size / pier.alpha == pytest.approx(share, rel=5e-3)
 
 
 # The distribution
@@ -227,7 +168,7 @@ def write_pairs(folder, lone=()):
 
 
 def pairs_study(folder, **motions):
-    output = ASKED | {"sa_periods_s": [0.3], "sa_pairs": ["rotd50", "rotd100"], "estimate": False}
+    output = ASKED | {"sa_periods_s": [0.3], "sa_pairs": ["rotd50", "rotd100"]}
     text = study_text(
         motions={"path": "records", "scale": [1.0, 2.0], **motions}, pulses=(), output=output, cases=[RIGID]
     )

@@ -5,7 +5,7 @@ from studies import PIER, SINE, study_text, write_study
 
 from rockbatch.errors import InputError
 from rockbatch.study import load_study
-from rockbatch.toml.reader import MOST_TOLD
+from rockbatch.toml.reader import MOST_REPORTED
 
 PADS = {"name": "pads with dampers", "base": "rigid"}
 HEAVY = {"width_m": 4.0, "height_m": 30.0, "mass_t": 2300.0}
@@ -134,9 +134,9 @@ WHOLE = study_text(
 
 
 @pytest.mark.parametrize("header", [line for line in WHOLE.splitlines() if line.startswith("[")])
-@pytest.mark.parametrize("number", [MOST_TOLD - 1, MOST_TOLD, MOST_TOLD + 1])
+@pytest.mark.parametrize("number", [MOST_REPORTED - 1, MOST_REPORTED, MOST_REPORTED + 1])
 def test_the_greatest_number_of_reported_mistakes_ends_in_words(tmp_path, header, number):
     """Nothing is made of tables that were then not read to their end."""
     mistakes = "".join(f"k{n} = 1\n" for n in range(number))
     for text in (mistakes + WHOLE, WHOLE.replace(f"{header}\n", f"{header}\n{mistakes}", 1)):
-        assert sum("unknown key" in problem for problem in said(tmp_path, text)) == min(number, MOST_TOLD)
+        assert sum("unknown key" in problem for problem in said(tmp_path, text)) == min(number, MOST_REPORTED)

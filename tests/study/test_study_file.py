@@ -21,7 +21,7 @@ from rockbatch.study.motions import FEMA, MOTIONS
 from rockbatch.study.motions import PULSE as PULSE_KEYS
 from rockbatch.study.piers import PIER as PIER_KEYS
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.toml.reader import MOST_TOLD
+from rockbatch.toml.reader import MOST_REPORTED
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PIER = "[pier]\nalpha = 0.13\np = 0.38\n"
@@ -320,11 +320,11 @@ theta_max_over_alpha = 0.1
 @pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.toml")), ids=lambda path: path.stem)
 def test_a_hundred_mistakes_come_first_and_the_rest_is_not_read(tmp_path, path):
     """No more than a hundred are noted: a pier without its keys is then no sound one."""
-    for number in (MOST_TOLD - 1, MOST_TOLD, MOST_TOLD + 1):
+    for number in (MOST_REPORTED - 1, MOST_REPORTED, MOST_REPORTED + 1):
         many = "".join(f"k{n} = 1\n" for n in range(number))
         *others, last = problems_of(tmp_path, many, path.read_text(encoding="utf-8"))
-        assert sum("unknown key" in each for each in (*others, last)) == min(number, MOST_TOLD)
-        assert ("there may be more" in last) == (len(others) >= MOST_TOLD)
+        assert sum("unknown key" in each for each in (*others, last)) == min(number, MOST_REPORTED)
+        assert ("there may be more" in last) == (len(others) >= MOST_REPORTED)
 
 
 def test_the_message_on_an_empty_file_names_what_it_lacks(tmp_path):

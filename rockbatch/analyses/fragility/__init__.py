@@ -12,5 +12,4 @@ DOOR = Door(
         ReportPart("Annual rates", "risk", "risk_section.section"),
     ),
     tables=("fragility",),
-    names={"HazardCurve": "hazard_curve"},
 )

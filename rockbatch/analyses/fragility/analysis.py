@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rockbatch.analyses.fragility.cloud_tables import CLOUD, cloud_table
 from rockbatch.analyses.fragility.curves import Curve, assess, first_intensities, level_plan, output
 from rockbatch.analyses.fragility.hazard import YEARS, Dispersion, Hazard
-from rockbatch.analyses.fragility.hazard_curve import HazardCurve
 from rockbatch.analyses.fragility.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
 from rockbatch.analyses.fragility.scale_factors import SCALES, described_scales, scales
 from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
@@ -23,6 +22,7 @@ from rockbatch.batch.waves import Waves
 from rockbatch.common.arguments import checked
 from rockbatch.common.lazy import pd
 from rockbatch.errors import InputError
+from rockbatch.motions.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 

@@ -13,10 +13,10 @@ import numpy as np
 
 from rockbatch.analyses.fragility.curves import Curve, Fitted
 from rockbatch.analyses.fragility.hazard import Hazard
-from rockbatch.analyses.fragility.hazard_curve import MOST_RATE, HazardCurve
 from rockbatch.analyses.fragility.lognormal import Values
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.common.lazy import pd
+from rockbatch.motions.hazard import MOST_RATE, HazardCurve
 
 RISK, DEAGGREGATION = "fragility_risk.csv", "fragility_deaggregation.csv"
 

@@ -120,7 +120,7 @@ def format_of(suffix: str, head: bytes) -> Format | None:
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
-    """Return the components of a file, their texts made legible, or ``InputError`` with the reason why there are none."""
+    """Return the components of a file, their texts made legible, or ``InputError`` if it has no components, with the reason."""
     form = format_of(file.path.suffix, file.data)
     if form is None:
         raise InputError(_not_recognised(file))

@@ -157,7 +157,7 @@ def _values(text: str, start: int, npts: int) -> Samples:
 
 
 def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
-    """Return the numbers from ``start`` on, and the last of them as they are written; ``ValueError`` where one is none.
+    """Return the numbers from ``start`` on, and the last of them as they are written; ``ValueError`` for text that is no number.
 
     A piece of the file after the other: its words as Python's objects would take thirty times its size.
     """

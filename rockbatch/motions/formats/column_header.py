@@ -114,7 +114,7 @@ def spectrum_in(columns: Sequence[Column]) -> str:
 
 
 def seconds_in(unit: str) -> float | None:
-    """Return the seconds that a unit of time has; ``None`` where it is none."""
+    """Return the seconds that a unit of time has; ``None`` for an unknown unit."""
     return SECONDS.get(unit.strip().lower().rstrip("."))
 
 

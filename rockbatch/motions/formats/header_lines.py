@@ -30,18 +30,18 @@ def _mismatch(lines: Sequence[str], index: int, expected: str) -> InputError:
     return InputError(f"line {index + 1}: found {line}; expected {expected}")
 
 
-Line = tuple[int, re.Pattern[str], str]
+HeaderLine = tuple[int, re.Pattern[str], str]
 
 
-def layout(*lines: tuple[int, str, str]) -> tuple[Line, ...]:
+def layout(*lines: tuple[int, str, str]) -> tuple[HeaderLine, ...]:
     """Return the layout of a header's text: of each line its offset from the first, its pattern and an example.
 
-    The look is an example for messages; a line without one may be any other.
+    The third item is an example for messages; a line without one may be any other.
     """
     return tuple((offset, re.compile(pattern), example) for offset, pattern, example in lines)
 
 
-def read_header(lines: Sequence[str], start: int, layout: Sequence[Line]) -> dict[str, str]:
+def read_header(lines: Sequence[str], start: int, layout: Sequence[HeaderLine]) -> dict[str, str]:
     """Return the groups of the lines of a header that begins at ``lines[start]``, "" for those that are not in them.
 
     Raises ``InputError`` with the line where one that is needed is another one, or none.
@@ -106,7 +106,7 @@ def number_if_any(header: Mapping[str, str], key: str) -> float | None:
 
 
 def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
-    """Return the number of samples and the sampling interval [s] under these keys; ``InputError`` where they are none."""
+    """Return the number of samples and the sampling interval [s] under these keys; ``InputError`` for impossible ones."""
     npts, dt = number_of(header, count), number_of(header, step)
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
@@ -141,13 +141,13 @@ def moment_of(groups: Mapping[str, str]) -> float | None:
 
 
 def moment_in(pattern: re.Pattern[str], text: str) -> float | None:
-    """Return the time in UTC [s since 1970] that a text begins with; ``None`` where it is none of the ``pattern``."""
+    """Return the time in UTC [s since 1970] that a text begins with; ``None`` if it does not match the ``pattern``."""
     match = pattern.match(text)
     return moment_of(match.groupdict()) if match else None
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:
-    """Return a time in UTC [s since 1970]; ``None`` where the numbers are none, as headers have it that do not know."""
+    """Return a time in UTC [s since 1970]; ``None`` for an impossible date."""
     try:
         whole = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp()
     except (ValueError, OverflowError):

@@ -114,7 +114,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
 
 
 def _in_metres(series: Series | None) -> Samples | None:
-    """Return velocities in m/s, displacements in m; ``None`` for what there is not, or in a unit that is none."""
+    """Return velocities in m/s, displacements in m; ``None`` if missing or in an unknown unit."""
     if series is None or (factor := length_factor(series[1])) is None:
         return None
     return series[0] * factor

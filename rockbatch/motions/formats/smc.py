@@ -51,8 +51,8 @@ def parse(text: str) -> list[Recording]:
     fields = read_header(lines, 0, _TEXT)
     integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)[0]]
     unknown, comments, npts = integers[0], integers[15], integers[16]
-    name, of_station = fields["name"], integers[29]
-    number = str(of_station) if of_station not in (unknown, 0) else name.upper()
+    name, station_number = fields["name"], integers[29]
+    number = str(station_number) if station_number not in (unknown, 0) else name.upper()
     if comments < 0 or npts < 1:
         raise InputError(f"lines 13–14: found {comments} comments and {npts} values; expected counts")
     rate = number_in(real, _REALS) if (real := _real(lines, 2)) else None
@@ -71,7 +71,7 @@ def parse(text: str) -> list[Recording]:
             dt=dt,
             values=values,
             unit=_UNIT,
-            station=f"{name} {of_station}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
+            station=f"{name} {station_number}, {year}-{day:03d} {hour}:{minute}, {_KINDS[title['kind']]}",
             codes=("", letters(line_at(lines, 2)), "", ""),
             start=None if start is None else start + _DAY * (day - 1) + ms / 1000,
             processed=title["kind"] == "2",

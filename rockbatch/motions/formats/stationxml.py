@@ -76,7 +76,7 @@ def _channels(path: Path, state: tuple[int, ...]) -> list[Channel]:
         parser.close()
     except _NoStationXML:
         return []
-    except Exception as error:  # the parser's own, and those of codecs for names that are none
+    except Exception as error:  # the parser's own, and those of codecs for unknown encodings
         raise InputError(f"not XML that can be read ({type(error).__name__})") from None
     return reader.channels
 

@@ -89,7 +89,7 @@ def _candidates(t: Samples, usual: float) -> list[float]:
 
 
 def _on_grid(t: Samples, counts: Samples) -> float | None:
-    """Return the step of the even grid on which sample i has the number at[i]; ``None`` where the times are off it."""
+    """Return the step of the even grid on which sample i has the number counts[i]; ``None`` if the times are off it."""
     dt = float(t[-1] - t[0]) / float(counts[-1])
     printed = _resolution(t)
     allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)

@@ -16,12 +16,12 @@ from studies import SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import risk_lines
-from rockbatch.analyses.fragility.hazard_curve import HazardCurve
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 from rockbatch.analyses.fragility.risk import probability, risks
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.cli import main
 from rockbatch.errors import InputError
+from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
 
 POINTS = [0.05, 0.15, 0.35, 0.7], [1 / 30, 1 / 150, 1 / 700, 1 / 2500]

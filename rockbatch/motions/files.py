@@ -26,7 +26,7 @@ _SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the r
 
 
 @dataclass(frozen=True)
-class Found:
+class SourceFile:
     """A file of a folder, or of an archive in it."""
 
     path: Path  # in an archive, it goes on within that (see archives)
@@ -36,7 +36,7 @@ class Found:
     root: Path | None = None  # where links may lead: the folder that was given, or that of a file that was
 
 
-def files_of(roots: Sequence[Path]) -> Iterator[Found]:
+def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
     """Return files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
     visited: set[Path] = set()
     for root in roots:
@@ -49,19 +49,19 @@ def files_of(roots: Sequence[Path]) -> Iterator[Found]:
             visited.add(real)
             source = legible(prefix + path.relative_to(root).as_posix() if path != root else path.name)
             if path != root and not real.is_relative_to(inside):
-                yield Found(path, source, "a link that leads out of the folder; copy the file into it")
+                yield SourceFile(path, source, "a link that leads out of the folder; copy the file into it")
             elif real.is_dir():
                 refusal = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
-                yield Found(path, source, refusal)
+                yield SourceFile(path, source, refusal)
             elif not real.is_file():
-                yield Found(path, source, "not a regular file")
+                yield SourceFile(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
                 files = _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
                 yield from (replace(file, root=inside) for file in files)
 
 
-def _of_archive(path: Path, source: str) -> Iterator[Found]:
-    """Return the files of an archive, or why there are none."""
+def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
+    """Return the files of an archive, or one with the reason why it has no usable ones."""
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
@@ -70,26 +70,28 @@ def _of_archive(path: Path, source: str) -> Iterator[Found]:
     except OSError as error:
         members, refusal = [], f"cannot be read: {error.strerror or error}"
     if refusal:
-        yield Found(path, source, refusal)
+        yield SourceFile(path, source, refusal)
     for member in members:
         name = f"{source}/{legible(member.name)}"
         if member.refusal:
-            yield Found(member.path, name, member.refusal)
+            yield SourceFile(member.path, name, member.refusal)
         elif member.path.name in MANIFESTS:
-            yield Found(member.path, name, companion="a manifest within an archive is not obeyed; put it beside that")
+            yield SourceFile(
+                member.path, name, companion="a manifest within an archive is not obeyed; put it beside that"
+            )
         elif member.path.suffix.lower() != ".xml":
             yield _regular(member.path, name)
 
 
-def _regular(path: Path, source: str) -> Found:
+def _regular(path: Path, source: str) -> SourceFile:
     if path.name.lower() == _SEARCH_RESULTS:
-        return Found(path, source, companion="a table about the records")
+        return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
     if path.stem.lower() in _NAMES and suffix in ("", ".txt"):
-        return Found(path, source, companion="text about the records")
+        return SourceFile(path, source, companion="text about the records")
     if path.name not in MANIFESTS and suffix in _BY_SUFFIX:
-        return Found(path, source, companion=_BY_SUFFIX[suffix])
-    return Found(path, source, archives.not_read(path))
+        return SourceFile(path, source, companion=_BY_SUFFIX[suffix])
+    return SourceFile(path, source, archives.not_read(path))
 
 
 def _below(folder: Path) -> Iterator[Path]:
