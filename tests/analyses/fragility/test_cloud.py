@@ -12,7 +12,7 @@ from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
-from rockbatch.analyses.fragility.cloud import Cloud, Demands, Line, Logistic, fit, fit_event
+from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
@@ -148,7 +148,7 @@ def test_intensities_that_part_what_overturned_from_the_rest_leave_a_finite_shar
 
 def exactly(limit=LIMIT, share=ALPHA):
     logistic = None if share is None else Logistic(*share, np.array([share]))
-    return Cloud(limit, Line(LN_A, B, SIGMA, np.array([[LN_A, B, SIGMA]])), logistic, 0.95, 0.0)
+    return Cloud(limit, Regression(LN_A, B, SIGMA, np.array([[LN_A, B, SIGMA]])), logistic, 0.95, 0.0)
 
 
 def test_without_overturning_the_curve_is_lognormal():
