@@ -12,9 +12,7 @@ from rockbatch.motions.common_span import Common, on_common_samples, overlap, to
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
 from rockbatch.motions.motion import Initial, Samples, Unusable
-from rockbatch.motions.orientation import Orientation, same_azimuth, split_stem
-
-_SQUARE = 1.0  # degree: what two components may lack of a right angle, as agencies round their azimuths
+from rockbatch.motions.orientation import Orientation, not_square, same_azimuth, split_stem
 
 
 def resolved(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:
@@ -53,9 +51,8 @@ def _obstacle(horizontals: Sequence[Component]) -> str:
         count = "only one" if len(horizontals) == 1 else str(len(horizontals))
         return f"its station has {count} horizontal component{'s' * (len(horizontals) > 1)}, and two are needed"
     first, second = horizontals
-    between = abs((_azimuth(second) - _azimuth(first) + 180.0) % 360.0 - 180.0)
-    if abs(between - 90.0) > _SQUARE:
-        return f"{first.name} and {second.name} are {between:g}° apart, not square to each other"
+    if askew := not_square(first.orientation.azimuth, second.orientation.azimuth, f"{first.name} and {second.name}"):
+        return askew
     if not overlap(first, second):
         return f"{first.name} and {second.name} have no time in common"
     difference = too_unlike(first, second)

@@ -1,6 +1,7 @@
 """Elastic spectra that suites are held against: shapes of codes by their parameters, and tables."""
 
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -8,6 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.arguments import checked
 from rockbatch.errors import InputError
 from rockbatch.toml.reader import TomlFile
 
@@ -239,11 +241,13 @@ class TableSpectrum:
         return _within(self.limits, periods, np.exp(logs))
 
 
-def read_spectrum(path: Path, damping: float = 0.05, linear: bool = False) -> TableSpectrum:
+@checked
+def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: bool = False) -> TableSpectrum:
     """Return a table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
 
     Raises ``InputError`` with the line that is no such pair.
     """
+    path = Path(path)
     periods: list[float] = []
     values: list[float] = []
     try:

@@ -1,7 +1,6 @@
 """Records, files and stations that a study leaves out by name."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import PurePosixPath
 
 from rockbatch.common.grouping import closest
@@ -47,7 +46,7 @@ class LeaveOut:
             return motions
         used: list[Motion] = []
         unusable: list[Unusable] = []
-        left_out = list(motions.left_out)
+        left_out: list[LeftOut] = []
         for motion in motions.motions:
             if pattern := self._fitting(motion.name, motion.of_station):
                 left_out.append(_left_out(motion.name, motion.files, pattern, motion.of_station))
@@ -58,7 +57,7 @@ class LeaveOut:
                 left_out.append(_left_out(file.name, file.source, pattern, file.station))
             else:
                 unusable.append(file)
-        return replace(motions, motions=used, unusable=unusable, left_out=left_out)
+        return MotionSet(used, unusable, [*motions.left_out, *left_out])
 
     def finish(self) -> None:
         """Raise ``InputError`` with every name that matches nothing."""

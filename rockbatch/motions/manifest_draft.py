@@ -1,10 +1,12 @@
 """A manifest drafted from what was found in a folder, to be completed by hand."""
 
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.arguments import checked
 from rockbatch.common.files import legible, write_whole
 from rockbatch.common.grouping import grouped
 from rockbatch.errors import InputError
@@ -31,8 +33,13 @@ _HEAD = """\
 _ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
 
 
-def write_manifest(folder: Path, options: ReadOptions | None = None) -> Path:
-    """Write ``motions.toml`` into ``folder``; ``InputError`` if there is a manifest, which is never written over."""
+@checked
+def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None = None) -> Path:
+    """Write a draft of ``motions.toml`` into ``folder`` and return its path.
+
+    Raises ``InputError`` if there is a manifest, which is never written over.
+    """
+    folder = Path(folder)
     target = folder / "motions.toml"
     if not folder.is_dir():
         raise InputError(f"{folder}: a manifest is for a folder; give the one that the records lie in")

@@ -90,6 +90,12 @@ class MotionSet(Shown):
         """Return the motions that count as one record, mostly the two horizontal components of a station, by its name."""
         return grouped(self.motions, lambda motion: motion.of_station)
 
+    def reduced_to(
+        self, motions: Sequence[Motion], unusable: Sequence[Unusable] = (), left_out: Sequence[LeftOut] = ()
+    ) -> "MotionSet":
+        """Return these motions of it, with what cannot be used and what is left out beside what was before."""
+        return MotionSet(list(motions), [*self.unusable, *unusable], [*self.left_out, *left_out])
+
     def __len__(self) -> int:
         return len(self.motions)
 

@@ -205,7 +205,20 @@ def same_azimuth(a: float | None, b: float | None) -> bool:
     """Return whether two azimuths [degrees] agree; 360 and 0 are the same."""
     if a is None or b is None:
         return False
-    return abs((a - b + 180.0) % 360.0 - 180.0) <= SAME_AZIMUTH
+    return _between(b, a) <= SAME_AZIMUTH
+
+
+def not_square(a: float | None, b: float | None, names: str) -> str:
+    """Return that two azimuths [degrees] are not square to each other within a degree; empty if they are, or one is unknown."""
+    if a is None or b is None:
+        return ""
+    between = _between(a, b)
+    apart = abs(between - 90.0) > SAME_AZIMUTH  # agencies round their azimuths
+    return f"{names} are {between:g}° apart, not square to each other" if apart else ""
+
+
+def _between(a: float, b: float) -> float:
+    return abs((b - a + 180.0) % 360.0 - 180.0)
 
 
 _CLOCKS = re.compile(r"(?:INT|EXT)(?:T?C|CLOCK|CLK)|TCG?|CLOCK|CLK|TIME(?:CODE|MARKS?)|IRIG[A-Z]?|WWVB?|DCF|[ALV]C[EQ]")

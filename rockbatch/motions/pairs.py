@@ -16,15 +16,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.units import GRAVITY
 from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
+from rockbatch.motions.orientation import not_square
 from rockbatch.motions.spectrum import PERIODS, Samples, responses
 
 Array = npt.NDArray[np.float64]
 
 ANGLES = np.radians(np.arange(180.0))
 """Directions that count [rad]: a degree apart, of half a turn, which reverses a component."""
-
-SQUARE = 1.0
-"""Greatest departure of two components from a right angle [degrees]: agencies round their azimuths."""
 
 _JITTER = 0.1  # of dt: starts that differ by less from a whole number of samples count as simultaneous
 
@@ -76,10 +74,8 @@ def aligned(first: Motion, second: Motion) -> tuple[Samples, Samples]:
     sampling intervals, starts that no whole number of samples lies between, and no time in common.
     """
     names = f"{first.name} and {second.name}"
-    if first.azimuth is not None and second.azimuth is not None:
-        between = abs((second.azimuth - first.azimuth + 180.0) % 360.0 - 180.0)
-        if abs(between - 90.0) > SQUARE:
-            raise InputError(f"{names} are {between:g}° apart, not square to each other")
+    if askew := not_square(first.azimuth, second.azimuth, names):
+        raise InputError(askew)
     if abs(first.dt - second.dt) > 1e-6 * first.dt:
         raise InputError(f"{names} are sampled at {first.dt:g} s and {second.dt:g} s")
     late = 0.0 if first.start is None or second.start is None else (second.start - first.start) / first.dt
@@ -134,11 +130,6 @@ def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: 
     histories = (responses(a, lone.dt, periods, damping) for a in samples)
     rows = [measured(u, v) for u, v in zip(*histories, strict=True)]
     return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
-
-
-def station_spectrum(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float, rule: str) -> Array:
-    """Return the spectral accelerations [m/s²] of a station by one of PAIR_RULES; see :func:`station_spectra`."""
-    return station_spectra(motions, periods, damping)[rule]
 
 
 @checked

@@ -10,7 +10,7 @@ from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.pairs import DIRECTIONS, WORDS, station_spectrum, unpaired
+from rockbatch.motions.pairs import DIRECTIONS, WORDS, station_spectra, unpaired
 from rockbatch.motions.plausible import fits
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
@@ -64,7 +64,7 @@ class Target:
         assert self.period_s is not None
         stations = grouped(motions, lambda motion: motion.of_station)
         measured = {
-            name: station_spectrum(station, [self.period_s], self.damping, self.pairs)[0]
+            name: station_spectra(station, [self.period_s], self.damping)[self.pairs][0]
             for name, station in stations.items()
         }
         return [
@@ -110,7 +110,7 @@ def at_target(
         else:
             notes = (*motion.notes, f"scaled by {factor:.4g} to {target}")
             motions.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
-    return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
+    return motion_set.reduced_to(motions, unusable)
 
 
 def at_targets(
@@ -190,7 +190,7 @@ def with_vertical(
             motions.append(replace(
                 motion, vertical=unscaled * factor, vertical_factor=factor, notes=(*motion.notes, *words),
             ))  # fmt: skip
-    return replace(motion_set, motions=motions, unusable=[*motion_set.unusable, *unusable])
+    return motion_set.reduced_to(motions, unusable)
 
 
 def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:

@@ -1,7 +1,7 @@
 """Selection of the records of a suite by PGA, PGV, length, significant duration and magnitude."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
@@ -57,9 +57,4 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
             left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
         else:
             chosen.append(motion)
-    return replace(
-        motion_set,
-        motions=chosen,
-        unusable=[*motion_set.unusable, *unusable],
-        left_out=[*motion_set.left_out, *left_out],
-    )
+    return motion_set.reduced_to(chosen, unusable, left_out)

@@ -312,10 +312,10 @@ def with_sequences(
     as_pulses = [motion for motion in joined_motions if pulse_names.issuperset(shock.name for shock in motion.shocks)]
     records = [motion for motion in motions.motions if motion.name not in parts_only]
     records += [motion for motion in joined_motions if motion not in as_pulses]
-    unusable = [*motions.unusable, *(file for file in refused if isinstance(file, Unusable))]
-    left_out = [*motions.left_out, *(file for file in refused if isinstance(file, LeftOut))]
+    unusable = [file for file in refused if isinstance(file, Unusable)]
+    left_out = [file for file in refused if isinstance(file, LeftOut)]
     pulses_alone = [pulse for pulse in pulses if pulse.name not in parts_only]
-    return replace(motions, motions=records, unusable=unusable, left_out=left_out), pulses_alone + as_pulses
+    return motions.reduced_to(records, unusable, left_out), pulses_alone + as_pulses
 
 
 def _sequence_or_refusal(

@@ -12,7 +12,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import Spectrum
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.pairs import DIRECTIONS, station_spectrum, unpaired
+from rockbatch.motions.pairs import DIRECTIONS, station_spectra, unpaired
 from rockbatch.motions.spectrum import spectral_acceleration
 
 Array = npt.NDArray[np.float64]
@@ -146,7 +146,7 @@ class SpectrumTarget:
             return [spectrum_of(i) for (i,) in members]
         if self.pairs == "srss":
             return [np.sqrt((np.array([spectrum_of(i) for i in places]) ** 2).sum(axis=0)) for places in members]
-        return [station_spectrum([motions[i] for i in places], periods, self.spectrum.damping, self.pairs) / gravity
+        return [station_spectra([motions[i] for i in places], periods, self.spectrum.damping)[self.pairs] / gravity
                 for places in members]  # fmt: skip
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:

@@ -129,7 +129,7 @@ def test_a_file_of_more_pieces_than_a_network_has_is_refused(tmp_path, monkeypat
     write_mseed(tmp_path / "y.mseed", *(trace("HNN", start=START + 1e5 * day) for day in range(3)))
     found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
     assert [(file.source, file.reason) for file in found.unusable] == [
-        ("x.mseed", "holds 4 pieces of channels; 3 are the most: divide it by stations")
+        ("x.mseed", "holds 4 pieces of channels; at most 3 are read: divide it by stations")
     ]
     assert found.motions
 

@@ -14,7 +14,7 @@ import rockbatch as rb
 from rockbatch.errors import InputError
 from rockbatch.motions import Motion, MotionSet, read_motions
 from rockbatch.motions.design_spectra import TableSpectrum
-from rockbatch.motions.pairs import aligned, station_spectrum
+from rockbatch.motions.pairs import aligned, station_spectra
 from rockbatch.motions.scaling import Target, at_target
 from rockbatch.motions.spectrum import responses, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
@@ -169,7 +169,7 @@ def test_of_many_directions_the_first_two_that_are_square_make_the_pair():
         )
         for k in range(0, 180, 30)
     ]
-    found = station_spectrum(many, PERIODS, 0.05, "rotd100")
+    found = station_spectra(many, PERIODS, 0.05)["rotd100"]
     np.testing.assert_allclose(found, rb.pair_spectrum(a, b, PERIODS)["rotd100_g"] * 9.81, rtol=1e-9)
 
 

@@ -10,7 +10,7 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
-from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.record_file import RecordFile, no_acceleration
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
@@ -45,7 +45,9 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
         )
     if len(stream) > _MOST_PIECES:
-        raise InputError(f"holds {len(stream)} pieces of channels; {_MOST_PIECES} are the most: divide it by stations")
+        raise InputError(
+            f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
+        )
     segments = grouped(stream, lambda trace: str(trace.id))
     entries, refused = stationxml.channels_beside(file.path.parent, file.root)
     channels = grouped(entries, lambda channel: channel.id)
@@ -102,10 +104,7 @@ def _component(
         origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"
         orientation = _oriented(trace.id, orientation, entry)
     elif (kind := not_acceleration(stats.channel)) and "unit" not in file.options.instead:
-        raise InputError(
-            f"{trace.id} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file "
-            "in motions.toml"
-        )
+        raise no_acceleration(trace.id, kind)
     elif file.options.unit is not None or file.options.sensitivity is not None:
         unit, sensitivity = file.options.unit or "m/s2", file.options.sensitivity or 1.0
         origin = f"sensitivity {sensitivity:g} counts per {unit} as stated"

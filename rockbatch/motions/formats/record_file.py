@@ -110,6 +110,14 @@ def unstated(lack: str, example: str, *keys: str) -> UnstatedError:
     )
 
 
+def no_acceleration(called: str, kind: str) -> InputError:
+    """Return the refusal of samples that their header says are of another ``kind``, with what to write if they are not."""
+    return InputError(
+        f"{called} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file in "
+        "motions.toml"
+    )
+
+
 @dataclass(frozen=True)
 class RecordFile:
     """A file to be read: where it lies, its bytes, what the study says about it, and the folder that links stay in."""

@@ -6,9 +6,8 @@ import numpy as np
 
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
-from rockbatch.motions.formats.record_file import RecordFile, unstated
+from rockbatch.motions.formats.record_file import RecordFile, no_acceleration, unstated
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
@@ -38,10 +37,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     if is_clock(stats.channel):
         return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", stats.channel)]
     if (kind := _KINDS.get(_kind(file.data)) or not_acceleration(stats.channel)) and "unit" not in options.instead:
-        raise InputError(
-            f"its header says that it holds {kind}, and accelerations are expected; if it does hold them, write unit = … for "
-            "this file in motions.toml"
-        )
+        raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
         raise unstated(
             "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
