@@ -20,10 +20,10 @@ from rockbatch.common.figures.description import (
     Area,
     Axis,
     Figure,
-    Line,
     Look,
     Panel,
     Points,
+    Polyline,
     Rule,
     Span,
     Words,
@@ -42,7 +42,7 @@ X, Y = np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 1.0])
 MARKS = (
     Span("x", 0.5, 0.7, look=Look("band"), label="span"),
     Area(X, Y, look=Look("area", 2), label="area"),
-    Line(X, Y, "named", look=line_of(2), label="line"),
+    Polyline(X, Y, "named", look=line_of(2), label="line"),
     Points(X, Y, np.array([0.0, 0.5, 0.0]), ["a", NASTY, "c"], look=Look("", 1, shape="up"), label="points"),
     Points(X[:1], Y[:1], look=sign_of("failed"), label="failed"),
     Rule("y", np.array([1.0]), look=Look("limit", dash=1), label="limit", title="at 1"),
@@ -105,7 +105,7 @@ def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
 )
 def test_what_has_no_value_is_not_drawn_and_breaks_nothing(x, y, pieces):
     values = np.array(x), np.array(y)
-    shown = figure(Line(*values, look=Look("level")), Points(*values))
+    shown = figure(Polyline(*values, look=Look("level")), Points(*values))
     drawn = parsed(svg.drawn(shown))
     (path,) = (node for node in drawn.iter("path") if node.get("class") == "level ink")
     assert path.get("d").count("M") == pieces

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.common.figures.description import Area, Line, Rule, Words
+from rockbatch.common.figures.description import Area, Polyline, Rule, Words
 from rockbatch.pier import Place
 from rockbatch.pier.figures import ASIDE, MOST_PIERS, Sheet, sketches, statics
 
 PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
 
 
-def marks(figure, kind, type_=Line):
+def marks(figure, kind, type_=Polyline):
     (panel,) = figure.panels
     return [mark for mark in panel.marks if isinstance(mark, type_) and mark.look.kind == kind]
 

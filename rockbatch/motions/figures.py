@@ -11,10 +11,10 @@ from rockbatch.common.figures.description import (
     COLOURS,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
+    Polyline,
     Span,
     line_of,
     log_spanning,
@@ -33,7 +33,7 @@ def record(components: Mapping[str, npt.NDArray[np.float64]], dt: float, title: 
     for place, (name, samples) in enumerate(components.items(), 1):
         last = place == len(components)
         x = Axis("time [s]" if last else "", 0.0, max(len(samples) - 1, 1) * dt, about=8, numbered=last)
-        line = Line(dt * np.arange(len(samples), dtype=float), samples / GRAVITY, look=Look("curve"))
+        line = Polyline(dt * np.arange(len(samples), dtype=float), samples / GRAVITY, look=Look("curve"))
         panels.append(Panel(x, Axis(f"{name} [g]", y.low, y.high), [line], width=440.0, height=100.0))
     return Figure(panels, "Ground acceleration against time", title, stacked=True)
 
@@ -67,7 +67,7 @@ def response_spectra(
 
     def add(spectrum: npt.NDArray[np.float64], look: Look, name: str, named: bool = True) -> None:
         label = name if len(name) <= 40 else f"{name[:20]}…{name[-19:]}"
-        marks.append(Line(periods, np.maximum(spectrum, y.low), name, look=look, label=label if named else ""))
+        marks.append(Polyline(periods, np.maximum(spectrum, y.low), name, look=look, label=label if named else ""))
 
     for i, (name, spectrum) in enumerate(zip(names, values, strict=True)):
         add(spectrum, line_of(i) if few else Look("faint"), name, named=few)

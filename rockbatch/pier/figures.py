@@ -12,11 +12,11 @@ from rockbatch.common.figures.description import (
     Area,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     Words,
     line_of,
@@ -62,14 +62,14 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
         look, label = line_of(place), name if len(sheets) > 1 else ""
         size = 1e-3 * (pier.mass_t or 0.0) * pier.gravity if heavy else 1.0
         across = at.theta / pier.alpha
-        moments.append(Line(across, size * at.moment, name, look=look, label=label))
-        accelerations.append(Line(across, at.acceleration, name, look=look))
-        periods.append(Line(swings.amplitude / pier.alpha, swings.period, name, look=look))
+        moments.append(Polyline(across, size * at.moment, name, look=look, label=label))
+        accelerations.append(Polyline(across, at.acceleration, name, look=look))
+        periods.append(Polyline(swings.amplitude / pier.alpha, swings.period, name, look=look))
         shares = {words: getattr(at, share) for share, words in SHARES.items()} if len(sheets) == 1 else {}
         shown = [(words, values) for words, values in shares.items() if values.any()]
         if len(shown) > 1:
             moments += [
-                Line(across, size * values, words, look=line_of(i), label=words)
+                Polyline(across, size * values, words, look=line_of(i), label=words)
                 for i, (words, values) in enumerate(shown, 1)
             ]
     flexural = sheets[0].pier.flexural_period_s if len(sheets) == 1 else None
@@ -84,7 +84,7 @@ def statics(sheets: Sequence[Sheet]) -> Figure:
     return Figure(panels, "Statics")
 
 
-def _over(across: str, up: str, lines: Sequence[Line], caption: str, fixed: Sequence[Rule] = ()) -> Panel:
+def _over(across: str, up: str, lines: Sequence[Polyline], caption: str, fixed: Sequence[Rule] = ()) -> Panel:
     """Return a panel whose axes begin at zero and hold the lines."""
     right = max((float(line.x.max()) for line in lines if len(line.x)), default=1.0)
     tops = [float(np.nanmax(line.y, initial=0.0)) for line in lines] + [float(rule.at.max()) for rule in fixed]
@@ -141,9 +141,9 @@ def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
     marks: list[Mark] = [
         Area(np.array([-b, -b, b, b]), np.array([0.0, top, top, 0.0]), look=Look("band")),
         _stroke("rigid", (-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)),
-        Line(np.array([b, 0.0]), np.array([0.0, h]), look=Look("rigid", dash=1)),
+        Polyline(np.array([b, 0.0]), np.array([0.0, h]), look=Look("rigid", dash=1)),
         _stroke("edge", (b, 0.0), (b, 1.15 * arc)),
-        Line(b - arc * np.sin(turn), arc * np.cos(turn), look=Look("edge")),
+        Polyline(b - arc * np.sin(turn), arc * np.cos(turn), look=Look("edge")),
         Words(b, arc, "α"),
         Words(-b, 0.5 * h, "R₀", -1),
         Points(np.zeros(1), np.array([h]), look=Look("peak", shape="dot")),
@@ -166,9 +166,9 @@ def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
     )
 
 
-def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: int = 0) -> Line:
+def _stroke(kind: str, *points: tuple[float, float], title: str = "", colour: int = 0) -> Polyline:
     x, y = np.array(points).T
-    return Line(x, y, look=Look(kind, colour), title=title)
+    return Polyline(x, y, look=Look(kind, colour), title=title)
 
 
 def _deck(pier: Mapping[str, Any], b: float, scale: float) -> Iterator[Mark]:

@@ -28,8 +28,6 @@ MIDDLE = 10
 DOT = Look("dot", 1)
 """Look of runs that are all alike."""
 
-Run = dict[str, Any]
-
 
 class Row(NamedTuple):
     """A row: its label, whose ``end`` is never cut off, its tooltip, and its runs in each column."""
@@ -51,7 +49,7 @@ class Marks(NamedTuple):
     """Style of the marks of runs: by ``series``, or all alike if these are too many; and the tooltip of each."""
 
     series: Sequence[Series] | None
-    describe: Callable[[Run], str]
+    describe: Callable[[dict[str, Any]], str]
     kind: str
     """The thing that a mark stands for, if all are alike: "foundation"."""
 
@@ -140,7 +138,7 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
     )  # fmt: skip
 
 
-def _mark(run: Run, x: float, marks: Marks) -> Markup:
+def _mark(run: dict[str, Any], x: float, marks: Marks) -> Markup:
     series = None if marks.series is None else marks.series[run["series"]]
     return Markup(_template(series).format(x=x, said=escape(marks.describe(run))))
 

@@ -41,7 +41,7 @@ def by_record(finished: Finished) -> Markup:
         words, comma, end = finished.label(name).rpartition(", ")  # the direction always stays
         return (words, comma + end, finished.named(name)) if words else (end, "", finished.named(name))
 
-    def description(run: dots.Run) -> str:
+    def description(run: dict[str, Any]) -> str:
         words = said_of(finished.series[run["series"]], run, finished.both_directions)
         return f"{finished.label(run['record'])}\n{words}"
 
@@ -87,7 +87,7 @@ def by_foundation(finished: Finished) -> Markup:
     def label(place: int) -> tuple[str, str, str]:
         return finished.series[place].label, "", finished.series[place].label
 
-    def description(run: dots.Run) -> str:
+    def description(run: dict[str, Any]) -> str:
         return said_of(finished.series[run["series"]], run, True) + f", {finished.label(run['record'])}"
 
     marks = dots.Marks(None, description, "record")

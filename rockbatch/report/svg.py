@@ -13,11 +13,11 @@ from rockbatch.common.figures.description import (
     Area,
     Array,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     Span,
     Words,
@@ -178,7 +178,7 @@ def _room_left(panel: Panel) -> float:
 def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
     panel = box.panel
     behind = [mark for mark in panel.marks if isinstance(mark, Span | Area)]
-    named = [mark for mark in panel.marks if isinstance(mark, Line) and mark.name and panel.reads]
+    named = [mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name and panel.reads]
     yield from (_draw(mark, box) for mark in behind)
     if panel.framed:
         yield _frame(box)
@@ -267,7 +267,7 @@ def _draw(mark: Any, box: Box) -> Markup:
 
 
 @_draw.register
-def _(mark: Line, box: Box) -> Markup:
+def _(mark: Polyline, box: Box) -> Markup:
     x, y = mark.x, mark.y
     within = (box.panel.x.low <= x) & (x <= box.panel.x.high) & (box.panel.y.low <= y) & (y <= box.panel.y.high)
     inside = np.where(within, y, np.nan)  # a pier that fell leaves the picture

@@ -12,11 +12,11 @@ from rockbatch.common.figures.description import (
     ENDED,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     Span,
     line_of,
@@ -41,7 +41,7 @@ SPREAD = 0.64
 OVER = "overturned, or ended by flight"
 _DRAWN = ["record", "series", "polarity", "side", "status", "theta_max_over_alpha", "theta_max_error"]
 
-Run = dict[str, Any]
+Row = dict[str, Any]
 
 
 def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, tuple[str, str]], top: float) -> Figure:
@@ -69,7 +69,7 @@ def peaks(runs: "pd.DataFrame", series: Sequence[Series], records: Mapping[str, 
     return Figure(panels, "θmax/α of every foundation")
 
 
-def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: float) -> Iterator[Mark]:
+def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Row], top: float) -> Iterator[Mark]:
     """Yield the marks of a foundation in a panel; a third side and more have their own colours."""
     place, label = sides.index(side), one.keyed + (f" ({side})" if len(sides) > 1 else "")
     titles = [said_of(one, run, len(sides) > 1) for run in runs]
@@ -87,7 +87,7 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: fl
         yield Rule("y", levels, look=look, label=label, title="; ".join(titles))
         for low, high in zip(theta - error, theta + error, strict=True):
             if high > low:
-                yield Line(np.full(2, at), np.array([low, high]), look=Look("bar"))
+                yield Polyline(np.full(2, at), np.array([low, high]), look=Look("bar"))
     else:
         look = marks_of(one.index, place == 1) if len(sides) < 3 else marks_of(place)
         titles_of = [title for title, stands in zip(titles, stood, strict=True) if stands]
@@ -100,7 +100,7 @@ def _peaks_of(one: Series, side: str, sides: list[str], runs: list[Run], top: fl
                          look=sign_of(status), label=words)  # fmt: skip
 
 
-def said_of(series: Series, run: Run, several_sides: bool) -> str:
+def said_of(series: Series, run: Row, several_sides: bool) -> str:
     """Return the tooltip of a marker: "2: η = 3.5: 0.0617 ± 3e-07"."""
     name = series.label + (f" ({run['polarity']})" if several_sides else "")
     if run["status"] != "ok":
@@ -162,11 +162,11 @@ def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], co
         reached = float(share[-1]) if len(share) else 0.0
         x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
         y = np.repeat(np.concatenate(([0.0], share)), 2)
-        marks.append(Line(x, y, foundation.label, look=look, label=foundation.label))
+        marks.append(Polyline(x, y, foundation.label, look=look, label=foundation.label))
         if reached < 1.0 and group["status"].isin(NO_PEAK).any():
             note = f"{foundation.label}: {100 * (1 - reached):.0f} % {OVER}"
             middle = np.full(2, 0.5 * (top + right))
-            marks.append(Line(middle, np.array([reached, 1.0]), look=look))
+            marks.append(Polyline(middle, np.array([reached, 1.0]), look=look))
             marks.append(
                 Points(
                     middle[:1], np.array([0.5 * (1.0 + reached)]), titles=[note], look=sign_of("overturned"), label=OVER

@@ -11,11 +11,11 @@ from rockbatch.common.figures.description import (
     Array,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     Span,
     Words,
@@ -112,9 +112,9 @@ def history(own: History, behind: History | None, shown: Sequence[History], reco
         last = row == len(HEIGHTS) - 1
         x = Axis("t [s]" if last else "", 0.0, end, about=4, numbered=last)
         name = y.plain
-        marks: list[Mark] = [Line(*own.curves[row], name, look=Look("curve", 0 if own.rigid else 1))]
+        marks: list[Mark] = [Polyline(*own.curves[row], name, look=Look("curve", 0 if own.rigid else 1))]
         if behind is not None and row < 3:
-            marks.insert(0, Line(*behind.curves[row], f"{name}, rigid base", look=Look("behind")))
+            marks.insert(0, Polyline(*behind.curves[row], f"{name}, rigid base", look=Look("behind")))
         if row == 0:
             marks += _events(own, y, end)
         panels.append(Panel(x, replace(y, about=5 if row == 0 else 4), marks, width=WIDTH, height=height, reads="time"))
@@ -189,7 +189,7 @@ def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
     yields = Rule("y", -np.ones(1), look=Look("edge", dash=1), label="force at which a support yields")
     panels = []
     for side, own, force in zip(sides, v, forces, strict=True):
-        marks: list[Mark] = [Line(*without_repeats(own, force, pixels), y.plain, look=Look("curve", 1))]
+        marks: list[Mark] = [Polyline(*without_repeats(own, force, pixels), y.plain, look=Look("curve", 1))]
         scale = replace(y, numbered=side == "left")
         panels.append(
             Panel(x, scale, marks + [yields] * base.yields, side, width=WIDTH / 2, height=LOOPS, reads="plane")
@@ -213,7 +213,7 @@ def _device(response: Response, name: str, pixels: int) -> Panel:
     elongations = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
     forces = [factor * table[f"{name}{side} force"].to_numpy(dtype=np.float64) for side in sides]
     marks = [
-        Line(*without_repeats(u, force, pixels), f"{unit}{side}", look=Look("right" if side == " right" else "curve", 1),
+        Polyline(*without_repeats(u, force, pixels), f"{unit}{side}", look=Look("right" if side == " right" else "curve", 1),
              label=f"at the{side} pivot" if side else "")
         for side, u, force in zip(sides, elongations, forces, strict=True)
     ]  # fmt: skip

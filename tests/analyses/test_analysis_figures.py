@@ -13,7 +13,7 @@ from rockbatch.analyses.fragility.figures import curves
 from rockbatch.analyses.sensitivity.figures import INDICES, bars
 from rockbatch.analyses.spectrum.figures import FELL, REGIONS, maps, spectra
 from rockbatch.analyses.spectrum.map_regions import between, inside, strips
-from rockbatch.common.figures.description import Area, Line, Points, Words
+from rockbatch.common.figures.description import Area, Points, Polyline, Words
 
 FRAGILITY = """
 [[check]]
@@ -84,7 +84,7 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_a
     result = rb.spectrum(study(tmp_path, SPECTRUM))
     figure = spectra(result.spectrum_suite, result.spectrum, result.info)
     assert [panel.caption for panel in figure.panels] == ["rigid", "pads"]
-    lines = of_kind(figure.panels[0].marks, Line)
+    lines = of_kind(figure.panels[0].marks, Polyline)
     suite = result.spectrum_suite[result.spectrum_suite["case"] == "rigid"]
     for colour, (_, rows) in enumerate(suite.groupby("alpha", sort=False), 1):
         for name, dash in (("median", 0), ("p84", 1), ("p16", 2)):
@@ -112,7 +112,7 @@ def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(tmp_path):
                    if REGIONS.get(row["outcome"], ("", ""))[1] == area.label]  # fmt: skip
         assert (np.nanmin(area.y), np.nanmax(area.y)) == pytest.approx((min(heights), max(heights)))
     shown = strips(regions)
-    (boundary,) = of_kind(panel.marks, Line)
+    (boundary,) = of_kind(panel.marks, Polyline)
     expected = [xy for line in (*inside(shown), *between(shown)) for xy in zip(*line, strict=True)]
     points = np.column_stack([boundary.x, boundary.y])
     assert points[~np.isnan(points[:, 0])].tolist() == np.array(expected).tolist()
@@ -144,7 +144,7 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     ]
     assert set(indices.y.names.values()) == {"p", "α"}
     ordered = result.sobol.sort_values("total", ascending=False, kind="stable")
-    whiskers = [line.x.mean() for line in of_kind(indices.marks, Line)]
+    whiskers = [line.x.mean() for line in of_kind(indices.marks, Polyline)]
     assert whiskers == pytest.approx([row[name] for row in ordered.to_dict("records") for name in INDICES])
     assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
 
@@ -157,7 +157,7 @@ def test_an_accuracy_has_its_errors_over_times_and_steps_beside_the_marks():
     for name in ("tolerance", "runs", "error_median", "status_differs", "reference_change"):
         table[name] = 1.0
     (panel,) = error_and_time(of_table(table)).panels
-    lines = {line.label: line for line in of_kind(panel.marks, Line)}
+    lines = {line.label: line for line in of_kind(panel.marks, Polyline)}
     assert lines["error that 95 % of the runs keep"].x == pytest.approx([1.0, 2.0])
     assert lines["error that 95 % of the runs keep"].y == pytest.approx([1e-5, 1e-6])
     assert lines["largest error"].y == pytest.approx([2e-5, 2e-6])

@@ -7,7 +7,7 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.figures.description import ENDED, Line, Points, Rule
+from rockbatch.common.figures.description import ENDED, Points, Polyline, Rule
 from rockbatch.results import figures
 from rockbatch.results.figures import OVER, distributions, peaks_of_all
 from rockbatch.results.labelled import groups_of, labelled
@@ -97,7 +97,7 @@ def test_errors_longer_than_their_marker_have_bars_also_those_of_a_line(results)
     panel = peaks_of(replace(results, peaks=peaks))[1]["weak"]
     marks = [mark for mark in panel.marks if isinstance(mark, Points) and not mark.look.open]
     assert [mark.error.tolist() for mark in marks] == [[0.2], [0.2]]
-    (bar,) = (mark for mark in panel.marks if isinstance(mark, Line))
+    (bar,) = (mark for mark in panel.marks if isinstance(mark, Polyline))
     assert np.ptp(bar.y) == pytest.approx(0.4)
 
 
@@ -125,7 +125,7 @@ def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturn
     peaks = results.peaks[results.peaks["mirror_of"] == ""]
     for panel, p in zip(figure.panels, (1.0, 2.0), strict=True):
         assert panel.x.last < panel.x.high  # no numbers where what overturned stands
-        curves = [mark for mark in panel.marks if isinstance(mark, Line) and mark.name]
+        curves = [mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name]
         assert len(curves) == 3
         rows = peaks[(peaks["p"] == p) & (peaks["case"] == "rock")]
         stood = rows["theta_max_over_alpha"][rows["status"] == "ok"]

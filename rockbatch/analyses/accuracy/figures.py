@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rockbatch.analyses.accuracy.levels import Level, chosen
-from rockbatch.common.figures.description import Figure, Line, Look, Mark, Panel, Points, Rule, Words, decades
+from rockbatch.common.figures.description import Figure, Look, Mark, Panel, Points, Polyline, Rule, Words, decades
 
 LEAST = 1e-14  # smaller errors, of rounding, are drawn there
 METHODS = {  # colour and marker, words, and the side of the notes, so that neighbours do not overlap
@@ -43,7 +43,7 @@ def _of_method(method: str, levels: Sequence[Level]) -> Iterator[Mark]:
     times = np.array([level.time for level in levels])
     for name, (kind, dash) in ERRORS.items() if len(levels) > 1 else ():
         up = np.array([math.nan if (error := getattr(level, name)) is None else max(error, LEAST) for level in levels])
-        yield Line(times, up, look=Look("level", look.colour, dash), label=kind)
+        yield Polyline(times, up, look=Look("level", look.colour, dash), label=kind)
     shown = [(level, max(level.error_max, LEAST)) for level in levels if level.error_max is not None]
     if shown:
         at = np.array([level.time for level, _ in shown]), np.array([error for _, error in shown])

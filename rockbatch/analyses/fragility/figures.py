@@ -11,11 +11,11 @@ from rockbatch.common.figures.description import (
     Array,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     decades,
     log_spanning,
@@ -68,9 +68,11 @@ def curves(info: Mapping[str, Any]) -> Figure:
     return Figure(panels, f"Fragility curves over {info['measure']}")
 
 
-def _line(x: Sequence[float] | Array, y: Sequence[float] | Array, look: Look, dash: int = 0, label: str = "") -> Line:
+def _line(
+    x: Sequence[float] | Array, y: Sequence[float] | Array, look: Look, dash: int = 0, label: str = ""
+) -> Polyline:
     """Return a curve in the colour of a case."""
-    return Line(np.array(x), np.array(y), look=Look("level", look.colour, dash), label=label)
+    return Polyline(np.array(x), np.array(y), look=Look("level", look.colour, dash), label=label)
 
 
 def _bands(entry: Curve, look: Look) -> Iterator[Mark]:
@@ -96,7 +98,7 @@ def _marks(entry: Curve, right: float, look: Look) -> Iterator[Mark]:
     for point in points:
         if point["undecided"]:
             ends = [k / point["records"] for k in (point["exceeded"], point["exceeded"] + point["undecided"])]
-            yield Line(
+            yield Polyline(
                 np.full(2, point["level"]), np.array(ends), look=Look("level", look.colour), title=_said(entry, point)
             )
     decided = [point for point in points if point["records"] > point["undecided"]]
@@ -173,7 +175,8 @@ def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
         counted = [run for run in runs if run["counts"] == counts]
         up = np.array([run["demand"] if height is None else height for run in counted], dtype=float)
         titles = [
-            f"{run['x']:.3g} {info['unit']}, {counts}" + f": {run['demand']:.3g}" * (height is None) for run in counted
+            f"{run['x']:.3g} {info['unit']}, {counts}" + (f": {run['demand']:.3g}" if height is None else "")
+            for run in counted
         ]
         marks.append(
             Points(np.array([run["x"] for run in counted], dtype=float), up, None, titles, look=own, label=name)
@@ -193,7 +196,7 @@ def risk(info: Mapping[str, Any], shown: Sequence[Curve]) -> Figure:
     points = Points(
         np.array(hazard["levels"], dtype=float), np.array(hazard["rates"], dtype=float), None, titles, look=Look()
     )
-    marks = [Line(across, rate), points]
+    marks = [Polyline(across, rate), points]
     panels = [Panel(x, decades("exceedances per year", rate.tolist(), about=5), marks, "hazard of the site")]
     for name, group in grouped(shown, lambda entry: entry["limit_state"]).items():
         panels.append(_densities(info, [entry for entry in group if "density" in entry["risk"]], looks, name))

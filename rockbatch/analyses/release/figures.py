@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rockbatch.common.figures.description import Axis, Figure, Line, Look, Panel, Points, line_of
+from rockbatch.common.figures.description import Axis, Figure, Look, Panel, Points, Polyline, line_of
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished_analysis import named
 
@@ -34,7 +34,7 @@ def _panel(impacts: "pd.DataFrame", history: "pd.DataFrame", caption: str) -> Pa
         [f"amplitude {a:.4g} rad" for a in amplitude],
     )
     marks = [
-        Line(t, theta, look=line_of(0), label="computed"),
+        Polyline(t, theta, look=line_of(0), label="computed"),
         Points(t_impact, np.zeros(len(t_impact)), None, of_impacts, look=Look("", 2, shape="diamond"), label="measured impact"),
         Points(
             t_amplitude, np.copysign(amplitude, np.interp(t_amplitude, t, theta)), None, of_amplitudes, look=MEASURED,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.common.figures.description import Area, Axis, Figure, Line, Look, Mark, Panel, Rule, Words, spanning
+from rockbatch.common.figures.description import Area, Axis, Figure, Look, Mark, Panel, Polyline, Rule, Words, spanning
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished_analysis import named
 from rockbatch.report.markup import number
@@ -71,7 +71,7 @@ def _of_input(row: Mapping[str, Any], count: int, place: int) -> Iterator[Mark]:
         if not np.isnan(value):
             yield _bar(0.0, value, y, way, words)
             ends = np.array([value - error, value + error])
-            yield Line(ends, np.full(2, y), look=Look("bar"), title=f"{value:.3f} ± {error:.3f}")
+            yield Polyline(ends, np.full(2, y), look=Look("bar"), title=f"{value:.3f} ± {error:.3f}")
 
 
 def _height(count: int, place: int, way: int) -> float:

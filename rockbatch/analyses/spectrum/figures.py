@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.analyses.spectrum.map_regions import Outline, areas, between, inside, strips
-from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Line, Look, Mark, Panel, Points, Span
+from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Look, Mark, Panel, Points, Polyline, Span
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished_analysis import named
 from rockbatch.report.labels import symbol
@@ -65,7 +65,9 @@ def _spectrum(suite: "pd.DataFrame", records: "pd.DataFrame | None", axis: str, 
             up = of_alpha[name].to_numpy(float)
             label = words + ", median" * many if name == "median" else ""
             marks.append(
-                Line(x, np.where(np.isfinite(up), up, np.nan), look=Look("level", colour, QUANTILES[name]), label=label)
+                Polyline(
+                    x, np.where(np.isfinite(up), up, np.nan), look=Look("level", colour, QUANTILES[name]), label=label
+                )
             )
         fell = x[np.isinf(of_alpha["median"].to_numpy(float))]
         if len(fell):
@@ -78,13 +80,13 @@ def _spectrum(suite: "pd.DataFrame", records: "pd.DataFrame | None", axis: str, 
     return Panel(across, y, marks, caption, width=420.0, height=190.0)
 
 
-def _of_records(records: "pd.DataFrame", axis: str, top: float) -> Iterator[Line]:
+def _of_records(records: "pd.DataFrame", axis: str, top: float) -> Iterator[Polyline]:
     """Yield a curve for each record up to ``top``, which ends where the pier overturns; none if they are too many."""
     keys = ["alpha", "record", "polarity"]
     groups = records.groupby(keys, sort=False)
     for _, of_record in groups if groups.ngroups <= MOST_RECORDS else ():
         theta = of_record["theta_max_over_alpha"].where(of_record["status"] == "ok").to_numpy(float)
-        yield Line(
+        yield Polyline(
             of_record[axis].to_numpy(float),
             np.where(theta <= top, theta, np.nan),
             look=Look("faint"),
@@ -112,7 +114,7 @@ def _map(regions: "pd.DataFrame", caption: str, note: str) -> Panel:
         if any(outcome in strip.outcomes for strip in shown):
             marks.append(Area(*_together(areas(shown, outcome)), look=Look("filled", colour), label=words))
     boundaries = [*inside(shown), *between(shown)]
-    marks.append(Line(*_together(boundaries), label="boundary; where there is no colour the pier stands"))
+    marks.append(Polyline(*_together(boundaries), label="boundary; where there is no colour the pier stands"))
     x = Axis("ω_p/p", float(shown[0].frequencies[0]), float(shown[-1].frequencies[-1]), about=8)
     y = Axis("a_p/(g tan α)", float(regions["low"].min()), float(regions["high"].max()), about=8)
     return Panel(x, y, marks, caption, note, width=420.0, height=256.0)

@@ -63,7 +63,7 @@ class Mark:
 
 
 @dataclass(frozen=True, eq=False)
-class Line(Mark):
+class Polyline(Mark):
     """A polyline, interrupted at NaN. The script of the page reads values from a line with a ``name``."""
 
     x: Array

@@ -26,11 +26,11 @@ from rockbatch.common.figures.description import (
     Area,
     Axis,
     Figure,
-    Line,
     Look,
     Mark,
     Panel,
     Points,
+    Polyline,
     Rule,
     Span,
     Words,
@@ -203,7 +203,7 @@ def _draw(mark: Any, axes: Axes) -> Artist:
 
 
 @_draw.register
-def _(mark: Line, axes: Axes) -> Artist:
+def _(mark: Polyline, axes: Axes) -> Artist:
     return axes.plot(mark.x, mark.y, **_style(mark.look))[0]
 
 

@@ -18,7 +18,7 @@ from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import capacities, points
 from rockbatch.analyses.fragility.windows import SAMPLES, samples, windows
-from rockbatch.common.figures.description import Line
+from rockbatch.common.figures.description import Polyline
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -205,4 +205,4 @@ def test_whatever_the_number_of_threads_the_shares_are_the_same_and_python_draws
         files = [(tmp_path / f"out {jobs}" / f"{name}.csv").read_bytes() for jobs in (1, 2)]
         assert files[0] == files[1]
     of_shares = [mark for panel in curves(one.info).panels for mark in panel.marks if mark.label == "rigid, by shares"]
-    assert any(isinstance(mark, Line) for mark in of_shares) == isinstance(two.curves[0].windows.fitted, Lognormal)
+    assert any(isinstance(mark, Polyline) for mark in of_shares) == isinstance(two.curves[0].windows.fitted, Lognormal)

@@ -75,7 +75,7 @@ def test_other_piers_part_from_the_curve_as_alpha_squared():
 @pytest.mark.slow
 def test_near_fault_records_share_the_curves_as_the_page_says():
     """docs/pages/questions/size.md: α = 0.2 over 0.05 where both stand, in the median, in 95 % of the points, and at most."""
-    runs = rb.spectrum(Path(__file__).parents[2] / "configs" / "self_similar.toml").spectrum
+    runs = rb.spectrum(Path(__file__).parents[3] / "configs" / "self_similar.toml").spectrum
     keys = ["record", "pga_over_g_tan_alpha", "omega_g_over_p"]
     stood = runs[runs["status"] == "ok"].pivot_table("theta_max_over_alpha", keys, "alpha")
     gaps = (stood[0.2] / stood[0.05] - 1.0).abs().dropna()
