@@ -28,19 +28,20 @@ from tower import QUIET_S, TOWER, foundations, record
 from rockbatch.core.block.model import Rocker, Tilt
 from rockbatch.core.clock import read_ground, start_clock
 from rockbatch.core.devices.pull import devices_of
+from rockbatch.core.ground import later
 from rockbatch.core.history import MOMENT
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.run import Settings, march
 from rockbatch.core.springs.lanes import static_state
 from rockbatch.core.springs.model import BOUC_WEN, Contact
-from rockbatch.core.system import at_rest, begin, model, one_pass, rates
+from rockbatch.core.system import begin, one_pass, rates
 from rockbatch.core.table import LANES, table
 from rockbatch.core.table import record as record_of
-from rockbatch.core.types import RIGHT, SURVIVED, Ground
+from rockbatch.core.types import RIGHT, SURVIVED, Ground, Instant
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import block, ground_of, springs
-from rockbatch.simulation.models import elements, kind_of, line_of
+from rockbatch.simulation.models import elements, line_of, system_of
 from rockbatch.simulation.models import model as model_of
 from rockbatch.simulation.starting import start_of
 
@@ -55,12 +56,12 @@ DEVICES = (Damper("viscous", nu=1.0), Tendon(psi=0.1, lam=0.5))
 @numba.njit(error_model="numpy")
 def bare(m, y, contact, ground, h, steps):
     """Return the rotation after ``steps`` steps of ``h`` [s] and nothing else: on springs, or about a corner of a rigid base."""
-    k = rates(m, y, contact, ground[0, 0], ground[0, 2])
+    k = rates(m, y, contact, Ground(ground[0, 0], ground[0, 1], ground[0, 2], ground[0, 3]))
     for i in range(steps):
         row = ground[i % len(ground)]
         under = Ground(row[0], row[1], row[2], row[3])
-        y = rk4(m, None, y, k, contact, under, h)
-        k = rates(m, y, contact, row[0] + h * row[1], row[2] + h * row[3])
+        y = rk4(m, None, Instant(y, k, contact, None, under), h)
+        k = rates(m, y, contact, later(under, h))
     return y.theta
 
 
@@ -69,10 +70,9 @@ def passes(traits, lanes_table, runs, ground, count):
     """Take all lanes from the start through ``count`` passes of tiny steps: no sample is reached, and nothing happens."""
     lanes = lanes_table[0]
     for i in range(len(runs)):
-        begin(traits, lanes, i, runs[i])
-        m = model(traits, lanes, i)
-        start_clock(lanes, i, i, runs[i], at_rest(m), math.atan2(m.half_width, m.height), 0.0)
+        start_clock(lanes, i, i, runs[i])
         read_ground(lanes, i, ground)
+        begin(traits, lanes, i, runs[i])
         lanes.step_status.watched[i] = 0.0
         to_right = 1.0 if (ground[0, 0] if ground[0, 0] != 0.0 else ground[0, 1]) < 0.0 else 0.0  # no velocity reverses
         lanes.contact.left_yields[i], lanes.contact.right_yields[i] = 1.0 - to_right, to_right
@@ -120,16 +120,16 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     """Line of the table."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law(law, base)) for base in foundations(runs)]
-    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
+    system, lines = system_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
     stop = np.zeros(1, np.uint8)
-    ends = march(kind, lines, ground, stop, substeps)
+    ends = march(system, lines, ground, stop, substeps)
     if (ends.status != SURVIVED).any():
         raise SystemExit(f"{law}: a run ended early; its steps are no measure")
     steps = int(np.rint(ends.t_end / dt * substeps).sum())
 
     # An event is two rows of a history, a sample one
-    history = np.zeros((1, 1, len(MOMENT) + len(kind.columns)))
-    counted = march(kind, [lines[runs // 2]], ground, stop, substeps, history=history)[0]
+    history = np.zeros((1, 1, len(MOMENT) + len(system.columns)))
+    counted = march(system, [lines[runs // 2]], ground, stop, substeps, history=history)[0]
     samples = round(counted.t_end / dt) + 1
     events = (counted.rows - samples) // 2
 
@@ -137,7 +137,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     branch = 1.0 if m.law == BOUC_WEN else 0.0
     alone = (m, static_state(m, m.gravity), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
     times = interleaved(
-        {"whole": lambda: march(kind, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
+        {"whole": lambda: march(system, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
     )
     return row(law, motion, substeps, times, steps, events / (samples - 1) / substeps)
 
@@ -154,9 +154,9 @@ def measure_rigid(motion: Motion, substeps: int, runs: int, repeats: int) -> str
     """Line of the table for the rigid base: piers of p = 0.38 … 0.5 rad/s."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [block(Pier(TOWER.alpha, TOWER.p + 0.12 * i / runs), RigidBase()) for i in range(runs)]
-    kind, lines = kind_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
+    system, lines = system_of(models[0]), [line_of(m, timing(motion, substeps), (0, 0), 0.0, AT_REST) for m in models]
     stop = np.zeros(1, np.uint8)
-    ends = march(kind, lines, ground, stop, substeps)
+    ends = march(system, lines, ground, stop, substeps)
     if (ends.status != SURVIVED).any():
         raise SystemExit("rigid: a run ended early; its steps are no measure")
     steps = int(np.rint(ends.t_end / dt * substeps).sum())
@@ -170,7 +170,7 @@ def measure_rigid(motion: Motion, substeps: int, runs: int, repeats: int) -> str
         BARE_STEPS,
     )
     times = interleaved(
-        {"whole": lambda: march(kind, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
+        {"whole": lambda: march(system, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats
     )
     return row("rigid", motion, substeps, times, steps, (ends.impacts + ends.uplifts).sum() / steps)
 
@@ -179,12 +179,12 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     """Return what the lanes' pass takes without any event or sample, a lane, over the bare step."""
     ground, dt = ground_of(motion), float(motion.dt)
     models = [springs(TOWER, of_law("bouc-wen", base)) for base in foundations(LANES)]
-    kind = kind_of(models[0])
+    system = system_of(models[0])
     lines = [line_of(m, (dt, 100 * PASSES, 0, 0, len(ground), 0), (0, 0), 0.0, AT_REST) for m in models]
-    runs = np.array(lines, record_of(kind.line)).view(np.recarray)
+    runs = np.array(lines, record_of(system.line)).view(np.recarray)
     static, contact = static_state(models[0], models[0].gravity), Contact(1.0, 1.0, 1.0, 1.0, 0.0)
     tasks = {
-        "pass": lambda: passes(kind.traits, table(kind.lane)[0], runs, ground, PASSES),
+        "pass": lambda: passes(system.traits, table(system.lane)[0], runs, ground, PASSES),
         "bare": lambda: bare(models[0], static, contact, ground, dt, BARE_STEPS),
     }
     times = interleaved(tasks, repeats)
@@ -198,14 +198,14 @@ def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: 
     tied = replace(base, restraints=DEVICES)
     laws = elements(TOWER, tied)
     m = model_of(TOWER, base)
-    kind, load = kind_of(m), sum(each.prestress for each in laws)
+    system, load = system_of(m), sum(each.prestress for each in laws)
     plain, held = (line_of(m, timing(motion, substeps), (0, 0), each, AT_REST) for each in (0.0, load))
 
     def run_plain() -> np.recarray:
-        return march(kind, [plain], ground, stop, substeps)
+        return march(system, [plain], ground, stop, substeps)
 
     def run_held() -> np.recarray:
-        return march(kind, [held], ground, stop, substeps, devices=devices_of(laws))
+        return march(system, [held], ground, stop, substeps, devices=devices_of(laws))
 
     ends = [run()[0] for run in (run_held, run_plain)]
     if any(end.status != SURVIVED for end in ends):

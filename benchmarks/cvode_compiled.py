@@ -25,6 +25,7 @@ from tower import QUIET_S, TOWER, foundations, record
 from rockbatch.core.springs.lanes import static_state
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.springs.transitions import handle
+from rockbatch.core.types import Ground, Moment
 from rockbatch.pier import YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance, run_fixed
 
@@ -176,10 +177,11 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
         contact, supports = Contact(1.0, 1.0, 1.0, 1.0, 0.0), Supports(math.nan, math.nan, -1.0, -1.0)
         for _ in range(MOST_EVENTS):
             i = int(t / dt)
-            horizontal = ground[i, 0] + (t - i * dt) * ground[i, 1]
-            vertical = ground[i, 2] + (t - i * dt) * ground[i, 3]
+            here = Ground(
+                ground[i, 0] + (t - i * dt) * ground[i, 1], 0.0, ground[i, 2] + (t - i * dt) * ground[i, 3], 0.0
+            )
             contact = _on_its_branch(contact, now, cells[0])
-            values = signals(m, now, contact, supports, rest, horizontal, vertical)
+            values = signals(m, now, contact, supports, here)
             which = NONE
             for j in range(4 if contact.held != 0.0 else 2):
                 if values[j] < -rest and which == NONE:
@@ -196,10 +198,11 @@ def compiled(rocking: Rocking, tolerance: float, method: int) -> Callable[[], tu
                 if which in (FAILED, UPRIGHT):
                     return which, theta_max
                 i = int(t / dt)
-                horizontal = ground[i, 0] + (t - i * dt) * ground[i, 1]
-                vertical = ground[i, 2] + (t - i * dt) * ground[i, 3]
+                here = Ground(
+                    ground[i, 0] + (t - i * dt) * ground[i, 1], 0.0, ground[i, 2] + (t - i * dt) * ground[i, 3], 0.0
+                )
                 contact = _on_its_branch(contact, now, cells[0])
-            now, contact, supports, _kind = handle(m, now, contact, supports, which, rest, horizontal, vertical)
+            (now, contact, supports), _kind = handle(m, Moment(now, contact, supports), which, here)
             if contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0 and not guided:
                 return UPRIGHT if abs(now.theta) >= alpha and now.theta * now.omega > 0.0 else FLIGHT, theta_max
             if t >= end:

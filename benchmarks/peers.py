@@ -16,8 +16,8 @@ import numpy as np
 from rockbatch.core.springs.lanes import static_state
 from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, Contact, Springs, State, Supports
 from rockbatch.core.springs.transitions import handle
-from rockbatch.core.system import at_rest, event_functions, rates
-from rockbatch.core.types import Ground
+from rockbatch.core.system import event_functions, rates
+from rockbatch.core.types import Ground, Instant, Moment
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation import ground_of, springs
@@ -55,9 +55,9 @@ def watched(law: float, contact: Contact, supports: Supports, rest: float) -> tu
 
 
 @numba.njit(error_model="numpy")
-def signals(m, y, contact, supports, rest, horizontal, vertical):
+def signals(m, y, contact, supports, ground):
     """Return the four event functions of a pier on springs; their slopes are not asked for."""
-    values, _ = event_functions(m, None, y, y, contact, supports, rest, Ground(horizontal, 0.0, vertical, 0.0))
+    values, _ = event_functions(m, None, Instant(y, y, contact, supports, ground))
     return values
 
 
@@ -68,7 +68,7 @@ class Rocking:
         self.m, self.alpha, self.dt = springs(pier, base), pier.alpha, float(motion.dt)
         if self.m.finite is not None or self.m.exponent is not None:
             raise ValueError("only first-order kinematics and n = 5")
-        self.rest = at_rest(self.m)
+        self.rest = self.m.rest
         quiet = math.ceil(quiet_s / self.dt - 1e-9)
         self.ground = np.concatenate([ground_of(motion), np.zeros((quiet + 1, 4))])
         self.samples = motion.npts - 1 + quiet
@@ -93,7 +93,7 @@ class Rocking:
         contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
         for _ in range(MOST_EVENTS):
             # An impact at one pivot may turn the other's velocity: that is an event before the next step
-            values = signals(m, y, contact, supports, rest, *self._ground_at(t))
+            values = signals(m, y, contact, supports, self._ground_at(t))
             which = next((i for i, value in enumerate(values) if value < -rest), None)
             if which is None:
                 t, y, which, reached = stretch(t, y, contact, supports)
@@ -102,7 +102,7 @@ class Rocking:
                     return "ok", theta_max
                 if which in (UPRIGHT, FAILED):
                     return ("overturned" if which == UPRIGHT else "failed"), theta_max
-            y, contact, supports, _ = handle(m, y, contact, supports, which, rest, *self._ground_at(t))
+            (y, contact, supports), _ = handle(m, Moment(y, contact, supports), which, self._ground_at(t))
             if contact.left == contact.right == contact.held == 0 and not m.guided:
                 beyond = abs(y.theta) >= self.alpha and y.theta * y.omega > 0.0
                 return ("overturned" if beyond else "flight"), theta_max
@@ -110,11 +110,11 @@ class Rocking:
                 return "ok", theta_max
         return "failed", theta_max
 
-    def _ground_at(self, t: float) -> tuple[float, float]:
+    def _ground_at(self, t: float) -> Ground:
         i = int(t / self.dt)
         a, a_slope, c, c_slope = self.ground[i].tolist()
         x = t - i * self.dt
-        return a + x * a_slope, c + x * c_slope
+        return Ground(a + x * a_slope, 0.0, c + x * c_slope, 0.0)
 
 
 @numba.njit(error_model="numpy")
@@ -122,28 +122,28 @@ def _unpacked(t, y, cells, ground):
     """What the core's functions take, from plain arrays, which cross from Python to compiled code at the least cost."""
     m = Springs(
         cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8], cells[9], cells[10],
-        None, None, None, None,
+        cells[18], None, None, None, None,
     )  # fmt: skip
     contact = Contact(cells[11], cells[12], cells[13], cells[14], cells[15])
     i = int(t / cells[19])
     x = t - i * cells[19]
-    under = ground[i, 0] + x * ground[i, 1], ground[i, 2] + x * ground[i, 3]
+    under = Ground(ground[i, 0] + x * ground[i, 1], 0.0, ground[i, 2] + x * ground[i, 3], 0.0)
     return m, State(y[0], y[1], y[2], y[3], y[4], y[5]), contact, under
 
 
 @numba.njit(error_model="numpy")
 def _rates(t, y, y_rates, cells, ground):
-    m, state, contact, (horizontal, vertical) = _unpacked(t, y, cells, ground)
-    k = rates(m, state, contact, horizontal, vertical)
+    m, state, contact, under = _unpacked(t, y, cells, ground)
+    k = rates(m, state, contact, under)
     for i in range(6):
         y_rates[i] = k[i]
 
 
 @numba.njit(error_model="numpy")
 def _events(t, y, values, cells, ground):
-    m, state, contact, (horizontal, vertical) = _unpacked(t, y, cells, ground)
+    m, state, contact, under = _unpacked(t, y, cells, ground)
     rest = cells[18]
-    found = signals(m, state, contact, Supports(cells[16], cells[17], -1.0, -1.0), rest, horizontal, vertical)
+    found = signals(m, state, contact, Supports(cells[16], cells[17], -1.0, -1.0), under)
     for i in range(4):
         values[i] = found[i] if abs(found[i]) > rest else rest  # rounding does not cross
     values[4] = 0.5 * math.pi - abs(state.theta)

@@ -7,7 +7,6 @@ import numpy as np
 
 from rockbatch.core.kernel import inlined, kernel, shared
 from rockbatch.core.roots import hermite, largest_within, turning_point
-from rockbatch.core.system import clearances
 from rockbatch.core.types import NOT_FINITE, OVERTURNED, SURVIVED, Ground
 
 ON_ITS_SIDE = 0.5 * math.pi
@@ -18,7 +17,7 @@ WINDOWS = 32
 UNSET = -1.0
 """Of a time or a number of a sample that is not known yet."""
 
-CALM, ATTEND, EVENTFUL = 0.0, 1.0, 2.0
+CALM, STANDS, EVENTFUL = 0.0, 1.0, 2.0
 """Step status of a lane after a pass: calm; the sub-step stands, but an extreme or a reversal is to be taken in;
 it may not stand, and has to be taken event by event."""
 
@@ -49,7 +48,6 @@ class Clock(NamedTuple):
     sample: float  # number of the last sample
     due: float  # number of the sample at which more is due than the next step
     alpha: float  # slenderness [rad]
-    rest: float  # velocity that counts as none [m/s]
 
 
 class Peak(NamedTuple):
@@ -60,6 +58,7 @@ class Peak(NamedTuple):
     window: float  # number of the present window
     next_window: float  # sample with which the next one begins
     in_window: float  # greatest |θ| at a sample of this one [rad]
+    decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
 
 
 class Tally(NamedTuple):
@@ -79,7 +78,23 @@ class Tally(NamedTuple):
     moved: float  # time at which a pivot last left the ground or landed [s]
 
 
-COMMON = {"clock": Clock, "ground": Ground, "peak": Peak, "tally": Tally}
+class StepStatus(NamedTuple):
+    """Outcome of the pass, and what it has to know of the sub-step before."""
+
+    kind: float  # CALM, STANDS or EVENTFUL
+    watched: float  # above 0 unless that ended with all event functions clear of zero
+
+
+class Clearances(NamedTuple):
+    """Heights of both pivots above where they would land [m], and their rates [m/s]."""
+
+    left: float
+    right: float
+    left_rate: float
+    right_rate: float
+
+
+COMMON = {"clock": Clock, "ground": Ground, "peak": Peak, "tally": Tally, "step_status": StepStatus}
 """Parts of every table of lanes; the ground is that at the last sample."""
 
 
@@ -92,14 +107,15 @@ def fallen(theta):
 
 
 @kernel
-def start_clock(lanes, i, number, run, rest, alpha, theta):
-    """Set clock, counts and peaks of run ``number`` at its start, at rotation ``theta`` [rad]."""
-    clock, peak, tally = lanes.clock, lanes.peak, lanes.tally
+def start_clock(lanes, i, number, run):
+    """Set clock, counts and peaks of run ``number`` at its start."""
+    clock, peak, tally, theta = lanes.clock, lanes.peak, lanes.tally, run.theta
     clock.number[i], clock.first_row[i], clock.npts[i] = number, run.first_row, run.npts
     clock.samples[i] = run.npts - 1.0 + run.quiet_samples
     clock.dt[i], clock.step[i] = run.dt, run.dt / run.substeps
-    clock.sample[i], clock.due[i], clock.rest[i], clock.alpha[i] = 0.0, 1.0, rest, alpha
-    peak.theta[i], peak.time[i] = abs(theta), 0.0
+    clock.sample[i], clock.due[i], clock.alpha[i] = 0.0, 1.0, math.atan2(run.half_width, run.height)
+    lanes.step_status.watched[i] = 1.0
+    peak.theta[i], peak.time[i], peak.decided_at[i] = abs(theta), 0.0, UNSET
     peak.window[i], peak.next_window[i], peak.in_window[i] = 0.0, 1.0, abs(theta)  # the first one is the first sample
     tally.impacts[i] = tally.uplifts[i] = tally.events[i] = tally.counted[i] = tally.flights[i] = 0.0
     tally.flight_duration[i] = tally.flight_height[i] = tally.moved[i] = 0.0
@@ -177,12 +193,20 @@ def motion_due(lanes, i):
 
 
 @kernel
-def include_peak(lanes, i, y, end, start, done, h):
-    """Bring the peak up to that of a smooth part of ``h`` [s] from ``y`` to ``end``, ``done`` [s] after ``start``.
+def peak_decided(lanes, i):
+    """Return whether it has been decided that nothing can exceed the peak, and nothing has."""
+    decided_at = lanes.peak.decided_at[i]
+    return decided_at >= 0.0 and lanes.peak.time[i] <= decided_at * lanes.clock.dt[i]
+
+
+@kernel
+def include_peak(lanes, i, part, start, done):
+    """Bring the peak up to that of a Part which begins ``done`` [s] after ``start``.
 
     ``start`` [s] of the sub-step is since the last sample. Times are added up as those of events are.
     """
-    at, peak = largest_within(y.theta, y.omega, end.theta, end.omega, h, lanes.peak.theta[i])
+    y, end = part.start.y, part.end
+    at, peak = largest_within(y.theta, y.omega, end.theta, end.omega, part.length, lanes.peak.theta[i])
     if at >= 0.0:
         lanes.peak.theta[i] = peak
         lanes.peak.time[i] = lanes.clock.sample[i] * lanes.clock.dt[i] + (start + (done + at))
@@ -199,15 +223,15 @@ def peak_at_end(lanes, i, tilt, substep):
 
 
 @kernel
-def include_height(lanes, i, m, supports, y, end, h):
-    """Bring the height of flight up to that of the lower pivot in a smooth part of ``h`` [s] from ``y`` to ``end``.
+def include_height(lanes, i, start, end, h):
+    """Bring the height of flight up to that of the lower pivot in a smooth part of ``h`` [s] between two Clearances.
 
     The lower of two cubics is highest at an end, where the lower one turns, or where they meet.
     """
     if h == 0.0:
         return
-    left, right, left_rate, right_rate = clearances(m, y, supports)
-    left_end, right_end, left_end_rate, right_end_rate = clearances(m, end, supports)
+    left, right, left_rate, right_rate = start
+    left_end, right_end, left_end_rate, right_end_rate = end
     highest = max(min(left, right), min(left_end, right_end))
     gap, gap_end = left - right, left_end - right_end
     meet = h * gap / (gap - gap_end) if gap * gap_end < 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""Decorators that compile kernels: one for building blocks, one for entries, one for questions that systems answer."""
+"""Decorators that compile kernels: one for building blocks, one for entries, one for hooks that systems implement."""
 
 import atexit
 import contextlib
@@ -121,16 +121,16 @@ class _Guarded(CPUDispatcher):
     """Dispatcher of a building block that Python calls through a kernel made for it: as it is, a call would end the process."""
 
     def __call__(self, *arguments: Any) -> Any:
-        return _through(self)(*arguments)
+        return _entry_to(self)(*arguments)
 
 
 @functools.cache
-def _through(block: Any) -> Any:
+def _entry_to(block: Any) -> Any:
     @numba.njit(**_OPTIONS)
-    def through(*arguments):
+    def call(*arguments):
         return block(*arguments)
 
-    return through
+    return call
 
 
 def _guarded(dispatcher: Any) -> Any:
@@ -175,33 +175,35 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     return dispatcher
 
 
-def question(stub: Callable[..., Any]) -> Any:
-    """Let each system answer a question about itself; the type of the first argument chooses the answer when compiled.
+def hook(stub: Callable[..., Any]) -> Any:
+    """Let each system implement a function; the type of the first argument chooses the implementation when compiled.
 
-    ``stub`` has the arguments and says what is asked; ``@stub.of(Kind)`` registers the answer of systems described by the
-    named tuple ``Kind``, or of ``type(None)``: nothing. A driver
-    that asks knows no system by name, and its machine code is that of the answer written out.
-    Answers become part of their callers, so that loops over lanes can be turned into vector code.
+    ``stub`` has the arguments and says what the function does; ``@stub.of(Model)`` registers the implementation for systems
+    described by the named tuple ``Model``, or for ``type(None)``: nothing. A driver that calls it knows no system by name, and
+    its machine code is that of the implementation written out. Implementations become part of their callers, so that loops
+    over lanes can be turned into vector code.
     """
-    answers: dict[type, Callable[..., Any]] = {}
+    implementations: dict[type, Callable[..., Any]] = {}
 
     @functools.wraps(stub)
-    def ask(system: Any, *rest: Any) -> Any:
-        return answers[type(system)](system, *rest)
+    def call(system: Any, *rest: Any) -> Any:
+        return implementations[type(system)](system, *rest)
 
     def choose(system: Any, *rest: Any) -> Any:
-        kind = type(None) if isinstance(system, numba.types.NoneType) else getattr(system, "instance_class", object)
-        return answers.get(kind)
+        described_by = (
+            type(None) if isinstance(system, numba.types.NoneType) else getattr(system, "instance_class", object)
+        )
+        return implementations.get(described_by)
 
-    def of(kind: type) -> Callable[[Callable[..., Any]], Any]:
-        def register(answer: Callable[..., Any]) -> Any:
-            answers[kind] = answer
-            return ask
+    def of(described_by: type) -> Callable[[Callable[..., Any]], Any]:
+        def register(implementation: Callable[..., Any]) -> Any:
+            implementations[described_by] = implementation
+            return call
 
         return register
 
     choose.__signature__ = inspect.signature(stub)  # type: ignore[attr-defined]
-    ask.of = of  # type: ignore[attr-defined]
+    call.of = of  # type: ignore[attr-defined]
     options: Any = _OPTIONS | _PART | {"forceinline": True}
-    overload(ask, jit_options=options, strict=False)(choose)
-    return ask
+    overload(call, jit_options=options, strict=False)(choose)
+    return call

@@ -10,40 +10,44 @@ from rockbatch.core.devices.pull import (
     device_rates,
     stage_states,
 )
-from rockbatch.core.kernel import inlined, question
-from rockbatch.core.system import ended, rates, share, staged
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import hook, inlined
+from rockbatch.core.system import end_step, rates, share, stage
 from rockbatch.core.table import along, weighted
+from rockbatch.core.types import Moment
 
 
-@question
-def rates_with(devices, m, y, contact, horizontal, vertical, place):
-    """Return the rates of ``y`` and the pier under its devices, whose states' rates in their stage go to their ``place``."""
+@hook
+def rates_with(devices, m, now, ground, place):
+    """Return the rates of ``now`` and the pier under its devices, whose states' rates in their stage go to their ``place``."""
 
 
 @rates_with.of(type(None))
-def _rates_alone(devices, m, y, contact, horizontal, vertical, place):
-    return rates(m, y, contact, horizontal, vertical), m
+def _rates_alone(devices, m, now, ground, place):
+    return rates(m, now.y, now.contact, ground), m
 
 
 @rates_with.of(Devices)
-def _rates_under_devices(devices, m, y, contact, horizontal, vertical, place):
-    under, _, _ = device_rates(m, devices, y, devices.stage, contact, horizontal, vertical, place)
-    return rates(under, y, contact, horizontal, vertical), under
+def _rates_under_devices(devices, m, now, ground, place):
+    under, _, _ = device_rates(m, devices, now, devices.stage, ground, place)
+    return rates(under, now.y, now.contact, ground), under
 
 
 @inlined
-def rk4(m, devices, y, k1, contact, ground, h):
-    """Return the state ``h`` [s] after ``y``, whose rates are ``k1``; the devices' states then are in ``devices.end``."""
+def rk4(m, devices, start, h):
+    """Return the state ``h`` [s] after the Instant ``start``; the devices' states then are in ``devices.end``."""
     half = 0.5 * h
-    a_middle = ground.horizontal + half * ground.horizontal_slope
-    c_middle = ground.vertical + half * ground.vertical_slope
-    a_end, c_end = ground.horizontal + h * ground.horizontal_slope, ground.vertical + h * ground.vertical_slope
+    y, k1, contact, supports, ground = start
+    middle, end = later(ground, half), later(ground, h)
     left = share(m, half)
     stage_states(devices, START, half)
-    k2, _ = rates_with(devices, m, staged(m, along(y, k1, half), y, contact, left), contact, a_middle, c_middle, SECOND)
+    second = Moment(stage(m, along(y, k1, half), y, contact, left), contact, supports)
+    k2, _ = rates_with(devices, m, second, middle, SECOND)
     stage_states(devices, SECOND, half)
-    k3, _ = rates_with(devices, m, staged(m, along(y, k2, half), y, contact, left), contact, a_middle, c_middle, THIRD)
+    third = Moment(stage(m, along(y, k2, half), y, contact, left), contact, supports)
+    k3, _ = rates_with(devices, m, third, middle, THIRD)
     stage_states(devices, THIRD, h)
-    k4, _ = rates_with(devices, m, staged(m, along(y, k3, h), y, contact, left * left), contact, a_end, c_end, FOURTH)
+    fourth = Moment(stage(m, along(y, k3, h), y, contact, left * left), contact, supports)
+    k4, _ = rates_with(devices, m, fourth, end, FOURTH)
     advance_states(devices, h)
-    return ended(m, along(y, weighted(k1, k2, k3, k4), h * (1.0 / 6.0)), y, contact, left * left)
+    return end_step(m, along(y, weighted(k1, k2, k3, k4), h * (1.0 / 6.0)), y, contact, left * left)

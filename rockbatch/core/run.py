@@ -18,11 +18,11 @@ from rockbatch.core.clock import (
     fallen,
     ground_at,
     ground_rests,
-    include_height,
     include_peak,
     motion_due,
     note_flight,
     note_motion_over,
+    peak_decided,
     read_ground,
     start_clock,
     turn_window,
@@ -30,31 +30,22 @@ from rockbatch.core.clock import (
 from rockbatch.core.devices.events import after_contact, device_event, start_devices
 from rockbatch.core.devices.pull import Devices, loaded, resolved
 from rockbatch.core.devices.use import take_in
-from rockbatch.core.history import history_of, take_back, write
-from rockbatch.core.kernel import entry, inlined, inlined_once, kernel, question
-from rockbatch.core.search import first_event, marks_for, start_rates
+from rockbatch.core.history import History, Stamp, history_of, take_back, write
+from rockbatch.core.kernel import entry, hook, inlined, inlined_once, kernel
+from rockbatch.core.search import Marks, first_event, marks_for, start_rates
 from rockbatch.core.system import (
-    after_event,
-    after_step,
     airborne,
-    at_rest,
-    attend,
     begin,
-    expect,
     finish,
-    include,
-    longest,
-    model,
-    moment,
-    next_due,
+    longest_step,
     one_pass,
-    over,
-    peak_stands,
-    put_moment,
+    pier_in,
+    status_at_sample,
+    take_in_part,
+    take_in_step,
     transition,
-    uplifts,
 )
-from rockbatch.core.table import LANES, NONE, get, move, put, record, table
+from rockbatch.core.table import LANES, ZERO, get, move, put, record, table
 from rockbatch.core.types import (
     BEFORE_EVENT,
     CHATTER,
@@ -73,7 +64,9 @@ from rockbatch.core.types import (
     STEP,
     SURVIVED,
     TAKE_OFF,
+    Instant,
     Moment,
+    Part,
     Pull,
     Result,
 )
@@ -103,6 +96,19 @@ class Settings(NamedTuple):
     recording: bool  # histories are written
 
 
+class Context(NamedTuple):
+    """All that the runs of a call share."""
+
+    traits: tuple  # of their System
+    lanes: np.record
+    devices: Devices | None
+    marks: Marks
+    settings: Settings
+    ground: np.ndarray
+    history: History
+    results: np.recarray
+
+
 @inlined
 def _commit(devices, lanes, i, k_end, which):
     """Let the devices' states go on from the end of a step, and the next step from its rates but for an event."""
@@ -128,36 +134,38 @@ def _strongest(lanes, i, ground):
 
 
 @kernel
-def _in_flight(traits, lanes, i, m, y, ground):
+def _in_flight(context, i, m, y):
     """Return the status of a pier that has left the ground with both pivots."""
+    lanes = context.lanes
     if m.guided != 0.0:
         return SURVIVED
-    if peak_stands(traits, lanes, i):
+    if peak_decided(lanes, i):
         return LATE_FLIGHT  # what flies is undamped vibration
     beyond = abs(y.theta) - lanes.clock.alpha[i]
     # else the ground may yet turn it back
-    falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= _strongest(lanes, i, ground)
+    strongest = _strongest(lanes, i, context.ground)
+    falling = beyond >= 0.0 and y.theta * y.omega > 0.0 and m.gravity * math.tan(beyond) >= strongest
     return OVERTURNED if falling else FLIGHT
 
 
 @kernel
-def _count(lanes, i, kind, landed, lifted, t, remaining):
-    """Count an event of this ``kind`` at ``t`` [s], after which bounces go on for ``remaining`` [s] until rest."""
-    tally = lanes.tally
-    tally.impacts[i] += landed
-    tally.uplifts[i] += lifted
-    if landed > 0:
+def _count(lanes, i, event, t):
+    """Count an event, a Transition at ``t`` [s]."""
+    tally, landed = lanes.tally, event.kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH, REST)
+    tally.impacts[i] += event.impacts
+    tally.uplifts[i] += event.uplifts
+    if landed:
         tally.t_impact[i] = t
-    if landed > 0 or lifted > 0 or kind == TAKE_OFF:
+    if landed or event.uplifts > 0.0 or event.kind == TAKE_OFF:
         tally.moved[i] = t
-    if kind == REST:
-        tally.t_rest[i] = t + remaining
-    elif kind in (LIFT_OFF, TAKE_OFF):
+    if event.kind == REST:
+        tally.t_rest[i] = t + event.remaining
+    elif event.kind in (LIFT_OFF, TAKE_OFF):
         tally.t_rest[i] = math.nan
 
 
 @kernel
-def _many(lanes, i):
+def _too_many_events(lanes, i):
     """Return whether one event more is one too many in this sample."""
     tally, sample = lanes.tally, lanes.clock.sample[i]
     tally.events[i] = tally.events[i] + 1.0 if tally.counted[i] == sample else 1.0
@@ -165,143 +173,129 @@ def _many(lanes, i):
     return tally.events[i] > EVENTS_IN_A_SAMPLE
 
 
-@inlined
-def _after_contact(m, devices, y, contact, kind, rest, ground):
-    """Choose the devices' directions and modes after an event at a pivot; those of lift-off and take-off have theirs."""
-    if devices is not None and kind not in (LIFT_OFF, TAKE_OFF):
-        after_contact(m, devices, y, contact, rest, ground)
-
-
-@inlined
-def _device_event(m, devices, y, contact, ground, h, rest, which):
-    if devices is not None:
-        device_event(m, devices, y, contact, ground, h, rest, which)
-
-
 @kernel
-def _happen(traits, lanes, i, m, devices, now, which, x, ground, history):
-    """Let event ``which`` happen ``x`` [s] after the sample: status, and the Moment after it."""
-    here, rest, dt = ground_at(lanes, i, x), lanes.clock.rest[i], lanes.clock.dt[i]
-    t, y, contact, number = lanes.clock.sample[i] * dt + x, now.y, now.contact, int(lanes.clock.number[i])
-    of_pier, after, supports, kind, remaining = which < OF_PIER, contact, now.supports, STEP, 0.0
-    if of_pier or history.every_step:
-        write(history, number, t, BEFORE_EVENT if of_pier else STEP, m, devices, y, contact, here)
-    if of_pier:
-        under = loaded(devices, m, y, contact, here)
-        y, after, supports, kind, remaining = transition(under, devices, y, contact, supports, which, rest, here, dt)
-        _after_contact(m, devices, y, after, kind, rest, here)
-        if kind == LIFT_OFF:  # nothing jumps
-            take_back(history, number)
-    else:
-        _device_event(m, devices, y, contact, here, lanes.clock.step[i], rest, which)
-    if of_pier or history.every_step:
-        write(history, number, t, kind, m, devices, y, after, here)
-    if not of_pier:
+def _apply_event(context, i, m, now, which, x):
+    """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``: status, and the Moment after it."""
+    lanes, devices, history = context.lanes, context.devices, context.history
+    here, dt, number = ground_at(lanes, i, x), lanes.clock.dt[i], int(lanes.clock.number[i])
+    t = lanes.clock.sample[i] * dt + x
+    if which >= OF_PIER:
+        if history.every_step:
+            write(history, Stamp(number, t, STEP), m, devices, now, here)
+        device_event(m, devices, now, here, lanes.clock.step[i], which)
+        if history.every_step:
+            write(history, Stamp(number, t, STEP), m, devices, now, here)
         return SURVIVED, now
-    landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT, REST) else 0)
-    _count(lanes, i, kind, landed, uplifts(m, contact, after, landed), t, remaining)
-    after_event(traits, lanes, i, m, contact, after, y)
-    flies = airborne(m, after)
+    write(history, Stamp(number, t, BEFORE_EVENT), m, devices, now, here)
+    event = transition(loaded(devices, m, now, here), devices, now, which, here, dt)
+    after = event.now
+    if event.kind not in (LIFT_OFF, TAKE_OFF):  # these have chosen the devices' directions and modes
+        after_contact(m, devices, after, here)
+    if event.kind == LIFT_OFF:  # nothing jumps
+        take_back(history, number)
+    write(history, Stamp(number, t, event.kind), m, devices, after, here)
+    _count(lanes, i, event, t)
+    flies = airborne(m, after.contact)
     note_flight(lanes, i, flies, t)
-    return (_in_flight(traits, lanes, i, m, y, ground) if flies else SURVIVED), Moment(y, after, supports)
+    return (_in_flight(context, i, m, after.y) if flies else SURVIVED), after
+
+
+@inlined
+def _clear_of_zero(functions):
+    """Return whether all event functions of a pier are clear of zero, or a velocity leaves it."""
+    clear = min(functions.values[0], functions.values[1]) > 0.0
+    for j in (2, 3):
+        clear = clear and (functions.values[j] > 0.0 or functions.slopes[j] > 0.0)
+    return clear
 
 
 @inlined_once
-def _through(traits, lanes, i, devices, marks, substep, settings, ground, history):
+def _step_by_events(context, i, devices, substep):
     """Take lane ``i`` through a sub-step event by event: status (SURVIVED while it goes on), and time [s]."""
-    h, start, dt, rest = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i], lanes.clock.rest[i]
+    traits, lanes, history, marks = context.traits, context.lanes, context.history, context.marks
+    h, start, dt = lanes.clock.step[i], substep * lanes.clock.step[i], lanes.clock.dt[i]
     t_sample, number = lanes.clock.sample[i] * dt, int(lanes.clock.number[i])
-    m = model(traits, lanes, i)
-    y, contact, supports = moment(traits, lanes, i)
-    now = Moment(y, contact, supports)
+    m, now = pier_in(traits, lanes, i)
     done, which, status = 0.0, NO_EVENT, SURVIVED
     while done < h and status == SURVIVED:
         here, left = ground_at(lanes, i, start + done), h - done
-        k, under = start_rates(m, devices, now.y, now.contact, here, get(lanes.rates, i, now.y))
-        asked = min(left, resolved(under, devices, now.y, now.contact, here, h, dt))
-        most = longest(under, now.y, k, now.contact, asked)
-        used, which, end, k_end = first_event(under, devices, marks, now, k, rest, here, most, settings.locate)
-        include_peak(lanes, i, now.y, end, start, done, used)
-        include(traits, lanes, i, m, now.y, k, end, k_end, now.contact, used)
-        if airborne(m, now.contact):
-            include_height(lanes, i, m, now.supports, now.y, end, used)
+        k, under = start_rates(m, devices, now, here, get(lanes.rates, i, now.y))
+        at_start = Instant(now.y, k, now.contact, now.supports, here)
+        most = longest_step(m, at_start, min(left, resolved(under, devices, at_start, h, dt)))
+        used, which, end, k_end = first_event(under, devices, marks, at_start, most, context.settings.locate)
+        part, now = Part(now, end, used), Moment(end, now.contact, now.supports)
+        include_peak(lanes, i, part, start, done)
         take_in(devices, k, k_end, used)
         _commit(devices, lanes, i, k_end, which)
-        now = Moment(end, now.contact, now.supports)
         done = done + used if used < left else h
         if which != NO_EVENT:
-            status, now = _happen(traits, lanes, i, m, devices, now, which, start + done, ground, history)
-            if status == SURVIVED and _many(lanes, i):
+            status, now = _apply_event(context, i, m, now, which, start + done)
+            if status == SURVIVED and _too_many_events(lanes, i):
                 status = CHATTER
+        take_in_part(traits, lanes, i, m, part, now)
         if status == SURVIVED and done >= h:
             status = fallen(now.y.theta)
         between = history.every_step and which == NO_EVENT and done < h
         if between or status not in (SURVIVED, FLIGHT, LATE_FLIGHT):
-            here = ground_at(lanes, i, start + done)
-            write(history, number, t_sample + (start + done), STEP, m, devices, now.y, now.contact, here)
-    put_moment(traits, lanes, i, now.y, now.contact, now.supports)
-    after_step(traits, lanes, i, marks, now.contact, which == NO_EVENT)
+            stamp = Stamp(number, t_sample + (start + done), STEP)
+            write(history, stamp, m, devices, now, ground_at(lanes, i, start + done))
+    lanes.step_status.watched[i] = 0.0 if which == NO_EVENT and _clear_of_zero(marks.now) else 1.0
     return status, t_sample + (start + done)
 
 
 @kernel
-def _begin(traits, lanes, i, number, runs, devices, ground, history, results):
-    """Let run ``number`` begin in lane ``i``: its status."""
-    run = runs[number]
+def _start_lane(context, i, number, run):
+    """Start the ``run`` with this ``number`` in lane ``i``: its status."""
+    traits, lanes, devices = context.traits, context.lanes, context.devices
+    start_clock(lanes, i, number, run)
+    read_ground(lanes, i, context.ground)
     begin(traits, lanes, i, run)
-    m = model(traits, lanes, i)
-    y, contact, _ = moment(traits, lanes, i)
-    start_clock(lanes, i, number, run, at_rest(m), math.atan2(m.half_width, m.height), y.theta)
-    read_ground(lanes, i, ground)
-    expect(traits, lanes, i, run)
-    note_motion_over(lanes, i, results)
+    note_motion_over(lanes, i, context.results)
+    m, now = pier_in(traits, lanes, i)
     here = ground_at(lanes, i, 0.0)
-    start_devices(m, devices, y, contact, lanes.clock.rest[i], here)
-    write(history, number, 0.0, SAMPLE, m, devices, y, contact, here)
-    return over(traits, lanes, i, devices)
+    start_devices(m, devices, now, here)
+    write(context.history, Stamp(number, 0.0, SAMPLE), m, devices, now, here)
+    status, _ = status_at_sample(traits, lanes, i, devices)
+    return status
 
 
 @kernel
-def _finish(traits, lanes, i, status, t, history, results):
+def _finish(context, i, status, t):
     """Write what the run in lane ``i`` has come to."""
-    close_window(lanes, i, results)
+    lanes = context.lanes
+    close_window(lanes, i, context.results)
     peak, tally = lanes.peak, lanes.tally
     note_flight(lanes, i, False, t)
     number = int(lanes.clock.number[i])
-    result = results[number]
-    result.status, result.t_end, result.rows = status, t, history.written[number]
+    result = context.results[number]
+    result.status, result.t_end, result.rows = status, t, context.history.written[number]
     result.theta_max, result.t_max = peak.theta[i], peak.time[i]
     result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
     result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
     result.flight_height, result.t_impact, result.t_rest = tally.flight_height[i], tally.t_impact[i], tally.t_rest[i]
-    finish(traits, lanes, i, t, result)
+    result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]
+    finish(context.traits, lanes, i, t, result)
 
 
-@question
-def _stands(devices, traits, lanes, i, substep, history):
+@hook
+def _accept_step(devices, context, i, substep):
     """Return whether the sub-step of lane ``i`` stands as the pass took it, and take in what the pass could not."""
 
 
-@_stands.of(Devices)
-def _stands_with_devices(devices, traits, lanes, i, substep, history):
+@_accept_step.of(Devices)
+def _accept_none(devices, context, i, substep):
     return False
 
 
-@_stands.of(type(None))
-def _stands_alone(devices, traits, lanes, i, substep, history):
+@_accept_step.of(type(None))
+def _accept_unless_eventful(devices, context, i, substep):
+    lanes = context.lanes
     if lanes.step_status.kind[i] >= EVENTFUL:
         return False
-    _include_peak_of_lane(lanes, i, substep)
-    attend(traits, lanes, i, substep, history)
+    h, start = lanes.clock.step[i], Moment(get(lanes.now, i, Turn), None, None)
+    include_peak(lanes, i, Part(start, get(lanes.end, i, Turn), h), substep * h, 0.0)
+    take_in_step(context.traits, lanes, i, substep, context.history)
     return True
-
-
-@inlined
-def _include_peak_of_lane(lanes, i, substep):
-    """Bring the peak of lane ``i`` up to that inside its sub-step."""
-    now, end, h = lanes.now, lanes.end, lanes.clock.step[i]
-    y, y_end = Turn(now.theta[i], now.omega[i]), Turn(end.theta[i], end.omega[i])
-    include_peak(lanes, i, y, y_end, substep * h, 0.0, h)
 
 
 class Turn(NamedTuple):
@@ -325,106 +319,107 @@ def _to_samples(lanes, count, ground):
 
 
 @kernel
-def _at_sample(traits, lanes, i, devices, results):
+def _at_sample(context, i):
     """Do what is due at the sample that lane ``i`` has come to: its status, RUNNING while it goes on."""
-    clock, peak = lanes.clock, lanes.peak
+    lanes, clock, peak = context.lanes, context.lanes.clock, context.lanes.peak
     theta = lanes.now.theta[i]
     if clock.sample[i] < clock.due[i]:
         return RUNNING
-    turn_window(lanes, i, theta, results)
+    turn_window(lanes, i, theta, context.results)
     peak.in_window[i] = max(peak.in_window[i], abs(theta))
-    note_motion_over(lanes, i, results)
-    status = over(traits, lanes, i, devices)
-    clock.due[i] = min(peak.next_window[i], next_due(traits, lanes, i), motion_due(lanes, i))
+    note_motion_over(lanes, i, context.results)
+    status, next_due = status_at_sample(context.traits, lanes, i, context.devices)
+    clock.due[i] = min(peak.next_window[i], next_due, motion_due(lanes, i))
     return status
 
 
-@question
-def _pass(devices, traits, lanes, count, substep, settings):
+@hook
+def _pass(devices, context, count, substep):
     """Take all lanes a sub-step further; return how many are not calm."""
 
 
 @_pass.of(Devices)
-def _pass_with_devices(devices, traits, lanes, count, substep, settings):
-    lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is taken event by event
+def _pass_with_devices(devices, context, count, substep):
+    context.lanes.step_status.kind[0] = EVENTFUL  # a lane with devices is taken event by event
     return count
 
 
 @_pass.of(type(None))
-def _pass_alone(devices, traits, lanes, count, substep, settings):
+def _pass_alone(devices, context, count, substep):
     left_over = count % VECTOR
     # Lanes beyond ``count`` hold what nobody reads
     lanes_taken = count if left_over <= FEW else count - left_over + VECTOR
-    one_pass(traits, lanes, lanes_taken, substep, settings)
+    one_pass(context.traits, context.lanes, lanes_taken, substep, context.settings)
     busy = 0
     for i in range(count):
-        busy += 1 if lanes.step_status.kind[i] != CALM else 0
+        busy += 1 if context.lanes.step_status.kind[i] != CALM else 0
     return busy
 
 
 @kernel
-def _write_now(traits, lanes, count, devices, kind, steps, history):
+def _write_now(context, count, kind, steps):
     """Write a row of each lane as it is now, so many ``steps`` after its sample."""
-    clock = lanes.clock
+    lanes, clock = context.lanes, context.lanes.clock
     for i in range(count):
-        y, contact, _ = moment(traits, lanes, i)
-        x, m = steps * clock.step[i], model(traits, lanes, i)
-        t, here = clock.sample[i] * clock.dt[i] + x, ground_at(lanes, i, x)
-        write(history, int(clock.number[i]), t, kind, m, devices, y, contact, here)
+        m, now = pier_in(context.traits, lanes, i)
+        x = steps * clock.step[i]
+        stamp = Stamp(int(clock.number[i]), clock.sample[i] * clock.dt[i] + x, kind)
+        write(context.history, stamp, m, context.devices, now, ground_at(lanes, i, x))
 
 
 @entry
 def _march(traits, runs, ground, settings, devices, marks, history, stop, memory, results):
     """Take all ``runs`` to their ends; ``results`` of those that are stopped stay as they are."""
     lanes, cells = memory[0][0], memory[1]
-    waiting, count = NONE, NONE
+    context = Context(traits, lanes, devices, marks, settings, ground, history, results)
+    waiting, count = ZERO, ZERO
     while True:
         while count < LANES and waiting < len(runs):
-            status = _begin(traits, lanes, count, waiting, runs, devices, ground, history, results)
+            status = _start_lane(context, count, waiting, runs[waiting])
             waiting += 1
             if status == RUNNING:
                 count += 1
             else:
-                _finish(traits, lanes, count, status, 0.0, history, results)
+                _finish(context, count, status, 0.0)
         if count == 0 or stop[0] != 0:
             return
         for substep in range(settings.substeps):
-            busy = _pass(devices, traits, lanes, count, substep, settings)
-            i = NONE if busy > 0 else count
+            busy = _pass(devices, context, count, substep)
+            i = ZERO if busy > 0 else count
             while i < count:
                 status, t = SURVIVED, 0.0
-                if lanes.step_status.kind[i] != CALM and not _stands(devices, traits, lanes, i, substep, history):
-                    status, t = _through(traits, lanes, i, devices, marks, substep, settings, ground, history)
+                if lanes.step_status.kind[i] != CALM and not _accept_step(devices, context, i, substep):
+                    status, t = _step_by_events(context, i, devices, substep)
                 if status == SURVIVED:
                     i += 1
                 else:
-                    _finish(traits, lanes, i, status, t, history, results)
+                    _finish(context, i, status, t)
                     count -= 1
                     move(cells, count, i)
             if history.every_step and substep < settings.substeps - 1:
-                _write_now(traits, lanes, count, devices, STEP, substep + 1.0, history)
+                _write_now(context, count, STEP, substep + 1.0)
         due = _to_samples(lanes, count, ground)
         if settings.recording:
-            _write_now(traits, lanes, count, devices, SAMPLE, 0.0, history)
-        i = NONE if due > 0 else count
+            _write_now(context, count, SAMPLE, 0.0)
+        i = ZERO if due > 0 else count
         while i < count:
-            status = _at_sample(traits, lanes, i, devices, results)
+            status = _at_sample(context, i)
             if status == RUNNING:
                 i += 1
             else:
-                _finish(traits, lanes, i, status, lanes.clock.sample[i] * lanes.clock.dt[i], history, results)
+                _finish(context, i, status, lanes.clock.sample[i] * lanes.clock.dt[i])
                 count -= 1
                 move(cells, count, i)
 
 
-def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_ROWS, devices=None):
-    """Take runs of piers of one kind to their ends, as many at a time as there are lanes, or one with devices.
+def march(system, lines, ground, stop, substeps, locate=True, every_step=False, history=NO_ROWS, devices=None):
+    """Take runs of piers of one system to their ends, as many at a time as there are lanes, or one with devices.
 
     Parameters
     ----------
-    kind : Kind
+    system : System
         Of all their piers.
-    lines : sequence of kind.line
+    lines : sequence of system.line
     ground : ndarray, shape (rows, 4)
         Of :func:`rockbatch.core.ground.ground_rows`, of all their motions.
     stop : ndarray of one uint8
@@ -446,7 +441,7 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
         Result's fields and ``extremes``. The status of those that were stopped is RUNNING.
     """
     # A compiled function hands out nothing: making a tuple runs Python code, where Ctrl-C may strike.
-    runs = np.array(lines, record(kind.line)).view(np.recarray)
+    runs = np.array(lines, record(system.line)).view(np.recarray)
     results = np.recarray(len(runs), RESULT)
     for name in RESULT.names:
         results[name] = np.nan if RESULT[name].kind != "i" else 0
@@ -454,7 +449,7 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
     settings = Settings(int(substeps), bool(locate), len(history) > 0)
     marks = marks_for(0 if devices is None else len(devices.elements))
     _march(
-        kind.traits if devices is None else kind.traits._replace(pull=Pull(0.0, 0.0)),
+        system.traits if devices is None else system.traits._replace(pull=Pull(0.0, 0.0)),
         runs,
         ground,
         settings,
@@ -462,7 +457,7 @@ def march(kind, lines, ground, stop, substeps, locate=True, every_step=False, hi
         marks,
         history_of(history, len(runs), every_step),
         stop,
-        table(kind.lane),
+        table(system.lane),
         results,
     )
     return results

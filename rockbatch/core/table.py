@@ -18,7 +18,7 @@ from rockbatch.core.kernel import kernel
 LANES = 16
 """Runs that a table holds side by side."""
 
-NONE = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
+ZERO = np.int64(0)  # a literal 0 would have every function that it is handed to compiled twice
 
 _CODES = {float: "f8", int: "i8"}
 _DOUBLE = ir.DoubleType()
@@ -59,6 +59,10 @@ def _interpreted_taken(line, kind):
 def _interpreted_put(part, i, value):
     for name, number in zip(value._fields, value, strict=True):
         part[name][i] = number
+
+
+def _interpreted_with_pull(m, pull):
+    return m._replace(pull=pull)
 
 
 def _interpreted_along(y, k, h):
@@ -117,6 +121,20 @@ def _put(typing_context, part, i, value):
 
 
 @intrinsic
+def _with_pull(typing_context, m, pull):
+    """Return a named tuple with ``pull`` in the place of its own, of another type perhaps."""
+    place = m.fields.index("pull")
+    result = types.NamedTuple([*m.types[:place], pull, *m.types[place + 1 :]], m.instance_class)
+
+    def generate(context, builder, signature, arguments):
+        values = [builder.extract_value(arguments[0], j) for j in range(len(m))]
+        values[place] = arguments[1]
+        return context.make_tuple(builder, result, values)
+
+    return result(m, pull), generate
+
+
+@intrinsic
 def _along(typing_context, y, k, h):
     """Return ``y + h k`` of two named tuples of one kind."""
 
@@ -150,6 +168,7 @@ def _weighted(typing_context, k1, k2, k3, k4):
 _COMPILES = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 get = _get if _COMPILES else _interpreted_get
 taken = _taken if _COMPILES else _interpreted_taken
+with_pull = _with_pull if _COMPILES else _interpreted_with_pull
 put = _put if _COMPILES else _interpreted_put
 along = _along if _COMPILES else _interpreted_along
 weighted = _weighted if _COMPILES else _interpreted_weighted

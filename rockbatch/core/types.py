@@ -72,6 +72,34 @@ class Moment(NamedTuple):
     supports: tuple | None  # where supports without their pivots wait; None on rigid ground
 
 
+class Instant(NamedTuple):
+    """A Moment with the rates of its state and the ground: all that a step starts from, and that event functions depend on."""
+
+    y: tuple
+    k: tuple  # rates
+    contact: tuple
+    supports: tuple | None
+    ground: Ground
+
+
+class Part(NamedTuple):
+    """A smooth part of a sub-step, to an event or to its end."""
+
+    start: Moment
+    end: tuple  # state, before what the event changes
+    length: float  # [s]
+
+
+class Transition(NamedTuple):
+    """Result of an event of a pier."""
+
+    now: Moment  # after it
+    kind: float  # in a history
+    impacts: float  # that count
+    uplifts: float
+    remaining: float  # time until rest [s], of an infinite sequence of ever lower bounces, which are summed up; else 0
+
+
 class Signals(NamedTuple):
     """Event functions of a pier, or their slopes: positive until something happens at a pivot."""
 

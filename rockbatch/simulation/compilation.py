@@ -8,14 +8,14 @@ from typing import Any
 from numba.core import event
 from numba.np import linalg
 
-from rockbatch.core.system import Kind
+from rockbatch.core.system import System
 from rockbatch.pier import Base, Pier
-from rockbatch.simulation.models import kind_of, model
+from rockbatch.simulation.models import model, system_of
 
 
-def kernel_of(pier: Pier, base: Base) -> tuple[Kind, bool]:
-    """Return what runs of ``pier`` on ``base`` are compiled for: their kind, and whether there are devices."""
-    return kind_of(model(pier, base)), bool(base.restraints)
+def kernel_of(pier: Pier, base: Base) -> tuple[System, bool]:
+    """Return what runs of ``pier`` on ``base`` are compiled for: their system, and whether there are devices."""
+    return system_of(model(pier, base)), bool(base.restraints)
 
 
 def load_numba() -> None:

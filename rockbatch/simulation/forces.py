@@ -11,7 +11,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
-from rockbatch.core.observe.peaks import NEVER, NOTED, Limits, Noted, RecordedRun, forces_of_run
+from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.simulation.changes import Sized, greatest_change
@@ -58,9 +58,9 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
     body = float(pier.deck) if base.on_springs else Body(_outline(pier), _friction_hold(pier, base))
     plain, pulls = apart(base, rows)
-    recording = RecordedRun(plain, pulls, recorded(pier, base, rows) if base.restraints else None)
-    ground, dt = ground_of(run.motion), float(run.motion.dt)
-    forces_of_run(model(pier, base), body, recording, ground, dt, limits, forces, extremes, noted)
+    devices = recorded(pier, base, rows) if base.restraints else None
+    recording = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
+    forces_of_run(model(pier, base), body, recording, Extremes(limits, extremes, noted), forces)
     return noted[0]
 
 

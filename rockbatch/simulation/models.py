@@ -13,7 +13,7 @@ from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
 from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Springs
-from rockbatch.core.system import Kind
+from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
@@ -48,6 +48,9 @@ STABLE_STEP = 2.0
 PATIENCE = 40.0
 """Time in 1/p for which a run goes on after the record at most, while by its energy the pier could still turn further or
 overturn. By then it has left any unstable equilibrium that rounding can hold."""
+
+ROUNDING = 1e-12
+"""Of the velocities g/ω_v on springs and R0 α p on a rigid base: below it a pivot counts as having none."""
 
 STEEP = 100.0
 """In units of p: rate at which a viscous damper with an exponent below 1 slows a block on rigid ground that hardly moves."""
@@ -95,18 +98,20 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         eta, law = base.eta, LAWS[base.spring]
         exponent = _exponent(base.n) if base.has_exponent else None
     omega_v = vertical_frequency(pier, base)
+    deflection, force = float(yield_deflection(pier, base)), float(0.5 * eta * pier.gravity)
     return Springs(
         half_width=float(pier.half_width),
         height=float(pier.height),
         inertia=float(pier.inertia),
         gravity=float(pier.gravity),
-        yield_deflection=float(yield_deflection(pier, base)),
+        yield_deflection=deflection,
         stiffness=float(omega_v**2 / (eta * pier.gravity)),
-        yield_force=float(0.5 * eta * pier.gravity),
+        yield_force=force,
         epsilon=float(base.epsilon if base.zeta is None else 1.0),
         damping=float((base.zeta or 0.0) * omega_v),
         law=law,
         guided=float(base.flight == "guided"),
+        rest=float(ROUNDING * pier.gravity * math.sqrt(deflection / force) * math.sqrt(0.5)),
         exponent=exponent,
         finite=True if base.kinematics == "finite" else None,
         damped=True if base.zeta else None,
@@ -124,9 +129,10 @@ def _exponent(n: float) -> float | int | None:
 def block(pier: Pier, base: RigidBase) -> Block:
     """Return the core's numbers for ``pier`` on a rigid base: plain floats, per unit mass."""
     restitution = pier.restitution if base.restitution is None else base.restitution
+    half_width, height = float(pier.size * math.sin(pier.alpha)), float(pier.size * math.cos(pier.alpha))
     return Block(
-        half_width=float(pier.size * math.sin(pier.alpha)),  # not that of a frame's column
-        height=float(pier.size * math.cos(pier.alpha)),
+        half_width=half_width,  # not that of a frame's column
+        height=height,
         inertia=float(pier.inertia),
         gravity=float(pier.gravity),
         alpha=float(pier.alpha),
@@ -135,6 +141,7 @@ def block(pier: Pier, base: RigidBase) -> Block:
         epsilon=0.0,
         guided=float(base.flies and pier.deck_over_columns is None),  # the flight of a frame is not that of a block
         quickness=float(1.0 / pier.inertia_about_pivot),
+        rest=float(ROUNDING * pier.alpha * pier.p * math.sqrt(half_width * half_width + height * height)),
     )
 
 
@@ -143,15 +150,15 @@ def model(pier: Pier, base: Base) -> Block | Springs:
     return springs(pier, base) if base.on_springs else block(pier, base)
 
 
-def kind_of(m: Block | Springs) -> Kind:
-    """Return the kind of a pier, whose runs share compiled code; kinds are compared by value."""
+def system_of(m: Block | Springs) -> System:
+    """Return the system of a pier, whose runs share compiled code; systems are compared by value."""
     if isinstance(m, Block):
-        return block_lanes.kind_of(m)
-    kind = spring_lanes.kind_of(m)
+        return block_lanes.system_of(m)
+    system = spring_lanes.system_of(m)
     if m.exponent is None:
-        return kind
+        return system
     alike = 1 if isinstance(m.exponent, int) else 0.5  # numbers that differ: 1 == 1.0
-    return kind._replace(traits=kind.traits._replace(exponent=alike))
+    return system._replace(traits=system.traits._replace(exponent=alike))
 
 
 def line_of(

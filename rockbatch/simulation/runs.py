@@ -13,7 +13,7 @@ from rockbatch.core.devices.laws import STICKS, Element
 from rockbatch.core.devices.pull import Devices, devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import NO_ROWS, march
-from rockbatch.core.system import Kind
+from rockbatch.core.system import System
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -156,12 +156,12 @@ def written_runs(
     every_step: bool = False,
     wait: bool = True,
 ) -> list[tuple[Result, np.recarray]]:
-    """Return runs of one kind, more than one only without devices, and their histories of at most ``rows`` rows each."""
-    kind, devices = kernel_of(runs[0].pier, runs[0].base)[0], _devices(runs[0].pier, runs[0].base)
-    columns = _row_type(kind, 0 if devices is None else len(devices.elements))
+    """Return runs of one system, more than one only without devices, and their histories of at most ``rows`` rows each."""
+    system, devices = kernel_of(runs[0].pier, runs[0].base)[0], _devices(runs[0].pier, runs[0].base)
+    columns = _row_type(system, 0 if devices is None else len(devices.elements))
     written = np.zeros((len(runs), rows, columns.itemsize // 8))
     lines, ground = _lines(runs, substeps, quiet_s, wait)
-    records = march(kind, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)
+    records = march(system, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)
     histories = written.view(columns)[:, :, 0]
     return [(_result(record), rows.view(np.recarray)) for record, rows in zip(records, histories, strict=True)]
 
@@ -179,9 +179,9 @@ def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tu
     return lines, grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
 
 
-def _row_type(kind: Kind, devices: int) -> np.dtype:
+def _row_type(system: System, devices: int) -> np.dtype:
     """Return the dtype of a row of a history, as ``core.history`` writes it: with states and pull of ``devices``, if any."""
-    names = [(name, "f8") for name in (*MOMENT, *kind.columns)]
+    names = [(name, "f8") for name in (*MOMENT, *system.columns)]
     if not devices:
         return np.dtype(names)
     return np.dtype([
@@ -219,17 +219,17 @@ def try_all(
 ) -> list[Trial | None]:
     """Run as :func:`run_all_fixed`, and return the trajectories in short, too."""
     trials: list[Trial | None] = [_refused(run, steps, quiet_s) for run, steps in zip(runs, substeps, strict=True)]
-    alike: dict[tuple[Kind, int, int | None], list[int]] = {}
+    alike: dict[tuple[System, int, int | None], list[int]] = {}
     for i, run in enumerate(runs):
         if trials[i] is None:
-            kind, with_devices = kernel_of(run.pier, run.base)
-            alike.setdefault((kind, substeps[i], i if with_devices else None), []).append(i)  # each of them alone
-    for (kind, steps, alone), members in alike.items():
+            system, with_devices = kernel_of(run.pier, run.base)
+            alike.setdefault((system, substeps[i], i if with_devices else None), []).append(i)  # each of them alone
+    for (system, steps, alone), members in alike.items():
         if stop:
             break
         lines, ground = _lines([runs[i] for i in members], steps, quiet_s, wait)
         devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)
-        records = march(kind, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
+        records = march(system, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
         for i, record in zip(members, records, strict=True):
             if record.status != types.RUNNING:
                 result = _result(record)

@@ -16,8 +16,8 @@ from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.lanes import static_contact, static_state
 from rockbatch.core.springs.model import Springs, State
 from rockbatch.core.springs.transitions import handle
-from rockbatch.core.system import at_rest, event_functions
-from rockbatch.core.types import Ground
+from rockbatch.core.system import event_functions
+from rockbatch.core.types import Ground, Instant, Moment
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, vertical_frequency
 from rockbatch.simulation.models import springs
@@ -26,15 +26,15 @@ MOST_EVENTS = 100_000
 
 
 @kernel
-def rates(m, y, contact, horizontal, vertical):  # type: ignore[no-untyped-def]
+def rates(m, y, contact, ground):  # type: ignore[no-untyped-def]
     """Return the right-hand side, compiled."""
-    return system.rates(m, y, contact, horizontal, vertical)
+    return system.rates(m, y, contact, ground)
 
 
 @kernel
-def event_values(m, y, contact, supports, rest, horizontal, vertical):  # type: ignore[no-untyped-def]
+def event_values(m, now, ground):  # type: ignore[no-untyped-def]
     """Return the values of the event functions, compiled; rates matter to slopes only."""
-    return event_functions(m, None, y, y, contact, supports, rest, Ground(horizontal, 0.0, vertical, 0.0))[0]
+    return event_functions(m, None, Instant(now.y, now.y, now.contact, now.supports, ground))[0]
 
 
 class OutOfTimeError(Exception):
@@ -45,33 +45,33 @@ class _SmoothPart:
     """Right-hand side and event functions between two events, for SciPy: functions of time [s] and state."""
 
     def __init__(self, m: Springs, motion: Motion, until: float) -> None:
-        self.m, self.rest, self.until = m, at_rest(m), until
+        self.m, self.until = m, until
         self.horizontal = _ground(motion.horizontal, float(motion.dt))
         self.vertical = _ground(motion.vertical, float(motion.dt))
-        self.state = static_state(m, m.gravity)
-        self.contact, self.supports = static_contact(m, self.state)
+        state = static_state(m, m.gravity)
+        self.now: Any = Moment(state, *static_contact(m, state))
 
     def rates(self, t: float, y: Any) -> Any:
         if time.monotonic() > self.until:
             raise OutOfTimeError
-        return rates(self.m, State(*y.tolist()), self.contact, self.horizontal(t), self.vertical(t))
+        return rates(self.m, State(*y.tolist()), self.now.contact, self.ground(t))
+
+    def ground(self, t: float) -> Ground:
+        return Ground(self.horizontal(t), 0.0, self.vertical(t), 0.0)
 
     def values(self, t: float, state: State) -> Any:
-        ground = self.horizontal(t), self.vertical(t)
-        return event_values(self.m, state, self.contact, self.supports, self.rest, *ground)
+        return event_values(self.m, self.now._replace(y=state), self.ground(t))
 
     def event(self, i: int) -> Any:
         def event(t: float, y: Any) -> float:
             value = float(self.values(t, State(*y.tolist()))[i])
-            return value if abs(value) > self.rest else self.rest  # rounding does not cross
+            return value if abs(value) > self.m.rest else self.m.rest  # rounding does not cross
 
         return _terminal(event)
 
     def handle(self, t: float, number: int) -> None:
         """Continue after an event."""
-        ground = self.horizontal(t), self.vertical(t)
-        handled = handle(self.m, self.state, self.contact, self.supports, number, self.rest, *ground)
-        self.state, self.contact, self.supports, _ = handled
+        self.now, _ = handle(self.m, self.now, number, self.ground(t))
 
 
 def solve(
@@ -112,9 +112,9 @@ def solve(
     t, theta_max = 0.0, 0.0
     for _ in range(MOST_EVENTS):
         # An impact at one pivot may reverse the other's velocity: that is an event before the next step
-        number = next((i for i, value in enumerate(part.values(t, part.state)) if value < -part.rest), None)
+        number = next((i for i, value in enumerate(part.values(t, part.now.y)) if value < -m.rest), None)
         if number is None:
-            solution = solve_ivp(part.rates, (t, end), np.array(part.state), events=events, **settings)
+            solution = solve_ivp(part.rates, (t, end), np.array(part.now.y), events=events, **settings)
             reached = [theta_max, *np.abs(solution.y[1]), *(abs(y[1]) for y in solution.y_events[-1])]
             theta_max = float(max(reached))
             if solution.status <= 0 or not math.isfinite(theta_max):
@@ -122,9 +122,9 @@ def solve(
             number = next(i for i, times in enumerate(solution.t_events) if len(times))
             if number == 4:
                 return "overturned", theta_max
-            t, part.state = float(solution.t[-1]), State(*solution.y[:, -1].tolist())
+            t, part.now = float(solution.t[-1]), part.now._replace(y=State(*solution.y[:, -1].tolist()))
         part.handle(t, number)
-        y, contact = part.state, part.contact
+        y, contact = part.now.y, part.now.contact
         if contact.left == contact.right == contact.held == 0 and not m.guided:
             beyond = abs(y.theta) >= pier.alpha and y.theta * y.omega > 0.0
             return "overturned" if beyond else "flight", theta_max

@@ -15,6 +15,7 @@ from rockbatch.core.block.ending import reach_of
 from rockbatch.core.roots import falls
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.springs.transitions import handle
+from rockbatch.core.types import Ground, Moment
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
 from rockbatch.simulation import run_fixed, run_to_tolerance, springs
@@ -191,7 +192,8 @@ def test_an_impulse_puts_the_other_spring_on_the_branch_of_its_new_velocity(mirr
     state, contact = State(-0.01, 0.0, v_rate, omega, -0.4, 0.0), Contact(1.0, 0.0, 1.0, 0.0, 0.0)
     if mirrored:
         state, contact = State(-0.01, 0.0, v_rate, -omega, 0.0, -0.4), Contact(0.0, 1.0, 0.0, 1.0, 0.0)
-    after, now, _, _ = handle(m, state, contact, Supports(-0.01, -0.01), 0 if mirrored else 1, 1e-12, 0.0, 0.0)
+    start = Moment(state, contact, Supports(-0.01, -0.01))
+    (after, now, _), _ = handle(m, start, 0 if mirrored else 1, Ground(0.0, 0.0, 0.0, 0.0))
     sign = -1.0 if mirrored else 1.0
     before_left, after_left = v_rate + b * omega, after.v_rate + sign * b * after.omega
     assert before_left < 0.0

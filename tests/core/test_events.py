@@ -27,6 +27,7 @@ from rockbatch.core.types import (
     SEPARATION_RIGHT,
     SURVIVED,
     Ground,
+    Instant,
     Moment,
 )
 from rockbatch.motions.motion import Motion
@@ -111,16 +112,19 @@ def test_order_is_about_one_when_events_are_not_located(base, motion):
 
 @numba.njit(error_model="numpy", _nrt=False)
 def taken(m, now, ground, x):
-    """The state after a step over ``x``, and rates at its start and its end."""
-    k, there = rates(m, now.y, now.contact, ground.horizontal, ground.vertical), later(ground, x)
-    end = rk4(m, None, now.y, k, now.contact, ground, x)
-    return end, k, rates(m, end, now.contact, there.horizontal, there.vertical)
+    """Start and end of a step over ``x``."""
+    start, there = (
+        Instant(now.y, rates(m, now.y, now.contact, ground), now.contact, now.supports, ground),
+        later(ground, x),
+    )
+    end = rk4(m, None, start, x)
+    return start, Instant(end, rates(m, end, now.contact, there), now.contact, now.supports, there)
 
 
 @numba.njit(error_model="numpy", _nrt=False)
 def near_an_end(m, now, ground, t, x):
-    end, k, k_end = taken(m, now, ground, t)
-    return nearby(m, now, k, end, k_end, ground, t, x)
+    start, end = taken(m, now, ground, t)
+    return nearby(m, start, end, t, x)
 
 
 def random_moment(rng, m):
@@ -149,13 +153,13 @@ def test_a_state_near_the_end_of_a_step_is_that_of_a_step_to_there(m):
         now, h = random_moment(rng, m)
         t, ground = h * rng.uniform(0.01, 1.0), Ground(*rng.normal(0.0, (5.0, 100.0, 5.0, 100.0)))
         x, far = t * (1.0 + NEAR * rng.uniform(-1.0, 1.0)), t * rng.uniform(0.5, 1.5)
-        end, k, k_end = map(np.array, taken(m, now, ground, t))
-        middle, _, _ = taken(m, now, ground, 0.5 * t)
-        twice, _, _ = taken(m, Moment(middle, *now[1:]), later(ground, 0.5 * t), 0.5 * t)
-        error = 1e-3 * np.abs(end - twice).max() + 1e-9 * np.abs(t * k).max()
-        (near, k_near), (there, _, k_there) = near_an_end(m, now, ground, t, x), taken(m, now, ground, x)
-        assert np.abs(np.subtract(near, there)).max() <= error
-        assert t * np.abs(np.subtract(k_near, k_there)).max() <= error
+        (_, k, *_), (end, k_end, *_) = taken(m, now, ground, t)
+        middle = taken(m, now, ground, 0.5 * t)[1].y
+        twice = taken(m, Moment(middle, *now[1:]), later(ground, 0.5 * t), 0.5 * t)[1].y
+        error = 1e-3 * np.abs(np.subtract(end, twice)).max() + 1e-9 * np.abs(t * np.array(k)).max()
+        (near, k_near), there = near_an_end(m, now, ground, t, x), taken(m, now, ground, x)[1]
+        assert np.abs(np.subtract(near, there.y)).max() <= error
+        assert t * np.abs(np.subtract(k_near, there.k)).max() <= error
         cubic = CubicHermiteSpline([0.0, t], [now.y, end], [k, k_end])(far)
         beyond, _ = near_an_end(m, now, ground, t, far)
         for name in ("theta", "omega"):

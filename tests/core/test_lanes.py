@@ -9,13 +9,12 @@ from core_samples import EVERY_KIND, FIG5, hard_case, hard_seeds
 
 from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
-from rockbatch.core.springs.events import at_rest
 from rockbatch.core.springs.laws import kept_sign
 from rockbatch.core.springs.model import BOUC_WEN, EPP, Contact, State
 from rockbatch.core.springs.reversal import Pivot, corrected, pivot_accelerations, pivots, reversal
 from rockbatch.core.system import rates
 from rockbatch.core.table import LANES
-from rockbatch.core.types import Ground
+from rockbatch.core.types import Ground, Instant
 from rockbatch.motions import Motion
 from rockbatch.pier import RigidBase, YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, springs
@@ -73,8 +72,7 @@ def fine(y, contact, t, h, parts=200):
     """State after ``h`` [s] from ``t`` on one branch, as good as exact."""
     for i in range(parts):
         ground = later(GROUND, t + i * h / parts)
-        k = rates(MODEL, y, contact, ground.horizontal, ground.vertical)
-        y = rk4(MODEL, None, y, k, contact, ground, h / parts)
+        y = rk4(MODEL, None, Instant(y, rates(MODEL, y, contact, ground), contact, None, ground), h / parts)
     return y
 
 
@@ -102,12 +100,12 @@ def test_a_step_across_a_reversal_is_corrected_to_the_next_order(begin, until, a
     start, ground = fine(y, contact, 0.0, t), later(GROUND, t)
     end = fine(start, contact, t, h)
     truth = fine(at_turn, contact._replace(left_yields=1.0 - contact.left_yields), turn, after * h)
-    k = rates(MODEL, start, contact, ground.horizontal, ground.vertical)
+    k = rates(MODEL, start, contact, ground)
     signs = kept_sign(BOUC_WEN, 1.0, contact.left_yields), 0.0
     given = zip(
         signs, pivots(MODEL, start), pivot_accelerations(MODEL, start, k), pivots(MODEL, end), end[4:], strict=True
     )
-    found = [reversal(MODEL, sign, at_rest(MODEL), *more, h) for sign, *more in given]
+    found = [reversal(MODEL, sign, *more, h) for sign, *more in given]
     assert [one.after > 0.0 for one in found] == [True, False]
     assert found[0].z == pytest.approx(at_turn.z_left, abs=3e-8)
     left = np.abs(np.subtract(corrected(MODEL, contact, end, *found), truth)) / np.abs(np.subtract(end, truth))
@@ -115,16 +113,15 @@ def test_a_step_across_a_reversal_is_corrected_to_the_next_order(begin, until, a
 
 
 def test_two_reversals_in_one_step_and_sharp_ones_are_left_to_the_search():
-    rest = at_rest(MODEL)
     sign = kept_sign(BOUC_WEN, 1.0, 0.0)
     assert (sign, kept_sign(BOUC_WEN, 1.0, 1.0), kept_sign(EPP, 1.0, 0.0), kept_sign(EPP, 1.0, 1.0)) == (1, -1, 0, -1)
     # w = 0.001 (1 − 8 s + 8 s²) dips to −0.001 and is back; the way between is −1/3 of that of 0.001
-    dipping = reversal(MODEL, sign, rest, Pivot(0.0, 1e-3), -0.8, Pivot(-1e-5 / 3.0, 1e-3), -0.5, 0.01)
-    steady = reversal(MODEL, sign, rest, Pivot(0.0, 1e-3), 0.0, Pivot(1e-5, 1e-3), -0.5, 0.01)
+    dipping = reversal(MODEL, sign, Pivot(0.0, 1e-3), -0.8, Pivot(-1e-5 / 3.0, 1e-3), -0.5, 0.01)
+    steady = reversal(MODEL, sign, Pivot(0.0, 1e-3), 0.0, Pivot(1e-5, 1e-3), -0.5, 0.01)
     assert (dipping.after, dipping.surely < 0.0, steady.surely > 0.0) == (0.0, True, True)
     # The whole yield deflection in one step
     way = 0.5 * MODEL.yield_deflection
-    sharp = reversal(MODEL, sign, rest, Pivot(0.0, 0.0), -200.0 * way, Pivot(-way, -2.0 * way / 0.01), -0.9, 0.01)
+    sharp = reversal(MODEL, sign, Pivot(0.0, 0.0), -200.0 * way, Pivot(-way, -2.0 * way / 0.01), -0.9, 0.01)
     assert sharp.after > 0.0 > sharp.surely
 
 

@@ -20,9 +20,9 @@ from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Cont
 from rockbatch.core.springs.passing import correct_reversals
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import pivots
-from rockbatch.core.system import at_rest, one_pass, rates
+from rockbatch.core.system import one_pass, rates
 from rockbatch.core.table import LANES, move, table
-from rockbatch.core.types import Ground
+from rockbatch.core.types import Ground, Instant
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import springs
 
@@ -69,7 +69,7 @@ def random_lanes(rng, m):
     for name, _ in spring_lanes.NUMBERS:
         lane.model[name][:] = 5.0 if name == "exponent" else getattr(m, name)
     h = rng.uniform(0.1, 0.4, LANES) * math.sqrt(soft / m.yield_force)
-    lane.clock.step[:], lane.clock.rest[:] = h, at_rest(m)
+    lane.clock.step[:] = h
     lane.peak.theta[:], lane.lowest.left[:], lane.lowest.right[:] = 1.0, -1.0, -1.0  # no extremes
     speeds = rng.normal(0.0, 0.05 * soft, (2, LANES)) / h
     lane.now.v_rate[:], lane.now.omega[:] = speeds.mean(axis=0), (speeds[0] - speeds[1]) / (2.0 * m.half_width)
@@ -104,7 +104,7 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
         assert between.min() > 0.0
         dips += between.min() < 0.999 * min(f, f_end)
     velocities = [pivots(m, each)[j].velocity for each in path]
-    rounding = 1e-4 * abs(velocities[0]) + at_rest(m)
+    rounding = 1e-4 * abs(velocities[0]) + m.rest
     sign = kept_sign(m.law, getattr(contact, side), getattr(contact, f"{side}_yields"))
     assert all(sign * velocity > -rounding for velocity in velocities)
     if m.damped:
@@ -129,14 +129,15 @@ def test_where_the_pass_on_springs_sees_nothing_no_pivot_separates_lands_yields_
         lanes = random_lanes(rng, m)
         before = lanes.copy()[0]
         passes(SpringTraits(None, m.finite, m.damped), lanes[0], LANES)
-        for i in np.flatnonzero((lanes[0].step_status.kind < EVENTFUL) & (lanes[0].step_status.keeps >= 0.0)):
+        for i in np.flatnonzero((lanes[0].step_status.kind < EVENTFUL) & (lanes[0].reversals.keeps >= 0.0)):
             contact, supports = lane_of(before.contact, i, Contact), lane_of(before.supports, i, Supports)
-            a, c, h = before.ground.horizontal[i], before.ground.vertical[i], before.clock.step[i]
-            path, ground = [lane_of(before.now, i, State)], Ground(a, 0.0, c, 0.0)
+            h, ground = before.clock.step[i], Ground(before.ground.horizontal[i], 0.0, before.ground.vertical[i], 0.0)
+            path = [lane_of(before.now, i, State)]
             for _ in range(16):
-                path.append(rk4(m, None, path[-1], rates(m, path[-1], contact, a, c), contact, ground, h / 16))
+                k = rates(m, path[-1], contact, ground)
+                path.append(rk4(m, None, Instant(path[-1], k, contact, None, ground), h / 16))
             path.append(lane_of(lanes[0].end, i, State))
-            at_ends = [rates(m, path[n], contact, a, c) for n in (0, -1)]
+            at_ends = [rates(m, path[n], contact, ground) for n in (0, -1)]
             dips += sum(hold_pivot(m, side, contact, supports, path, at_ends, h) for side in ("left", "right"))
             calm += 1
     assert calm > 80

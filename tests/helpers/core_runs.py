@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from rockbatch.core.block.lanes import kind_of, line_of
+from rockbatch.core.block.lanes import line_of, system_of
 from rockbatch.core.block.model import Block
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.motions.motion import Samples
 
-KIND = kind_of(None)
+SYSTEM = system_of(None)
 
 
 def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, npts: int, quiet_samples: int = 0):
@@ -19,14 +19,14 @@ def block_line(m: Block, theta: float, omega: float, dt: float, substeps: int, n
 def run_blocks(lines, ground: Samples, substeps: int, history: Samples | None = None, stop: int = 0) -> np.recarray:
     """Return the results of the runs with these lines, of the same ``substeps``; a ``stop`` of 1 stops them at once."""
     more = {} if history is None else {"history": history}
-    return march(KIND, lines, ground, np.full(1, stop, np.uint8), substeps, **more)
+    return march(SYSTEM, lines, ground, np.full(1, stop, np.uint8), substeps, **more)
 
 
 def run_block(
     m: Block, theta: float, omega: float, ground: Samples, dt: float, substeps: int, rows: int = 0
 ) -> tuple[np.record, np.recarray]:
     """Return the result of one run, and its history of at most ``rows`` rows."""
-    row = np.dtype([(name, "f8") for name in (*MOMENT, *KIND.columns)])
+    row = np.dtype([(name, "f8") for name in (*MOMENT, *SYSTEM.columns)])
     history = np.zeros((min(rows, 1), rows, len(row)))
     result = run_blocks([block_line(m, theta, omega, dt, substeps, len(ground))], ground, substeps, history)[0]
     return result, history.view(row).ravel()[: result.rows].view(np.recarray)

@@ -55,7 +55,7 @@ def stopped(base, stops):
 def thrown(pier, base, omega, dt=2e-3, samples=700, substeps=8):
     """Rows of a block on still ground that leaves θ = 0 at the velocity ``omega``, and the use of its devices."""
     m, ground = block(pier, base), np.zeros((samples, 4))
-    kind, line = lanes.kind_of(m), lanes.line_of(m, 0.0, omega, dt, substeps, 0, 0, samples, 0)
+    kind, line = lanes.system_of(m), lanes.line_of(m, 0.0, omega, dt, substeps, 0, 0, samples, 0)
     devices = devices_of(elements(pier, base))
     history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
     flag = np.zeros(1, np.uint8)

@@ -16,7 +16,7 @@ from rockbatch.core.springs.impact import land
 from rockbatch.core.springs.laws import power, static_deflection
 from rockbatch.core.springs.model import BOUC_WEN, Contact, State
 from rockbatch.core.system import rates
-from rockbatch.core.types import BEFORE_EVENT, LEFT
+from rockbatch.core.types import BEFORE_EVENT, LEFT, Ground
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import Run, block, run_fixed, springs, written_run
@@ -213,7 +213,7 @@ def test_finite_kinematics_on_one_immovable_pivot_is_housners_equation(theta):
 
     def response(z: float) -> tuple[float, float]:
         y = State(0.0, theta, -arm * omega, omega, 0.0 if right else z, z if right else 0.0)
-        k = rates(m, y, contact, horizontal, vertical)
+        k = rates(m, y, contact, Ground(horizontal, 0.0, vertical, 0.0))
         return k.v_rate + arm * k.omega + bend * omega**2, k.omega
 
     (free, _), (loaded, _) = response(0.0), response(-0.5)

@@ -12,9 +12,9 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
-from rockbatch.core.block.equations import on_pivot
+from rockbatch.core.block.equations import clearances, on_pivot
 from rockbatch.core.block.model import Rocking, Stance
-from rockbatch.core.system import at_rest, clearances, lever, transition
+from rockbatch.core.system import lever, transition
 from rockbatch.core.types import (
     CONTACT_LEFT,
     CONTACT_RIGHT,
@@ -26,6 +26,7 @@ from rockbatch.core.types import (
     RIGHT,
     TAKE_OFF,
     Ground,
+    Moment,
 )
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon
@@ -163,12 +164,12 @@ def in_flight(theta, omega, v_rate, pivot):
 def land(m, y, bore, pivot):
     """State, stance and kind after ``pivot`` has landed from a flight for which the pivot ``bore`` has borne last."""
     which = CONTACT_LEFT if pivot == LEFT else CONTACT_RIGHT
-    after, stance, _, kind, _ = transition(m, None, y, Stance(0.0, 0.0, bore), None, which, at_rest(m), STILL, 0.01)
-    return after, stance, kind
+    landed = transition(m, None, Moment(y, Stance(0.0, 0.0, bore), None), which, STILL, 0.01)
+    return landed.now.y, landed.now.contact, landed.kind
 
 
 def pivot_velocity(m, y, pivot):
-    return clearances(m, y, None)[2 if pivot == LEFT else 3]
+    return clearances(m, y)[2 if pivot == LEFT else 3]
 
 
 @pytest.mark.parametrize(

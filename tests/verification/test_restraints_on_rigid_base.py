@@ -44,7 +44,7 @@ def extremes(theta):
 def free(pier, foundation, theta, dt=1e-3, samples=STILL, substeps=4):
     """History of a block that is let go at ``theta`` [rad], with every step."""
     m, ground = block(pier, foundation), np.zeros((len(samples), 4))
-    kind, line = lanes.kind_of(m), lanes.line_of(m, theta, 0.0, dt, substeps, 0, 0, len(samples), 0)
+    kind, line = lanes.system_of(m), lanes.line_of(m, theta, 0.0, dt, substeps, 0, 0, len(samples), 0)
     devices = devices_of(elements(pier, foundation))
     history = np.zeros((80_000, len(MOMENT) + len(kind.columns) + len(devices.x) + 2))
     found = march(kind, [line], ground, GOES_ON, substeps, every_step=True, history=history[None], devices=devices)[0]

@@ -10,7 +10,7 @@ from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, stored
 from rockbatch.core.devices.pull import sticking
 from rockbatch.core.kernel import inlined, kernel
-from rockbatch.core.system import model, moment
+from rockbatch.core.system import pier_in
 from rockbatch.core.types import NO_EVENT, RESTLESS, RUNNING, SURVIVED, UNDECIDED
 
 
@@ -74,30 +74,18 @@ def _decided(lanes, i, m, devices, y):
 
 
 @kernel
-def held(m, devices, y, rest):
+def held(m, devices, y):
     """Return whether friction holds the block at a tilt."""
     if devices is None:
         return False
-    return sticking(devices, NO_EVENT) != NO_EVENT and abs(y.omega) * m.height <= rest
+    return sticking(devices, NO_EVENT) != NO_EVENT and abs(y.omega) * m.height <= m.rest
 
 
-@system.expect.of(BlockTraits)
-def expect(traits, lanes, i, run):
+@kernel
+def set_deadline(lanes, i, run):
     """Set the sample at which a block is no longer waited for."""
     lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
     lanes.ending.omega[i] = lanes.ending.turned[i] = 0.0
-
-
-@system.peak_stands.of(BlockTraits)
-def peak_stands(traits, lanes, i):
-    """Return False: a block that flies under a moving ground may come to any rotation."""
-    return False
-
-
-@system.next_due.of(BlockTraits)
-def next_due(traits, lanes, i):
-    """Return the end of the record, and every sample from there on."""
-    return max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
 
 
 @kernel
@@ -114,20 +102,26 @@ def _watch_reversals(lanes, i):
         ending.omega[i] = omega
 
 
-@system.over.of(BlockTraits)
-def over(traits, lanes, i, devices):
-    """Return the status at a sample."""
+@system.status_at_sample.of(BlockTraits)
+def status_at_sample(traits, lanes, i, devices):
+    """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
+    status = _status(traits, lanes, i, devices)
+    return status, max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
+
+
+@kernel
+def _status(traits, lanes, i, devices):
+    """Return how the run in lane ``i`` has ended, RUNNING if it goes on."""
     sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
     _watch_reversals(lanes, i)
     if sample < samples:
         return RUNNING
-    m = model(traits, lanes, i)
-    y, contact, _ = moment(traits, lanes, i)
+    m, (y, contact, _) = pier_in(traits, lanes, i)
     if contact.left != 0.0 and contact.right != 0.0:
         return SURVIVED
     on_ground = side_of(contact) != 0.0
     if on_ground and ground_rests(lanes, i):
-        if held(m, devices, y, lanes.clock.rest[i]):
+        if held(m, devices, y):
             return SURVIVED if abs(y.theta) < m.alpha else UNDECIDED
         if _decided(lanes, i, m, devices, y):
             return SURVIVED

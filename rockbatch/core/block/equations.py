@@ -1,12 +1,10 @@
 """Equations of a pier on a rigid base: rocking about a pivot, flight, rest (THEORY.md, Rigid base)."""
 
-import math
-
 from rockbatch.core import system
 from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
+from rockbatch.core.clock import Clearances
 from rockbatch.core.kernel import inlined
 from rockbatch.core.trigonometry import flat_sine_and_cosine, sine_and_cosine
-from rockbatch.core.types import Pull
 
 
 @inlined
@@ -18,18 +16,18 @@ def arms_about(m, theta, side):
 
 
 @inlined
-def tilt_acceleration(m, slope, lever, horizontal, vertical):
+def tilt_acceleration(m, slope, lever, ground):
     """Return θ̈ [rad/s²] while rocking, by weight and ground alone, from the arms about the pivot (THEORY.md, eq. 14)."""
-    return -m.quickness * ((m.gravity + vertical) * slope + horizontal * lever)
+    return -m.quickness * ((m.gravity + ground.vertical) * slope + ground.horizontal * lever)
 
 
 @system.rates.of(Rocker)
-def rocker_rates(m, y, side, horizontal, vertical):
+def rocker_rates(m, y, side, ground):
     """Return the rates of a block that rocks about the pivot on ``side`` and leans by FLAT at most, or rests on NEITHER."""
     sine, cosine = flat_sine_and_cosine(y.theta)
     b = side * m.half_width
     slope, arm = b * cosine - m.height * sine, m.height * cosine + b * sine
-    return Tilt(y.omega, abs(side) * tilt_acceleration(m, slope, arm, horizontal, vertical))
+    return Tilt(y.omega, abs(side) * tilt_acceleration(m, slope, arm, ground))
 
 
 @system.share.of(Rocker)
@@ -38,25 +36,16 @@ def rocker_share(m, h):
     return 1.0
 
 
-@system.staged.of(Rocker)
-def rocker_staged(m, y, start, side, left):
+@system.stage.of(Rocker)
+def rocker_stage(m, y, start, side, remaining):
     """Return the stage as it is."""
     return y
 
 
-@system.ended.of(Rocker)
-def rocker_ended(m, y, start, side, left):
+@system.end_step.of(Rocker)
+def rocker_end_step(m, y, start, side, remaining):
     """Return the end as it is."""
     return y
-
-
-@system.pulled.of(Block)
-def pulled(m, force, moment):
-    """Return the pier ``m`` under a force [m/s²] and a moment [m²/s²]."""
-    return Block(
-        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness,
-        Pull(force, moment), True,
-    )  # fmt: skip
 
 
 @inlined
@@ -89,26 +78,26 @@ def _pull_down(pull):
     return pull.force, pull.moment
 
 
-@system.accelerations.of(Block)
-def accelerations(m, y, contact, horizontal, vertical):
+@inlined
+def _accelerations(m, y, contact, ground):
     """Return v̈ [m/s²] and θ̈ [rad/s²]: rocking (eq. 14), in flight with the key of the pivot that bore last, or at rest."""
     side = side_of(contact)
     down, back = _pull_down(m.pull)
     if side != 0.0:
         slope, arm = arms_about(m, y.theta, side)
-        turning = tilt_acceleration(m, slope, arm, horizontal, vertical) - m.quickness * (back + down * slope)
+        turning = tilt_acceleration(m, slope, arm, ground) - m.quickness * (back + down * slope)
         return slope * turning - arm * y.omega * y.omega, turning
     if contact.left != 0.0:
         return 0.0, 0.0
     slope, arm = arms_about(m, y.theta, contact.bore)
-    turning = -(arm * slope * y.omega * y.omega + arm * horizontal + back) / (m.inertia + arm * arm)
-    return -m.gravity - vertical - down, turning
+    turning = -(arm * slope * y.omega * y.omega + arm * ground.horizontal + back) / (m.inertia + arm * arm)
+    return -m.gravity - ground.vertical - down, turning
 
 
 @system.rates.of(Block)
-def rates(m, y, contact, horizontal, vertical):
+def rates(m, y, contact, ground):
     """Return the right-hand side."""
-    v_acceleration, theta_acceleration = system.accelerations(m, y, contact, horizontal, vertical)
+    v_acceleration, theta_acceleration = _accelerations(m, y, contact, ground)
     return Rocking(y.v_rate, y.omega, v_acceleration, theta_acceleration)
 
 
@@ -118,8 +107,8 @@ def share(m, h):
     return 1.0
 
 
-@system.staged.of(Block)
-def staged(m, y, start, contact, left):
+@system.stage.of(Block)
+def stage(m, y, start, contact, remaining):
     """Return the stage as it is."""
     return y
 
@@ -134,8 +123,8 @@ def constrained(m, y, contact):
     return Rocking(v, y.theta, slope * y.omega, y.omega)
 
 
-@system.ended.of(Block)
-def ended(m, y, start, contact, left):
+@system.end_step.of(Block)
+def end_step(m, y, start, contact, remaining):
     """Return the end of a step, on the pivot that is on the ground."""
     return constrained(m, y, contact)
 
@@ -145,12 +134,6 @@ def lever(m, y, contact):
     """Return H [m]: the height of the centre of mass above the pivot that bears or bore last."""
     side = side_of(contact)
     return arms_about(m, y.theta, side if side != 0.0 else contact.bore)[1]
-
-
-@system.at_rest.of(Block)
-def at_rest(m):
-    """Return the velocity [m/s] below which a pivot counts as having none: rounding, next to R0 α p."""
-    return 1e-12 * m.alpha * m.p * math.sqrt(m.half_width * m.half_width + m.height * m.height)
 
 
 @inlined
@@ -165,14 +148,14 @@ def airborne(m, contact):
     return contact.left == 0.0 and contact.right == 0.0
 
 
-@system.clearances.of(Block)
-def clearances(m, y, supports):
-    """Return the height [m] of both pivots above the ground, and its rates [m/s]."""
+@inlined
+def clearances(m, y):
+    """Return the Clearances of both pivots above the ground."""
     sine, cosine = sine_and_cosine(y.theta)
     drop = m.height * sine * sine / (1.0 + cosine)
     arm_left, arm_right = arms(m, y.theta)
     b = m.half_width * sine
-    return y.v + b + drop, y.v - b + drop, y.v_rate + arm_left * y.omega, y.v_rate + arm_right * y.omega
+    return Clearances(y.v + b + drop, y.v - b + drop, y.v_rate + arm_left * y.omega, y.v_rate + arm_right * y.omega)
 
 
 @inlined

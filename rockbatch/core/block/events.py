@@ -6,6 +6,7 @@ from rockbatch.core import system
 from rockbatch.core.block.equations import (
     airborne,
     arms,
+    clearances,
     constrained,
     normal_force,
     on_side,
@@ -18,7 +19,7 @@ from rockbatch.core.devices.pull import about_to_turn
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
-from rockbatch.core.system import accelerations, clearances, lever, rates
+from rockbatch.core.system import lever, rates
 from rockbatch.core.table import along
 from rockbatch.core.types import (
     CONTACT_LEFT,
@@ -30,7 +31,9 @@ from rockbatch.core.types import (
     REST,
     RIGHT,
     TAKE_OFF,
+    Moment,
     Signals,
+    Transition,
 )
 
 NEGLIGIBLE = 1e-13
@@ -55,7 +58,7 @@ RESTING = Stance(1.0, 1.0, 0.0)
 def _lift(m, devices, y, side, ground):
     """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock, and its rate [rad/s³]."""
     under = about_to_turn(devices, m, y, side, OPENS)
-    _, turning = accelerations(under, y, on_side(side), ground.horizontal, ground.vertical)
+    turning = rates(under, y, on_side(side), ground).omega
     change = -m.quickness * (ground.vertical_slope * side * m.half_width + ground.horizontal_slope * m.height)
     return side * turning, side * change
 
@@ -65,13 +68,14 @@ def _change_of_normal(m, y, k, contact, ground):
     """Return the rate of N/M [m/s³] of a block that rocks, from a moment later."""
     near = NEARBY / m.p
     soon, there = constrained(m, along(y, k, near), contact), later(ground, near)
-    k_soon = rates(m, soon, contact, there.horizontal, there.vertical)
+    k_soon = rates(m, soon, contact, there)
     return (normal_force(m, k_soon, there.vertical) - normal_force(m, k, ground.vertical)) / near
 
 
 @inlined
-def _height(m, height, velocity, acceleration, rest):
+def _height(m, height, velocity, acceleration):
     """Return the height [m] of a pivot in flight, and its rate; one that has just left the ground, to rounding, has left it."""
+    rest = m.rest
     length = rest * rest / (NO_ACCELERATION * m.gravity)
     if abs(velocity) <= rest and abs(height) <= length and acceleration >= -1e-9 * m.gravity:
         return length, rest
@@ -97,12 +101,13 @@ def _weightless(m, ground):
 
 
 @system.event_functions.of(Block)
-def event_functions(m, devices, y, k, contact, supports, rest, ground):
+def event_functions(m, devices, now):
     """Return Signals, and slopes: at rest what keeps each pivot down; rocking the tilt and the normal force; else heights."""
+    y, k, contact, _, ground = now
     side = side_of(contact)
     if side != 0.0:
         omega, turning = side * y.omega, side * k.omega
-        if abs(omega) * m.height <= rest:
+        if abs(omega) * m.height <= m.rest:
             least = NO_ACCELERATION * m.p * m.p
             turning = turning if abs(turning) > least else least  # it has just been lifted, to rounding
             # no more than it has: a slope of ``rest`` would dwarf the tilt of a block that left the ground a moment ago
@@ -121,23 +126,20 @@ def event_functions(m, devices, y, k, contact, supports, rest, ground):
         left, left_slope = _at_once(-about_right, -right_rate, rounding)
         right, right_slope = _at_once(-about_left, -left_rate, rounding)
         return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
-    left, right, left_velocity, right_velocity = clearances(m, y, supports)
+    left, right, left_velocity, right_velocity = clearances(m, y)
     arm_left, arm_right = arms(m, y.theta)
     turned = y.omega * y.omega
     bend = m.height * math.cos(y.theta)
     across = m.half_width * math.sin(y.theta)
-    left, left_velocity = _height(
-        m, left, left_velocity, k.v_rate + arm_left * k.omega + (bend - across) * turned, rest
-    )
-    right, right_velocity = _height(
-        m, right, right_velocity, k.v_rate + arm_right * k.omega + (bend + across) * turned, rest
-    )
+    left, left_velocity = _height(m, left, left_velocity, k.v_rate + arm_left * k.omega + (bend - across) * turned)
+    right, right_velocity = _height(m, right, right_velocity, k.v_rate + arm_right * k.omega + (bend + across) * turned)
     return Signals(left, right, 1.0, 1.0), Signals(left_velocity, right_velocity, 0.0, 0.0)
 
 
-@system.longest.of(Block)
-def longest(m, y, k, contact, h):
+@system.longest_step.of(Block)
+def longest_step(m, start, h):
     """Return no more than a bounce that has just begun will last: a cubic over a longer sub-step could hide it."""
+    y, k, contact, _, _ = start
     side = side_of(contact)
     if side == 0.0 or y.theta != 0.0:
         return h
@@ -146,27 +148,24 @@ def longest(m, y, k, contact, h):
     return min(h, hop) if hop > 0.0 else h
 
 
-@system.uplifts.of(Block)
-def uplifts(m, before, after, landed):
-    """Return 1 for a lift-off from rest."""
-    return 1 if before.left != 0.0 and before.right != 0.0 else 0
-
-
 @system.transition.of(Block)
-def transition(m, devices, y, contact, supports, which, rest, ground, dt):
-    """Return state, contact and supports after event ``which``, its kind, and the time [s] that is left to rest."""
+def transition(m, devices, now, which, ground, dt):
+    """Return the Transition by event ``which``. A pier that topples takes off and lands beyond α, which is no impact to count."""
+    y, contact, supports = now
     side = side_of(contact)
     pivot = LEFT if which == CONTACT_LEFT else RIGHT
     if side != 0.0:
         if pivot == side:
-            return y, Stance(0.0, 0.0, side), supports, TAKE_OFF, 0.0
-        y, contact, kind, waits = _impact(m, devices, y, ground, dt)
-        return y, contact, supports, kind, waits
+            return Transition(Moment(y, Stance(0.0, 0.0, side), supports), TAKE_OFF, 0.0, 0.0, 0.0)
+        y, contact, kind, remaining = _impact(m, devices, y, ground, dt)
+        return Transition(Moment(y, contact, supports), kind, 1.0, 0.0, remaining)
     if airborne(m, contact):
-        y, contact, kind = _landing(m, y, contact, pivot, rest)
-        return y, contact, supports, kind, 0.0
+        y, contact, kind = _landing(m, y, contact, pivot)
+        topples = abs(y.theta) >= m.alpha and not airborne(m, contact)
+        impacts = 0.0 if topples else (2.0 if kind == IMPACT_BOTH else 1.0)
+        return Transition(Moment(y, contact, supports), kind, impacts, 0.0, 0.0)
     y, contact, kind = _lift_off(m, devices, y, -pivot, ground)
-    return y, contact, supports, kind, 0.0
+    return Transition(Moment(y, contact, supports), kind, 0.0, 1.0, 0.0)
 
 
 @kernel
@@ -174,7 +173,7 @@ def _lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
     other, _ = _lift(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, side, OPENS)
-    k = rates(under, y, on_side(side), ground.horizontal, ground.vertical)
+    k = rates(under, y, on_side(side), ground)
     falls_away = ground.vertical_slope < 0.0 or not _weightless(m, ground)
     unloads = normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
     if falls_away and (unloads or other >= -NO_ACCELERATION * m.p * m.p * m.alpha):
@@ -225,11 +224,11 @@ def _bounces(m, devices, omega, ground):
 def _closing(m, devices, y, side, ground):
     """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against what devices then hold."""
     under = about_to_turn(devices, m, y, side, CLOSES)
-    return accelerations(under, y, on_side(side), ground.horizontal, ground.vertical)[1]
+    return rates(under, y, on_side(side), ground).omega
 
 
 @kernel
-def _landing(m, y, contact, pivot, rest):
+def _landing(m, y, contact, pivot):
     """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant.
 
     THEORY.md, Flight on the rigid base.
@@ -237,7 +236,7 @@ def _landing(m, y, contact, pivot, rest):
     The impulse at the pivot has a horizontal part: its key takes over from that of the pivot that bore last. Angular momentum
     about it is kept, and its velocity is multiplied by −ε.
     """
-    left, right, left_velocity, right_velocity = clearances(m, y, None)
+    left, right, left_velocity, right_velocity = clearances(m, y)
     arm_left, arm_right = arms(m, y.theta)
     arm, velocity, other, other_velocity = arm_left, left_velocity, right, right_velocity
     if pivot == RIGHT:
@@ -245,7 +244,7 @@ def _landing(m, y, contact, pivot, rest):
     bounce = m.epsilon * velocity
     rebounds = 0.5 * bounce * bounce / m.gravity > NEGLIGIBLE * m.alpha * m.half_width
     bounce = bounce if rebounds else 0.0
-    if abs(other) <= rest * rest / (NO_ACCELERATION * m.gravity) and other_velocity < -rest:
+    if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
         if rebounds:
             return Rocking(0.0, 0.0, -m.epsilon * y.v_rate, -m.epsilon * y.omega), Stance(0.0, 0.0, pivot), IMPACT_BOTH
         return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, IMPACT_BOTH

@@ -4,19 +4,15 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core import system
-from rockbatch.core.block import ending, events, passing  # noqa: F401  answers of the block
-from rockbatch.core.block.equations import constrained, on_side
+from rockbatch.core.block import events, passing  # noqa: F401  hooks of the block
+from rockbatch.core.block.ending import set_deadline
+from rockbatch.core.block.equations import clearances, constrained, on_side
 from rockbatch.core.block.model import NUMBERS, Block, BlockTraits, Numbers, Rocking, Stance, Tilt
-from rockbatch.core.clock import COMMON, TIMING
-from rockbatch.core.system import Kind
+from rockbatch.core.clock import COMMON, TIMING, include_height
+from rockbatch.core.kernel import inlined
+from rockbatch.core.system import System
 from rockbatch.core.table import get, lanes_of, put, taken
-from rockbatch.core.types import LEFT, RIGHT
-
-
-class StepStatus(NamedTuple):
-    """Outcome of the pass."""
-
-    kind: float
+from rockbatch.core.types import LEFT, RIGHT, Moment
 
 
 class Ending(NamedTuple):
@@ -37,8 +33,8 @@ class Bounds(NamedTuple):
 
 
 LANE = lanes_of(COMMON | {
-    "model": Numbers, "now": Rocking, "end": Tilt, "rates": Rocking, "contact": Stance, "step_status": StepStatus,
-    "ending": Ending, "bounds": Bounds,
+    "model": Numbers, "now": Rocking, "end": Tilt, "rates": Rocking, "contact": Stance, "ending": Ending,
+    "bounds": Bounds,
 })  # fmt: skip
 
 
@@ -48,35 +44,28 @@ LINE = (
     ("omega", float),  # [rad/s]
     *TIMING,
 )  # fmt: skip
-"""Fields of a run as it is asked for."""
+"""Fields of a run as it is requested."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
-@system.model.of(BlockTraits)
-def model(traits, lanes, i):
+@inlined
+def _model(traits, lanes, i):
     """Return the Block of lane ``i``."""
     m = get(lanes.model, i, Numbers)
     return Block(
-        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness,
+        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness, m.rest,
         traits.pull, True,
     )  # fmt: skip
 
 
-@system.moment.of(BlockTraits)
-def moment(traits, lanes, i):
-    """Return state and stance of lane ``i``; the ground needs no support."""
-    contact, y = get(lanes.contact, i, Stance), get(lanes.now, i, Rocking)
+@system.pier_in.of(BlockTraits)
+def pier_in(traits, lanes, i):
+    """Return the Block of lane ``i``, and its Moment; the ground needs no support."""
+    m, contact, y = _model(traits, lanes, i), get(lanes.contact, i, Stance), get(lanes.now, i, Rocking)
     if traits.pull is None:  # the pass goes on with θ alone
-        y = constrained(system.model(traits, lanes, i), y, contact)
-    return y, contact, None
-
-
-@system.put_moment.of(BlockTraits)
-def put_moment(traits, lanes, i, y, contact, supports):
-    """Write state and stance of lane ``i``."""
-    put(lanes.now, i, y)
-    put(lanes.contact, i, contact)
+        y = constrained(m, y, contact)
+    return m, Moment(y, contact, None)
 
 
 @system.begin.of(BlockTraits)
@@ -91,43 +80,35 @@ def begin(traits, lanes, i, run):
     leans = run.theta if run.theta != 0.0 else run.omega
     side = RIGHT if leans > 0.0 else LEFT
     contact = Stance(1.0, 1.0, 0.0) if at_rest else on_side(side)
-    y = constrained(system.model(traits, lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
+    y = constrained(_model(traits, lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
     put(lanes.now, i, y)
     put(lanes.contact, i, contact)
+    set_deadline(lanes, i, run)
 
 
-@system.attend.of(BlockTraits)
-def attend(traits, lanes, i, substep, history):
+@system.take_in_step.of(BlockTraits)
+def take_in_step(traits, lanes, i, substep, history):
     """Let the lane go on from the end of its sub-step; a new peak is the driver's."""
     lanes.now.theta[i], lanes.now.omega[i] = lanes.end.theta[i], lanes.end.omega[i]
 
 
-@system.include.of(BlockTraits)
-def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
-    """Keep nothing."""
-
-
-@system.after_event.of(BlockTraits)
-def after_event(traits, lanes, i, m, before, after, y):
-    """Take back the impact of a pier that topples: it takes off before it lies on its side, and lands beyond α."""
-    if system.airborne(m, before) and not system.airborne(m, after) and abs(y.theta) >= m.alpha:
-        lanes.tally.impacts[i] -= 1.0
-
-
-@system.after_step.of(BlockTraits)
-def after_step(traits, lanes, i, marks, contact, whole):
-    """Note nothing."""
+@system.take_in_part.of(BlockTraits)
+def take_in_part(traits, lanes, i, m, part, after):
+    """Keep the height of flight, state and stance."""
+    if system.airborne(m, part.start.contact):
+        include_height(lanes, i, clearances(m, part.start.y), clearances(m, part.end), part.length)
+    put(lanes.now, i, after.y)
+    put(lanes.contact, i, after.contact)
 
 
 @system.finish.of(BlockTraits)
 def finish(traits, lanes, i, t, result):
-    """Write where the block is at the end."""
-    result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]
+    """Write nothing more: a block on rigid ground leaves no residuals."""
 
 
-def kind_of(m):
-    """Return the Kind of the pier ``m`` (Block)."""
-    return Kind(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields)
+def system_of(m):
+    """Return the System of the pier ``m`` (Block)."""
+    return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields)
 
 
 def line_of(m, theta, omega, *timing):

@@ -18,6 +18,7 @@ class Block(NamedTuple):
     epsilon: float  # restitution of a pivot that lands from flight
     guided: float  # 1: flight goes on, 0: it ends the run
     quickness: float  # 1/(I0/M + R0²) [1/m²]
+    rest: float  # velocity that counts as none [m/s]
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     finite: bool = True
 

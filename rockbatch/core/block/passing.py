@@ -7,13 +7,14 @@ each other. A lane's arithmetic does not see its neighbours, so a run comes to t
 from rockbatch.core import system
 from rockbatch.core.block.equations import side_of
 from rockbatch.core.block.model import BlockTraits, Rocker, Stance, Tilt
-from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ground_at, peak_at_end
+from rockbatch.core.clock import CALM, EVENTFUL, STANDS, ground_at, peak_at_end
 from rockbatch.core.kernel import inlined
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import inner_points
 from rockbatch.core.system import rates
 from rockbatch.core.table import get
 from rockbatch.core.trigonometry import FLAT
+from rockbatch.core.types import Instant
 
 
 @inlined
@@ -29,8 +30,7 @@ def _pass_over(lanes, i, substep, settings):
     side = side_of(stance)
     y = Tilt(lanes.now.theta[i], lanes.now.omega[i])
     ground = ground_at(lanes, i, substep * h)
-    k1 = rates(m, y, side, ground.horizontal, ground.vertical)
-    end = rk4(m, None, y, k1, side, ground, h)
+    end = rk4(m, None, Instant(y, rates(m, y, side, ground), side, None, ground), h)
     lanes.end.theta[i] = end.theta
     lanes.end.omega[i] = end.omega
 
@@ -60,7 +60,7 @@ def _pass_over(lanes, i, substep, settings):
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
     lanes.now.theta[i] = end.theta if calm else y.theta
     lanes.now.omega[i] = end.omega if calm else y.omega
-    lanes.step_status.kind[i] = max(eventful, CALM if calm else ATTEND)
+    lanes.step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 
 @system.one_pass.of(BlockTraits)

@@ -88,6 +88,6 @@ def gap_of(m, of, at, y):
 
 
 @inlined
-def lifted(at, v_acceleration, theta_acceleration):
-    """Return ë [m/s²] of a device whose Gap is ``at``."""
-    return at.by_v * v_acceleration + at.by_theta * theta_acceleration + at.bend
+def lifted(at, k):
+    """Return ë [m/s²] of a device whose Gap is ``at``, under a pier with rates ``k``."""
+    return at.by_v * k.v_rate + at.by_theta * k.omega + at.bend

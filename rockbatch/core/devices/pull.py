@@ -30,9 +30,10 @@ from rockbatch.core.devices.laws import (
     slip_rate,
 )
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, kernel, question
-from rockbatch.core.system import accelerations, lever, pulled
-from rockbatch.core.types import NO_EVENT
+from rockbatch.core.kernel import hook, inlined, kernel
+from rockbatch.core.system import lever, rates
+from rockbatch.core.table import with_pull
+from rockbatch.core.types import NO_EVENT, Pull
 
 STAYS = 1e-9
 """Acceleration of a place by a unit force there, below which it does not move: a pivot on rigid ground, to rounding."""
@@ -112,7 +113,7 @@ def sticking(devices, after):
 
 
 @kernel
-def _held_by_friction(m, first, second, y, contact, horizontal, vertical, strengths):
+def _held_by_friction(m, first, second, now, ground, strengths):
     """Return the forces [m/s²] at two places, whose Gaps are given, by which they do not move; the second is 0 if both are one.
 
     ``m`` is the pier under all else. Accelerations are linear in the forces. At a pivot on the ground friction bears nothing.
@@ -122,12 +123,9 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
     for unit in range(3):  # none, one at the first place, one at the second
         arm = first.arm if unit == 1 else (second.arm if unit == 2 else 0.0)
         down = first.by_v if unit == 1 else (second.by_v if unit == 2 else 0.0)
-        under = pulled(m, m.pull.force + down, m.pull.moment + arm)
-        v_acceleration, theta_acceleration = accelerations(under, y, contact, horizontal, vertical)
-        here, there = (
-            lifted(first, v_acceleration, theta_acceleration),
-            lifted(second, v_acceleration, theta_acceleration),
-        )
+        under = with_pull(m, Pull(m.pull.force + down, m.pull.moment + arm))
+        k = rates(under, now.y, now.contact, ground)
+        here, there = lifted(first, k), lifted(second, k)
         if unit == 0:
             free, free_other = here, there
         elif unit == 1:
@@ -149,25 +147,25 @@ def _held_by_friction(m, first, second, y, contact, horizontal, vertical, streng
 
 
 @kernel
-def _with_friction(m, devices, at, y, contact, horizontal, vertical):
+def _with_friction(m, devices, at, now, ground):
     """Return the pier ``m``, under all else, under friction that holds too; and forces [m/s²] of the first two such dampers."""
     first, elements = sticking(devices, NO_EVENT), devices.elements
     second = sticking(devices, first)
     other = second if second != NO_EVENT else first
-    here, there = gap_of(m, elements[first], at, y), gap_of(m, elements[other], at, y)
+    here, there = gap_of(m, elements[first], at, now.y), gap_of(m, elements[other], at, now.y)
     strengths = elements[first].strength, elements[other].strength
-    one, two = _held_by_friction(m, here, there, y, contact, horizontal, vertical, strengths)
+    one, two = _held_by_friction(m, here, there, now, ground, strengths)
     down = one * here.by_v + two * there.by_v
-    return pulled(m, m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm), one, two
+    return with_pull(m, Pull(m.pull.force + down, m.pull.moment + one * here.arm + two * there.arm)), one, two
 
 
 @kernel
-def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
+def device_rates(m, devices, now, x, ground, place):
     """Write the rates of the devices' states ``x`` to their ``place``, and the gaps there but for stages inside a step.
 
     Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
     """
-    n, k, at = len(devices.elements), devices.rates[place], attitude(m, y, devices.level[0])
+    y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, devices.level[0])
     total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
     for j in range(n):
         of, goes = devices.elements[j], devices.goes[j]
@@ -179,12 +177,12 @@ def device_rates(m, devices, y, x, contact, horizontal, vertical, place):
         total += law.force * here.by_v
         moment += law.force * here.arm
         holds = holds or (goes == STICKS and of.kind == FRICTION)
-    under = pulled(m, total, moment)
+    under = with_pull(m, Pull(total, moment))
     if holds:
-        under, one, two = _with_friction(under, devices, at, y, contact, horizontal, vertical)
+        under, one, two = _with_friction(under, devices, at, now, ground)
     if place == END:
         devices.ended[0], devices.ended[1], devices.ended[2] = 0.0 if holds else 1.0, total, moment
-    k[2 * n] = -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
+    k[2 * n] = -ground.horizontal * lever(m, y, now.contact) * y.omega - ground.vertical * y.v_rate
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two
 
@@ -202,31 +200,31 @@ def pulled_at_end(m, devices):
         devices.rates[START, i] = devices.rates[END, i]
     for j in range(len(devices.elements)):
         devices.gaps[START, j] = devices.gaps[END, j]
-    return pulled(m, devices.ended[1], devices.ended[2])
+    return with_pull(m, Pull(devices.ended[1], devices.ended[2]))
 
 
 @kernel
-def under_devices(m, devices, y, x, contact, ground):
-    """Return what :func:`device_rates` does, of a state that is looked at beside a step."""
-    return device_rates(m, devices, y, x, contact, ground.horizontal, ground.vertical, BESIDE)
+def under_devices(m, devices, now, x, ground):
+    """Return what :func:`device_rates` does, of a Moment that is looked at beside a step."""
+    return device_rates(m, devices, now, x, ground, BESIDE)
 
 
-@question
-def loaded(devices, m, y, contact, ground):
-    """Return the pier ``m`` under its devices in state ``y``."""
+@hook
+def loaded(devices, m, now, ground):
+    """Return the pier ``m`` under its devices in the Moment ``now``."""
 
 
 @loaded.of(type(None))
-def _alone(devices, m, y, contact, ground):
+def _alone(devices, m, now, ground):
     return m
 
 
 @loaded.of(Devices)
-def _loaded(devices, m, y, contact, ground):
-    return under_devices(m, devices, y, devices.x, contact, ground)[0]
+def _loaded(devices, m, now, ground):
+    return under_devices(m, devices, now, devices.x, ground)[0]
 
 
-@question
+@hook
 def about_to_turn(devices, m, y, side, sense):
     """Return the pier ``m`` at rest under its devices, were it to turn about its pivot on ``side``, or to rise on NEITHER.
 
@@ -248,7 +246,7 @@ def _devices_hold(devices, m, y, side, sense):
         pull = force(of, here.elongation, 0.0, devices.x[j], mode_of(of, here.elongation, devices.x[j], way), way)
         total += pull * here.by_v
         moment += pull * here.arm
-    return pulled(m, total, moment)
+    return with_pull(m, Pull(total, moment))
 
 
 @kernel
@@ -285,9 +283,11 @@ def advance_states(devices, h):
 
 
 @kernel
-def resolved(under, devices, y, contact, ground, h, dt):
-    """Return the longest step [s], ``h`` at most, that resolves the laws of dampers: of a hysteretic one that is not plastic all
-    along it, of a viscous one with an exponent below 1 near a velocity reversal or behind a brace, and of a stop that is met.
+def resolved(under, devices, start, h, dt):
+    """Return the longest step [s] from the Instant ``start``, ``h`` at most, that resolves the laws of devices.
+
+    These are hysteretic dampers that are not plastic all along it, viscous ones with an exponent below 1 near a velocity
+    reversal or behind a brace, and stops that are met.
 
     It is shorter by one and the same factor for all ``h``, so that a run with half the step halves these steps too: what it
     changes goes on telling the error.
@@ -303,9 +303,10 @@ def resolved(under, devices, y, contact, ground, h, dt):
             share = min(share, FINE / (of.quickest * dt))
     if not asked:
         return share * h
-    end = later(ground, h)  # where a pier lifts off it has no acceleration yet
-    v_now, theta_now = accelerations(under, y, contact, ground.horizontal, ground.vertical)
-    v_end, theta_end = accelerations(under, y, contact, end.horizontal, end.vertical)
+    k = rates(under, start.y, start.contact, start.ground)
+    k_end = rates(
+        under, start.y, start.contact, later(start.ground, h)
+    )  # where a pier lifts off it has no acceleration yet
     for j in range(len(devices.elements)):
         of, here = devices.elements[j], devices.gaps[START, j]
         if of.kind == MAXWELL and of.exponent < 1.0:
@@ -314,7 +315,7 @@ def resolved(under, devices, y, contact, ground, h, dt):
         soft = of.kind == HYSTERETIC and devices.goes[j] * devices.x[j] < 1.0
         if not (_is_steep(of) or soft):
             continue
-        lift = max(abs(lifted(here, v_now, theta_now)), abs(lifted(here, v_end, theta_end)))
+        lift = max(abs(lifted(here, k)), abs(lifted(here, k_end)))
         if soft:
             way = (abs(here.speed) + lift * h) * dt * of.stiffness
             share = min(share, TRAVEL / way) if way > 0.0 else share

@@ -47,7 +47,7 @@ def _of_own_way(devices, j, k, k_end, h):
     """Bring stroke and speed of a device without a brace up to a smooth part of ``h`` [s]."""
     line, was, now = devices.use[j], devices.gaps[START, j], devices.gaps[END, j]
     line.stroke = _greatest(was.elongation, was.speed, now.elongation, now.speed, h, line.stroke)
-    lift, lift_end = lifted(was, k.v_rate, k.omega), lifted(now, k_end.v_rate, k_end.omega)
+    lift, lift_end = lifted(was, k), lifted(now, k_end)
     line.speed = _greatest(was.speed, lift, now.speed, lift_end, h, line.speed)
 
 

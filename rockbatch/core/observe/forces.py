@@ -3,13 +3,13 @@
 import math
 from typing import NamedTuple
 
-from rockbatch.core.block.equations import side_of
+from rockbatch.core.block.equations import clearances, side_of
 from rockbatch.core.block.model import Block
-from rockbatch.core.kernel import kernel, question
+from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Springs, Supports
 from rockbatch.core.springs.recovery import forces, quickness, top, velocity_of_top
-from rockbatch.core.system import accelerations, airborne, clearances
+from rockbatch.core.system import airborne, rates
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, RIGHT
@@ -72,10 +72,11 @@ def _friction(gravity, shear, normal):
 
 
 @kernel
-def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, vertical):
-    """Return the forces in state ``y``; free supports wait at ``waiting_…`` [m], the deck is at the height ``deck`` [m]."""
+def on_springs(m, deck, now, ground):
+    """Return the forces in the Moment ``now``; the deck is at the height ``deck`` [m]."""
+    (y, contact, supports), horizontal, vertical = now, ground.horizontal, ground.vertical
     at = geometry(m, y.theta)
-    v_acceleration, turning = accelerations_at(m, y, contact, at, horizontal, vertical)
+    v_acceleration, turning = accelerations_at(m, y, contact, at, ground)
     squared = y.omega * y.omega
     side = contact.right - contact.left
     ground_lever = at.lever + side * at.swing
@@ -93,8 +94,8 @@ def on_springs(m, deck, y, contact, waiting_left, waiting_right, horizontal, ver
     left, right = -pull_left, -pull_right
     free_left = 1.0 if contact.left == 0.0 and contact.held != LEFT else 0.0
     free_right = 1.0 if contact.right == 0.0 and contact.held != RIGHT else 0.0
-    gap_left = free_left * (y.v + at.lift_left - top(m, waiting_left, y.z_left))
-    gap_right = free_right * (y.v + at.lift_right - top(m, waiting_right, y.z_right))
+    gap_left = free_left * (y.v + at.lift_left - top(m, supports.left, y.z_left))
+    gap_right = free_right * (y.v + at.lift_right - top(m, supports.right, y.z_right))
     return Forces(
         shear, left + right, moment, left, right, gap_left, gap_right,
         free_left * (y.v_rate + at.arm_left * y.omega - velocity_of_top(m, y.z_left)),
@@ -113,11 +114,12 @@ def _waits(was, contact, side, waiting, position):
 
 
 @kernel
-def _at_rest(m, outline, hold, y, horizontal, vertical):
+def _at_rest(m, body, y, ground):
     """Return the forces on a block at rest on both pivots, and the pivot about which it would turn, 0 if it stays.
 
     Both bear what moment and weight ask for; what would lift one of them friction holds, as far as it can.
     """
+    (outline, hold), horizontal, vertical = body, ground.horizontal, ground.vertical
     b, still, gap = 0.5 * outline.width, 0.0 * outline.size * y.omega, 0.0 * outline.width
     normal = m.gravity + vertical + m.pull.force
     more = horizontal * m.height / m.half_width + m.pull.moment / b
@@ -137,20 +139,22 @@ def _at_rest(m, outline, hold, y, horizontal, vertical):
 
 
 @kernel
-def on_block(m, outline, hold, y, contact, horizontal, vertical):
+def on_block(m, body, now, ground):
     """Return the forces on a block, rocking about a pivot, in flight or at rest.
 
     Devices pull along the chord of the way of their places, to which cos(θ/2) of their force is vertical.
     """
+    (y, contact, _), outline, horizontal, vertical = now, body.outline, ground.horizontal, ground.vertical
     side = side_of(contact)
     flies = airborne(m, contact)
     if side == 0.0 and not flies:
-        forces, turns = _at_rest(m, outline, hold, y, horizontal, vertical)
+        forces, turns = _at_rest(m, body, y, ground)
         if turns == 0.0:
             return forces
         side = turns
         contact = type(contact)(0.5 * (1.0 - side), 0.5 * (1.0 + side), side)
-    v_acceleration, turning = accelerations(m, y, contact, horizontal, vertical)
+    k = rates(m, y, contact, ground)
+    v_acceleration, turning = k.v_rate, k.omega
     squared, lean = y.omega * y.omega, (side if side != 0.0 else contact.bore)
     sine, cosine = sine_and_cosine(y.theta)
     half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
@@ -167,7 +171,7 @@ def on_block(m, outline, hold, y, contact, horizontal, vertical):
     moment = wide * (place * lifted - lever * (horizontal + along) - m.inertia * turning)
     deck = outline.deck_share * along + outline.deck_above * (cosine * turning - sine * squared)
     on_left, on_right = contact.left, contact.right
-    left, right, left_speed, right_speed = clearances(m, y, None)
+    left, right, left_speed, right_speed = clearances(m, y)
     off_left, off_right = wide * (1.0 - on_left), wide * (1.0 - on_right)
     return Forces(
         shear, normal, moment, on_left * normal, on_right * normal,
@@ -177,7 +181,7 @@ def on_block(m, outline, hold, y, contact, horizontal, vertical):
     )  # fmt: skip
 
 
-@question
+@hook
 def waiting(m, y, was, contact, supports):
     """Return where the supports of free pivots wait in state ``y``, whose contact ``was`` another until then."""
 
@@ -197,22 +201,22 @@ def _waiting_ground(m, y, was, contact, supports):
     return supports
 
 
-@question
-def forces_at(m, body, y, contact, supports, horizontal, vertical):
-    """Return the Forces in state ``y``; ``body`` is the height of the deck [m] on springs, a Body on a rigid base."""
+@hook
+def forces_at(m, body, now, ground):
+    """Return the Forces in the Moment ``now``; ``body`` is the height of the deck [m] on springs, a Body on a rigid base."""
 
 
 @forces_at.of(Springs)
-def _forces_on_springs(m, body, y, contact, supports, horizontal, vertical):
-    return on_springs(m, body, y, contact, supports.left, supports.right, horizontal, vertical)
+def _forces_on_springs(m, body, now, ground):
+    return on_springs(m, body, now, ground)
 
 
 @forces_at.of(Block)
-def _forces_on_block(m, body, y, contact, supports, horizontal, vertical):
-    return on_block(m, body.outline, body.hold, y, contact, horizontal, vertical)
+def _forces_on_block(m, body, now, ground):
+    return on_block(m, body, now, ground)
 
 
-@question
+@hook
 def fastest_heels(m, step):
     """Return the shares of a step at which the left and the right heel may leave their supports fastest; 0 if at none."""
 

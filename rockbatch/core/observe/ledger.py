@@ -12,9 +12,9 @@ from rockbatch.core.observe.rows import contact_of, ground_within, state_of, ste
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Contact
 from rockbatch.core.springs.recovery import forces
-from rockbatch.core.system import lever, pulled, rates
-from rockbatch.core.table import record
-from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT
+from rockbatch.core.system import lever, rates
+from rockbatch.core.table import record, with_pull
+from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, Pull
 
 
 class Energies(NamedTuple):
@@ -50,11 +50,11 @@ def _stored(m, y, contact):
 
 
 @kernel
-def _powers(m, y, k, contact, horizontal, vertical):
+def _powers(m, y, k, contact, ground):
     """Return the powers of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
     at = geometry(m, y.theta)
     left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
-    shaken = -horizontal * _lever(at, contact) * y.omega - vertical * y.v_rate
+    shaken = -ground.horizontal * _lever(at, contact) * y.omega - ground.vertical * y.v_rate
     plastic = contact.left * m.yield_force * y.z_left * (left - m.yield_deflection * k.z_left)
     plastic += contact.right * m.yield_force * y.z_right * (right - m.yield_deflection * k.z_right)
     damping = m.damping * (contact.left * left * left + contact.right * right * right)
@@ -65,7 +65,7 @@ def _powers(m, y, k, contact, horizontal, vertical):
     constraint = 0.0
     if contact.held != 0:
         released = Contact(contact.left, contact.right, contact.left_yields, contact.right_yields, 0)
-        _, free = accelerations_at(m, y, released, at, horizontal, vertical)
+        _, free = accelerations_at(m, y, released, at, ground)
         lever = _lever(at, contact) if m.finite is not None else m.height
         constraint = (m.inertia + lever * lever) * (k.omega - free) * y.omega
     return shaken, plastic, p_delta, constraint, damping
@@ -96,8 +96,8 @@ def _impact_loss(m, before, kind):
 def _pulled(m, pulls, i):
     """Return the pier at the start, in the middle and at the end of the step to row ``i``."""
     first, last = pulls[i - 1], pulls[i]
-    middle = pulled(m, 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1]))
-    return pulled(m, first[0], first[1]), middle, pulled(m, last[0], last[1])
+    middle = with_pull(m, Pull(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])))
+    return with_pull(m, Pull(first[0], first[1])), middle, with_pull(m, Pull(last[0], last[1]))
 
 
 @entry
@@ -137,11 +137,11 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
             start, half_way, stop = _pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
             h, k, k_end = step.length, step.rates, step.rates_end
-            middle, (ah, av) = within(half_way, step, 0.5), ground_within(step, 0.5)
-            k_middle = rates(half_way, middle, contact, ah, av)
-            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, step.horizontal, step.vertical)
-            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ah, av)
-            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, step.horizontal_end, step.vertical_end)
+            middle, ground_middle = within(half_way, step, 0.5), ground_within(step, 0.5)
+            k_middle = rates(half_way, middle, contact, ground_middle)
+            s0, w0, d0, c0, q0 = _powers(start, y, k, contact, step.ground)
+            s1, w1, d1, c1, q1 = _powers(half_way, middle, k_middle, contact, ground_middle)
+            s2, w2, d2, c2, q2 = _powers(stop, y_end, k_end, contact, step.ground_end)
             shaken += h / 6.0 * (s0 + 4.0 * s1 + s2)
             plastic += h / 6.0 * (w0 + 4.0 * w1 + w2)
             p_delta += h / 6.0 * (d0 + 4.0 * d1 + d2)
@@ -165,9 +165,9 @@ def _of_block(m, y, contact):
 
 
 @kernel
-def _shaken(m, y, contact, horizontal, vertical):
+def _shaken(m, y, contact, ground):
     """Return the power of the ground [W/kg]."""
-    return -horizontal * lever(m, y, contact) * y.omega - vertical * y.v_rate
+    return -ground.horizontal * lever(m, y, contact) * y.omega - ground.vertical * y.v_rate
 
 
 @entry
@@ -184,10 +184,9 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
         else:
             start, half_way, stop = _pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
-            ah, av = ground_within(step, 0.5)
-            s0 = _shaken(m, y, contact, step.horizontal, step.vertical)
-            s1 = _shaken(m, within(half_way, step, 0.5), contact, ah, av)
-            s2 = _shaken(m, y_end, contact, step.horizontal_end, step.vertical_end)
+            s0 = _shaken(m, y, contact, step.ground)
+            s1 = _shaken(m, within(half_way, step, 0.5), contact, ground_within(step, 0.5))
+            s2 = _shaken(m, y_end, contact, step.ground_end)
             shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
         line = out[i]
         line.kinetic, line.potential = kinetic_end - kinetic0, potential - potential0

@@ -22,7 +22,7 @@ from rockbatch.core.devices.laws import (
     response,
     stop_force,
 )
-from rockbatch.core.kernel import entry, kernel, question
+from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
     Step,
@@ -35,9 +35,9 @@ from rockbatch.core.observe.rows import (
     within,
 )
 from rockbatch.core.springs.model import Supports
-from rockbatch.core.system import airborne, pulled
-from rockbatch.core.table import record
-from rockbatch.core.types import Pull
+from rockbatch.core.system import airborne
+from rockbatch.core.table import record, with_pull
+from rockbatch.core.types import Ground, Moment, Pull
 
 NEVER = -1.0
 """Time of what does not happen."""
@@ -82,11 +82,31 @@ class RecordedRun(NamedTuple):
     rows: np.recarray  # of recording.Row, shape (n,): the history; for the greatest forces, with every step
     pulls: np.ndarray  # shape (n, 2): force [m/s²] and moment [m²/s²] of devices at every row
     devices: RecordedDevices | None
+    ground: np.ndarray  # of :func:`rockbatch.core.ground.ground_rows`, shape (npts, 4): the motion
+    dt: float  # its sampling interval [s]
+
+
+class Extremes(NamedTuple):
+    """Greatest magnitudes of a run, and the limits that its moments are held against."""
+
+    limits: Limits
+    greatest: np.ndarray  # of each of Forces, at the rows and between; of friction while N is above its limit
+    noted: np.recarray  # of Noted, shape (1,)
+
+
+class Place(NamedTuple):
+    """A moment within the step to a row."""
+
+    i: int  # of the row
+    step: Step
+    s: float  # share of the step
 
 
 @kernel
-def _state_within(m, of, was, now, level, step, s):
-    """Return the state of an element at the share ``s`` of a step, from its states ``was`` and ``now`` at the ends."""
+def _state_within(m, devices, j, place):
+    """Return the state of device ``j`` at a Place, from its states at the ends of the step."""
+    of, level, step, s = devices.elements[j], devices.level, place.step, place.s
+    was, now = devices.states[place.i - 1, j], devices.states[place.i, j]
     if of.kind not in (HYSTERETIC, MAXWELL):
         return was + s * (now - was)
     start = gap_of(m, of, attitude(m, step.start, level), step.start)
@@ -106,42 +126,43 @@ def recorded_force(of, here, state, goes):
 
 
 @kernel
-def _by_laws(m, devices, i, step, y, s):
-    """Return the Pull, in state ``y`` at the share ``s`` of the step to row ``i``, of all that has a law: not of friction."""
+def _by_laws(m, devices, place, y):
+    """Return the Pull, in state ``y`` at a Place, of all that has a law: not of friction."""
     total, moment, at = 0.0, 0.0, attitude(m, y, devices.level)
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.kind == FRICTION:
             continue
         here = gap_of(m, of, at, y)
-        x = _state_within(m, of, devices.states[i - 1, j], devices.states[i, j], devices.level, step, s)
+        x = _state_within(m, devices, j, place)
         pull = recorded_force(of, here, x, 0.0)
         total += pull * here.by_v
         moment += pull * here.arm
     return Pull(total, moment)
 
 
-@question
-def _under_devices(devices, m, pulls, i, step, y, s):
-    """Return the pier under the pull of its devices in state ``y``, at the share ``s`` of the step to row ``i``."""
+@hook
+def _under_devices(devices, m, pulls, place, y):
+    """Return the pier under the pull of its devices in state ``y`` at a Place."""
 
 
 @_under_devices.of(type(None))
-def _without_devices(devices, m, pulls, i, step, y, s):
-    return pulled(m, 0.0, 0.0)
+def _without_devices(devices, m, pulls, place, y):
+    return with_pull(m, Pull(0.0, 0.0))
 
 
 @_under_devices.of(RecordedDevices)
-def _with_devices(devices, m, pulls, i, step, y, s):
+def _with_devices(devices, m, pulls, place, y):
     """Use the devices' laws, and what friction adds to them at both ends, linear between."""
+    i, step, s = place
     start, now, end = (
-        _by_laws(m, devices, i, step, step.start, 0.0),
-        _by_laws(m, devices, i, step, y, s),
-        _by_laws(m, devices, i, step, step.end, 1.0),
+        _by_laws(m, devices, Place(i, step, 0.0), step.start),
+        _by_laws(m, devices, place, y),
+        _by_laws(m, devices, Place(i, step, 1.0), step.end),
     )
     rubs, rubs_end = pulls[i - 1, 0] - start.force, pulls[i, 0] - end.force
     turns, turns_end = pulls[i - 1, 1] - start.moment, pulls[i, 1] - end.moment
-    return pulled(m, now.force + rubs + s * (rubs_end - rubs), now.moment + turns + s * (turns_end - turns))
+    return with_pull(m, Pull(now.force + rubs + s * (rubs_end - rubs), now.moment + turns + s * (turns_end - turns)))
 
 
 @kernel
@@ -155,7 +176,7 @@ def _with_across(forces, gravity, shear, moment):
     )  # fmt: skip
 
 
-@question
+@hook
 def _at_base(devices, m, forces, i, y):
     """Return the Forces at row ``i`` in state ``y`` without what devices on the deck take."""
 
@@ -177,24 +198,24 @@ def _less_deck(devices, m, forces, i, y):
     return _with_across(forces, m.gravity, shear, moment) if some else forces
 
 
-@question
-def _at_base_within(devices, m, forces, i, step, y, s):
-    """Return the Forces in state ``y`` at the share ``s`` of the step to row ``i``, without what devices on the deck take."""
+@hook
+def _at_base_within(devices, m, forces, place, y):
+    """Return the Forces in state ``y`` at a Place, without what devices on the deck take."""
 
 
 @_at_base_within.of(type(None))
-def _all_within(devices, m, forces, i, step, y, s):
+def _all_within(devices, m, forces, place, y):
     return forces
 
 
 @_at_base_within.of(RecordedDevices)
-def _less_deck_within(devices, m, forces, i, step, y, s):
+def _less_deck_within(devices, m, forces, place, y):
     shear, moment, at, some = 0.0, 0.0, attitude(m, y, devices.level), False
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0:
             here, some = gap_of(m, of, at, y), True
-            x = _state_within(m, of, devices.states[i - 1, j], devices.states[i, j], devices.level, step, s)
+            x = _state_within(m, devices, j, place)
             pull = recorded_force(of, here, x, 0.0)
             shear, moment = shear + of.way * pull, moment + pull * here.by_theta
     return _with_across(forces, m.gravity, shear, moment) if some else forces
@@ -215,16 +236,16 @@ class Stretch(NamedTuple):
 @kernel
 def _moment(of, s):
     """Return the Forces at the share ``s`` of a Stretch."""
-    y, (horizontal, vertical) = within(of.m, of.step, s), ground_within(of.step, s)
-    under = _under_devices(of.devices, of.m, of.pulls, of.i, of.step, y, s)
-    forces = forces_at(under, of.body, y, of.step.contact, of.supports, horizontal, vertical)
-    return _at_base_within(of.devices, of.m, forces, of.i, of.step, y, s)
+    y, ground, place = within(of.m, of.step, s), ground_within(of.step, s), Place(of.i, of.step, s)
+    under = _under_devices(of.devices, of.m, of.pulls, place, y)
+    forces = forces_at(under, of.body, Moment(y, of.step.contact, of.supports), ground)
+    return _at_base_within(of.devices, of.m, forces, place, y)
 
 
 @kernel
-def _include(greatest, noted, moment, t, limits, gravity):
-    """Bring the greatest magnitudes, and what is noted beside them, up to a moment at about ``t`` [s]."""
-    line = noted[0]
+def _include(extremes, moment, t, gravity):
+    """Bring the Extremes up to the Forces of a ``moment`` at about ``t`` [s]."""
+    limits, greatest, line = extremes.limits, extremes.greatest, extremes.noted[0]
     for j in range(len(greatest)):
         if j != _FRICTION:
             greatest[j] = max(greatest[j], abs(moment[j]))
@@ -263,28 +284,28 @@ def _turning(start, middle, end):
 
 
 @kernel
-def _look_within(of, t, before, now, limits, greatest, noted):
-    """Bring the greatest up to the inside of a Stretch until ``t``, with the forces ``before`` and ``now`` at its ends."""
-    gravity = of.m.gravity
+def _look_within(of, t, before, now, extremes):
+    """Bring the Extremes up to the inside of a Stretch until ``t``, with the forces ``before`` and ``now`` at its ends."""
+    gravity, (limits, greatest, noted) = of.m.gravity, extremes
     middle = _moment(of, 0.5)
-    _include(greatest, noted, middle, t, limits, gravity)
+    _include(extremes, middle, t, gravity)
     for s in fastest_heels(of.m, of.step):
         if s != 0.0:
-            _include(greatest, noted, _moment(of, s), t, limits, gravity)
+            _include(extremes, _moment(of, s), t, gravity)
     for j in range(len(greatest)):
         s, promised = _turning(before[j], middle[j], now[j])
         keys = j == _SHEAR and middle.normal < limits.normal
         if s != 0.5 and abs(promised) > (noted[0].key_shear if keys else greatest[j]):
             turns = _moment(of, s)
-            _include(greatest, noted, turns, t, limits, gravity)
+            _include(extremes, turns, t, gravity)
     half, (s, promised) = 0.5, _turning(before.normal, middle.normal, now.normal)
     if promised < min(limits.normal, middle.normal):  # N dips below its limit between the ends
         half, middle = s, _moment(of, s)
-        _include(greatest, noted, middle, t, limits, gravity)
+        _include(extremes, middle, t, gravity)
     for low, high, first, last in ((0.0, half, before, middle), (half, 1.0, middle, now)):
         if (first.normal < limits.normal) != (last.normal < limits.normal):
             passes = _passes(of, low, high, limits.normal)
-            _include(greatest, noted, passes, t, limits, gravity)
+            _include(extremes, passes, t, gravity)
             noted[0].key_shear = max(noted[0].key_shear, abs(passes.shear))  # a moment before or after it, N is below
 
 
@@ -300,7 +321,7 @@ def _put(out, i, forces):
 
 
 @entry
-def forces_of_run(m, body, run, ground, dt, limits, out, greatest, noted):
+def forces_of_run(m, body, run, extremes, out):
     """Compute the forces of a run at every row, or the greatest of the whole run.
 
     Parameters
@@ -310,41 +331,36 @@ def forces_of_run(m, body, run, ground, dt, limits, out, greatest, noted):
         Of Springs the height of the deck above the pivots [m].
     run : RecordedRun
         With both sides of every event.
-    ground : ndarray, shape (npts, 4)
-        The motion of the run, of :func:`rockbatch.core.ground.ground_rows`.
-    dt : float
-        Its sampling interval [s].
-    limits : Limits
+    extremes : Extremes
+        Filled unless its ``greatest`` has no room.
     out : recarray of Forces, shape (n,) or (0,)
         Filled at every row.
-    greatest : ndarray of zeros, shape (fields of Forces,) or (0,)
-        Filled with the greatest magnitude of each of Forces, at the rows and between; of friction while N is above its limit.
-    noted : recarray of Noted, shape (1,)
-        Filled beside ``greatest``.
     """
-    rows, pulls, devices = run.rows, run.pulls, run.devices
+    rows, pulls, devices, ground, dt = run
+    limits, greatest, noted = extremes
     supports, aloft = Supports(limits.unstressed, limits.unstressed, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
-    under = pulled(m, pulls[0, 0], pulls[0, 1])
-    before = forces_at(under, body, state_of(m, rows[0]), was, supports, ground[0, 0], ground[0, 2])
-    before = _at_base(devices, m, before, 0, state_of(m, rows[0]))
+    under, first = with_pull(m, Pull(pulls[0, 0], pulls[0, 1])), state_of(m, rows[0])
+    shaking = Ground(ground[0, 0], ground[0, 1], ground[0, 2], ground[0, 3])
+    before = forces_at(under, body, Moment(first, was, supports), shaking)
+    before = _at_base(devices, m, before, 0, first)
     for i in range(len(rows)):
         y, contact, t = state_of(m, rows[i]), contact_of(m, rows[i]), rows[i].t
         supports = waiting(m, y, was, contact, supports)
         was = contact
         t_start = rows[i - 1].t if i > 0 else t
-        ah, av = ground_at(ground, dt, 0.5 * (t_start + t), t)
-        under_start, under = under, pulled(m, pulls[i, 0], pulls[i, 1])
-        now = _at_base(devices, m, forces_at(under, body, y, contact, supports, ah, av), i, y)
+        under_start, under = under, with_pull(m, Pull(pulls[i, 0], pulls[i, 1]))
+        shaking = ground_at(ground, dt, 0.5 * (t_start + t), t)
+        now = _at_base(devices, m, forces_at(under, body, Moment(y, contact, supports), shaking), i, y)
         if len(out) > 0:
             _put(out, i, now)
         if len(greatest) == 0:
             continue
-        _include(greatest, noted, now, t, limits, m.gravity)
+        _include(extremes, now, t, m.gravity)
         if t > t_start and rows[i].kind <= 0.0:
             step = step_between(under_start, under, rows[i - 1], rows[i], ground, dt)
             of = Stretch(m, body, pulls, devices, i, step, supports)
-            _look_within(of, t, before, now, limits, greatest, noted)
+            _look_within(of, t, before, now, extremes)
         aloft = aloft + (t - t_start) if airborne(m, contact) else 0.0
         noted[0].longest_flight = max(noted[0].longest_flight, aloft)
         before = now

@@ -3,12 +3,13 @@
 from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
-from rockbatch.core.kernel import kernel, question
+from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.model import Contact, Springs, State
-from rockbatch.core.system import rates, share, staged
+from rockbatch.core.system import rates, share, stage
+from rockbatch.core.types import Ground
 
 
-@question
+@hook
 def state_of(m, row):
     """Return the state in a row."""
 
@@ -23,7 +24,7 @@ def _state_of_block(m, row):
     return Rocking(row.v, row.theta, row.v_rate, row.omega)
 
 
-@question
+@hook
 def contact_of(m, row):
     """Return the contact in a row: that of the step that ends there, or after the event."""
 
@@ -40,16 +41,16 @@ def _contact_of_block(m, row):
 
 @kernel
 def ground_at(ground, dt, middle, t):
-    """Return ground accelerations, horizontal and vertical, at ``t``, in the sampling interval in which ``middle`` lies."""
+    """Return the Ground at ``t``, in the sampling interval in which ``middle`` lies."""
     sample = int(middle / dt)
     if sample >= len(ground):
-        return 0.0, 0.0
-    after = t - sample * dt
-    return ground[sample, 0] + after * ground[sample, 1], ground[sample, 2] + after * ground[sample, 3]
+        return Ground(0.0, 0.0, 0.0, 0.0)
+    after, row = t - sample * dt, ground[sample]
+    return Ground(row[0] + after * row[1], row[1], row[2] + after * row[3], row[3])
 
 
 class Step(NamedTuple):
-    """A step between two rows of a history: states and rates at its ends, and the ground accelerations there [m/s²]."""
+    """A step between two rows of a history: states, rates and ground at its ends."""
 
     start: tuple
     rates: tuple
@@ -57,10 +58,8 @@ class Step(NamedTuple):
     rates_end: tuple
     contact: tuple
     length: float  # [s]
-    horizontal: float
-    vertical: float
-    horizontal_end: float
-    vertical_end: float
+    ground: Ground
+    ground_end: Ground
 
 
 @kernel
@@ -68,17 +67,18 @@ def step_between(under, under_end, row, row_end, ground, dt):
     """Return the Step from ``row`` to ``row_end`` of a pier that is ``under`` the pull of its devices at both."""
     start, end, contact = state_of(under, row), state_of(under, row_end), contact_of(under, row_end)
     middle = 0.5 * (row.t + row_end.t)
-    ah, av = ground_at(ground, dt, middle, row.t)
-    ah_end, av_end = ground_at(ground, dt, middle, row_end.t)
-    k, k_end = rates(under, start, contact, ah, av), rates(under_end, end, contact, ah_end, av_end)
-    return Step(start, k, end, k_end, contact, row_end.t - row.t, ah, av, ah_end, av_end)
+    shaking, shaking_end = ground_at(ground, dt, middle, row.t), ground_at(ground, dt, middle, row_end.t)
+    k, k_end = rates(under, start, contact, shaking), rates(under_end, end, contact, shaking_end)
+    return Step(start, k, end, k_end, contact, row_end.t - row.t, shaking, shaking_end)
 
 
 @kernel
 def ground_within(step, s):
-    """Return ground accelerations, horizontal and vertical, at the share ``s`` of a step."""
-    horizontal = step.horizontal + s * (step.horizontal_end - step.horizontal)
-    return horizontal, step.vertical + s * (step.vertical_end - step.vertical)
+    """Return the Ground at the share ``s`` of a step."""
+    start, end = step.ground, step.ground_end
+    horizontal = start.horizontal + s * (end.horizontal - start.horizontal)
+    vertical = start.vertical + s * (end.vertical - start.vertical)
+    return Ground(horizontal, start.horizontal_slope, vertical, start.vertical_slope)
 
 
 @kernel
@@ -94,7 +94,7 @@ def cubic(start, rate, end, rate_end, h, s):
     return min(max(value, min(start, end)), max(start, end))
 
 
-@question
+@hook
 def within(m, step, s):
     """Return the state at the share ``s`` of a step; what decays in closed form does so here too."""
 
@@ -108,7 +108,7 @@ def _within_on_springs(m, step, s):
         cubic(y.z_left, k.z_left, end.z_left, k_end.z_left, h, s),
         cubic(y.z_right, k.z_right, end.z_right, k_end.z_right, h, s),
     )  # fmt: skip
-    return staged(m, y_within, y, step.contact, share(m, s * h))
+    return stage(m, y_within, y, step.contact, share(m, s * h))
 
 
 @within.of(Block)

@@ -14,6 +14,7 @@ from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.free_vibration import (
     Drift,
+    Load,
     further,
     lean_on,
     peak_is_final,
@@ -22,8 +23,8 @@ from rockbatch.core.springs.free_vibration import (
 )
 from rockbatch.core.springs.laws import ratchets
 from rockbatch.core.springs.model import SpringTraits, State, Supports
-from rockbatch.core.system import model, moment
-from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED
+from rockbatch.core.system import pier_in
+from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED, Moment
 
 GROWTH = 1e-4
 """Of α: by how much |θ| and the base's tilt may grow in the second half of the waiting without the pier counting as
@@ -42,7 +43,6 @@ class Waiting(NamedTuple):
     patience: float  # samples that a pier is waited for at most
     longest: float  # sample at which waiting ends
     read_wait: float  # samples between two readings; 0 where there is nothing to read twice
-    decided_at: float  # sample from which on nothing can exceed the peak, UNSET before it
     read_by: float  # sample from which on residuals are read though the pier still steps, or may turn further
     read: float  # sample of the first reading, UNSET before it
     read_left: float  # unstressed positions of both supports then [m], their difference a mean up to the second reading
@@ -64,30 +64,22 @@ class Waiting(NamedTuple):
     growth: float
 
 
-@system.expect.of(SpringTraits)
-def expect(traits, lanes, i, run):
-    """Set what lane ``i`` waits for after its record. Its motion is known."""
+@kernel
+def set_deadline(lanes, i, m, run):
+    """Set how long lane ``i`` of the pier ``m`` goes on after its record at most, and when its residuals are read."""
     waiting, last, samples = lanes.waiting, lanes.clock.npts[i] - 1.0, lanes.clock.samples[i]
     waiting.earliest[i] = last + run.read_after
     waiting.patience[i] = run.patience
     waiting.read_wait[i] = run.read_wait
     waiting.longest[i] = max(samples, waiting.earliest[i] + run.read_wait) + run.patience
-    waiting.decided_at[i] = UNSET
     waiting.read_by[i] = waiting.earliest[i] + (run.patience if run.read_wait > 0.0 else 0.0)
     waiting.read[i], waiting.read_left[i], waiting.read_right[i] = UNSET, math.nan, math.nan
     waiting.drift_left[i], waiting.drift_right[i] = math.nan, math.nan
     waiting.last_drift_left[i], waiting.last_drift_right[i] = 0.0, 0.0
     waiting.midway[i] = waiting.midway_tilt[i] = math.inf
     waiting.load[i], waiting.stored[i] = run.gravity + run.prestress, 0.0
-    waiting.period[i] = rocking_period(model(traits, lanes, i))
+    waiting.period[i] = rocking_period(m)
     waiting.further_right[i] = waiting.further_left[i] = waiting.growth[i] = 0.0
-
-
-@system.peak_stands.of(SpringTraits)
-def peak_stands(traits, lanes, i):
-    """Return whether it has been decided that nothing can exceed the peak, and nothing has."""
-    decided_at = lanes.waiting.decided_at[i]
-    return decided_at >= 0.0 and lanes.peak.time[i] <= decided_at * lanes.clock.dt[i]
 
 
 @kernel
@@ -96,8 +88,9 @@ def _unstressed(m, position, z, on_spring, waiting):
 
 
 @kernel
-def base_of(m, y, contact, supports):
+def base_of(m, now):
     """Return the unstressed positions [m] of both supports."""
+    y, contact, supports = now
     at = geometry(m, y.theta)
     left = _unstressed(m, y.v + at.lift_left, y.z_left, contact.left, supports.left)
     right = _unstressed(m, y.v + at.lift_right, y.z_right, contact.right, supports.right)
@@ -105,9 +98,9 @@ def base_of(m, y, contact, supports):
 
 
 @kernel
-def _tilt(m, y, contact, supports):
+def _tilt(m, now):
     """Return the |tilt| of the base [rad]."""
-    left, right = base_of(m, y, contact, supports)
+    left, right = base_of(m, now)
     return 0.5 * abs(left - right) / m.half_width
 
 
@@ -131,29 +124,29 @@ def _legible(lanes, i, contact):
 
 
 @kernel
-def _base_and_yield_points(m, y, contact, supports):
+def _base_and_yield_points(m, now):
     """Return where both supports are unstressed [m], and their yield points."""
-    left, right = base_of(m, y, contact, supports)
-    return Supports(left, right, supports.yield_left, supports.yield_right)
+    left, right = base_of(m, now)
+    return Supports(left, right, now.supports.yield_left, now.supports.yield_right)
 
 
 @kernel
-def _peak_is_final(lanes, i, m, y, contact, supports, devices):
+def _peak_is_final(lanes, i, m, now, devices):
     """Return whether nothing can exceed the peak any more; never while the ground moves."""
     if not ground_rests(lanes, i):
         return False
     waiting = lanes.waiting
-    calm = devices is None and _stands(lanes, i, contact)
-    base = _base_and_yield_points(m, y, contact, supports)
+    calm = devices is None and _stands(lanes, i, now.contact)
+    on_base = Moment(now.y, now.contact, _base_and_yield_points(m, now))
     drift = Drift(waiting.further_right[i], waiting.further_left[i], waiting.growth[i])
-    return peak_is_final(m, y, contact, waiting.load[i], waiting.stored[i], base, lanes.peak.theta[i], calm, drift)
+    return peak_is_final(m, on_base, Load(waiting.load[i], waiting.stored[i]), lanes.peak.theta[i], calm, drift)
 
 
 @kernel
-def _read_base(lanes, i, m, y, contact, supports):
+def _read_base(lanes, i, m, now):
     """Read the residuals: the positions of the supports, and how they have drifted since the last reading."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
-    left, right = base_of(m, y, contact, supports)
+    left, right = base_of(m, now)
     if waiting.read[i] < 0.0:
         waiting.read[i], waiting.read_left[i], waiting.read_right[i] = sample, left, right
     else:
@@ -181,10 +174,10 @@ def _foresee(lanes, i, m):
 
 
 @kernel
-def _include_in_mean(lanes, i, m, y, contact, supports):
+def _include_in_mean(lanes, i, m, now):
     """Bring the tilt, which is a mean over the time between the first two readings, up to this sample."""
     waiting = lanes.waiting
-    left, right = base_of(m, y, contact, supports)
+    left, right = base_of(m, now)
     samples = lanes.clock.sample[i] - waiting.read[i] + 1.0
     higher = 0.5 * (left - right - waiting.read_left[i] + waiting.read_right[i]) / samples
     waiting.read_left[i] += higher
@@ -203,7 +196,7 @@ def _in_deck(m, devices, y):
 
 
 @kernel
-def _in_devices(lanes, i, m, devices, y, contact, supports):
+def _in_devices(lanes, i, m, devices, now):
     """Note the load [m/s²] that supports carry at rest, and the energy [J/kg] that devices may give back beyond its work.
 
     A tendon's force falls with its elongation or stays: its energy lies above the tangent at any elongation, and that where
@@ -212,7 +205,7 @@ def _in_devices(lanes, i, m, devices, y, contact, supports):
     """
     if devices is None:
         return
-    left, right = base_of(m, y, contact, supports)
+    y, (left, right) = now.y, base_of(m, now)
     at = attitude(m, y, devices.level[0])
     sunk = 0.5 * (left + right) - lanes.lowest.plastic[i]
     load, beyond, turning = m.gravity, 0.0, 0.0
@@ -236,47 +229,53 @@ def _in_devices(lanes, i, m, devices, y, contact, supports):
     lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i]) - at_limit
 
 
-@system.over.of(SpringTraits)
-def over(traits, lanes, i, devices):
-    """Return how the run in lane ``i`` ended if it is over at this sample, RUNNING if it goes on; residuals are read."""
+@system.status_at_sample.of(SpringTraits)
+def status_at_sample(traits, lanes, i, devices):
+    """Return how the run in lane ``i`` has ended, and the next sample at which it may have or residuals are read."""
+    status = _status(traits, lanes, i, devices)
+    return status, _next_due(lanes, i)
+
+
+@kernel
+def _status(traits, lanes, i, devices):
+    """Return how the run in lane ``i`` has ended, RUNNING if it goes on; residuals are read."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     samples, longest = lanes.clock.samples[i], waiting.longest[i]
     if sample < waiting.earliest[i]:
         return RUNNING
-    wait, decided = waiting.read_wait[i], waiting.decided_at[i] >= 0.0
+    wait, decided = waiting.read_wait[i], lanes.peak.decided_at[i] >= 0.0
     if decided and wait == 0.0:  # nothing can change any more
         return RUNNING if sample < samples else SURVIVED
-    m = model(traits, lanes, i)
-    y, contact, supports = moment(traits, lanes, i)
-    if decided and waiting.read[i] < 0.0 and not _legible(lanes, i, contact):
+    m, now = pier_in(traits, lanes, i)
+    if decided and waiting.read[i] < 0.0 and not _legible(lanes, i, now.contact):
         return RUNNING
     if wait > 0.0 and (decided or sample >= waiting.read_by[i]):
         if waiting.read[i] < 0.0 or sample == waiting.last_read[i] + wait:
-            _read_base(lanes, i, m, y, contact, supports)
+            _read_base(lanes, i, m, now)
         elif sample < waiting.read[i] + wait:
-            _include_in_mean(lanes, i, m, y, contact, supports)
+            _include_in_mean(lanes, i, m, now)
     if decided and sample < max(samples, waiting.read[i] + wait):
         return RUNNING
-    _in_devices(lanes, i, m, devices, y, contact, supports)
-    final = _peak_is_final(lanes, i, m, y, contact, supports, devices)
+    _in_devices(lanes, i, m, devices, now)
+    final = _peak_is_final(lanes, i, m, now, devices)
     if final and not decided:
-        waiting.decided_at[i] = sample
-        if waiting.read[i] < 0.0 and _legible(lanes, i, contact):
-            _read_base(lanes, i, m, y, contact, supports)
+        lanes.peak.decided_at[i] = sample
+        if waiting.read[i] < 0.0 and _legible(lanes, i, now.contact):
+            _read_base(lanes, i, m, now)
     if final and waiting.read[i] >= 0.0 and sample >= max(samples, waiting.read[i] + wait):
         return SURVIVED
     if sample == (samples + longest) // 2:
-        waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, y, contact, supports)
-    return RUNNING if sample < longest else _given_up(lanes, i, m, y, contact, supports)
+        waiting.midway[i], waiting.midway_tilt[i] = lanes.peak.theta[i], _tilt(m, now)
+    return RUNNING if sample < longest else _given_up(lanes, i, m, now)
 
 
-@system.next_due.of(SpringTraits)
-def next_due(traits, lanes, i):
+@kernel
+def _next_due(lanes, i):
     """Return the number of the next sample at which the run may be over, or something has to be read."""
     waiting, sample = lanes.waiting, lanes.clock.sample[i]
     if sample < waiting.earliest[i]:
         return waiting.earliest[i]
-    if waiting.decided_at[i] < 0.0:
+    if lanes.peak.decided_at[i] < 0.0:
         return sample + 1.0
     if waiting.read_wait[i] == 0.0:
         return max(lanes.clock.samples[i], sample + 1.0)
@@ -289,14 +288,14 @@ def next_due(traits, lanes, i):
 
 
 @kernel
-def _given_up(lanes, i, m, y, contact, supports):
+def _given_up(lanes, i, m, now):
     """Return how a run ends that nothing has decided for so long; one that is not waited for is cut off as it is."""
     if lanes.waiting.patience[i] == 0.0:
         return SURVIVED
-    lean = lean_on(m, _base_and_yield_points(m, y, contact, supports))
-    if max(abs(lean), abs(y.theta)) >= unstable_equilibrium(m, lanes.waiting.load[i]):
+    lean = lean_on(m, _base_and_yield_points(m, now))
+    if max(abs(lean), abs(now.y.theta)) >= unstable_equilibrium(m, lanes.waiting.load[i]):
         return UNDECIDED
     least = GROWTH * lanes.clock.alpha[i]
     turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least
-    tilted = _tilt(m, y, contact, supports) > lanes.waiting.midway_tilt[i] + least
+    tilted = _tilt(m, now) > lanes.waiting.midway_tilt[i] + least
     return GROWING if ratchets(m.law) and turned and tilted else RESTLESS

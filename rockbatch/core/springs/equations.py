@@ -1,12 +1,13 @@
 """Equations of motion of the pier on two springs, once for all contacts and both kinematics (THEORY.md, eqs. 4 to 9)."""
 
 from rockbatch.core import system
+from rockbatch.core.clock import Clearances
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.springs.laws import within_yield, z_rate
 from rockbatch.core.springs.model import Contact, Geometry, Springs, State
 from rockbatch.core.springs.recovery import acceleration_of_top, forces, recovery_rate, share_left, top, with_recovery
 from rockbatch.core.trigonometry import sine_and_cosine
-from rockbatch.core.types import LEFT, Pull
+from rockbatch.core.types import LEFT
 
 
 @inlined
@@ -35,15 +36,6 @@ def geometry(m, theta):
     )  # fmt: skip
 
 
-@system.pulled.of(Springs)
-def pulled(m, force, moment):
-    """Return the pier ``m`` under a force [m/s²] and a moment [m²/s²]."""
-    return Springs(
-        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, Pull(force, moment),
-    )  # fmt: skip
-
-
 @inlined
 def _with_pull(pull, force, moment):
     """Return force and moment, upwards and to the right, with those of dampers and tendons."""
@@ -53,17 +45,17 @@ def _with_pull(pull, force, moment):
 
 
 @inlined
-def accelerations_at(m, y, contact, at, horizontal, vertical):
-    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]; ``at`` is its geometry."""
+def accelerations_at(m, y, contact, at, ground):
+    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y``, whose geometry is ``at``."""
     force_left, force_right = forces(m, y, contact, at)
     side = contact.right - contact.left
     lever = at.lever + side * at.swing
-    moment = -force_left * at.moment_left - force_right * at.moment_right - lever * horizontal
+    moment = -force_left * at.moment_left - force_right * at.moment_right - lever * ground.horizontal
     effective = m.height
     if m.finite is not None:
         effective = lever
         moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
-    v_acceleration, moment = _with_pull(m.pull, -m.gravity - vertical - force_left - force_right, moment)
+    v_acceleration, moment = _with_pull(m.pull, -m.gravity - ground.vertical - force_left - force_right, moment)
     if contact.held == 0.0:
         return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
     # A held pivot neither lifts nor presses: it goes with its support (Filippov's sliding mode).
@@ -74,17 +66,11 @@ def accelerations_at(m, y, contact, at, horizontal, vertical):
     return v_acceleration, -(free + at.bend_right * y.omega * y.omega) / at.arm_right
 
 
-@system.accelerations.of(Springs)
-def accelerations(m, y, contact, horizontal, vertical):
-    """Return v̈ [m/s²] and θ̈ [rad/s²] of state ``y`` under ground accelerations [m/s²]."""
-    return accelerations_at(m, y, contact, geometry(m, y.theta), horizontal, vertical)
-
-
 @system.rates.of(Springs)
-def rates(m, y, contact, horizontal, vertical):
+def rates(m, y, contact, ground):
     """Return the right-hand side: the rates of all state variables."""
     at = geometry(m, y.theta)
-    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, horizontal, vertical)
+    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, ground)
     left = contact.left * (y.v_rate + at.arm_left * y.omega)
     right = contact.right * (y.v_rate + at.arm_right * y.omega)
     return State(
@@ -98,10 +84,10 @@ def rates(m, y, contact, horizontal, vertical):
 
 
 @kernel
-def pivot_acceleration(m, y, contact, side, horizontal, vertical):
+def pivot_acceleration(m, y, contact, side, ground):
     """Return the vertical acceleration [m/s²] of the pivot on ``side`` (LEFT or RIGHT), over that of its support without it."""
     at = geometry(m, y.theta)
-    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, horizontal, vertical)
+    v_acceleration, theta_acceleration = accelerations_at(m, y, contact, at, ground)
     if side == LEFT:
         away = v_acceleration - acceleration_of_top(m, y.z_left)
         return away + at.arm_left * theta_acceleration + at.bend_left * y.omega * y.omega
@@ -115,17 +101,17 @@ def share(m, h):
     return share_left(m, h)
 
 
-@system.staged.of(Springs)
-def staged(m, y, start, contact, left):
+@system.stage.of(Springs)
+def stage(m, y, start, contact, remaining):
     """Return a stage of a step, with what has recovered in closed form."""
-    return with_recovery(m, y, start, contact, left)
+    return with_recovery(m, y, start, contact, remaining)
 
 
-@system.ended.of(Springs)
-def ended(m, y, start, contact, left):
+@system.end_step.of(Springs)
+def end_step(m, y, start, contact, remaining):
     """Return the end of a step, with z no lower than −1 and what has recovered in closed form."""
     z_left, z_right = within_yield(y.z_left, contact.left_yields), within_yield(y.z_right, contact.right_yields)
-    return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, left)
+    return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, remaining)
 
 
 @system.lever.of(Springs)
@@ -141,12 +127,12 @@ def airborne(m, contact):
     return contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
 
 
-@system.clearances.of(Springs)
+@inlined
 def clearances(m, y, supports):
-    """Return the height [m] of both pivots above their waiting supports, and the rates [m/s] of the pivots."""
+    """Return the Clearances of both pivots above their waiting supports; the rates are those of the pivots."""
     at = geometry(m, y.theta)
     left, right = top(m, supports.left, y.z_left), top(m, supports.right, y.z_right)
-    return (
+    return Clearances(
         y.v + at.lift_left - left, y.v + at.lift_right - right,
         y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega,
     )  # fmt: skip

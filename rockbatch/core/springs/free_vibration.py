@@ -148,16 +148,22 @@ def lean_on(m, base):
     return 0.5 * (base.left - base.right) / m.half_width * _amplification(m)
 
 
+class Load(NamedTuple):
+    """Load of the supports at rest [m/s²], and what devices may give back beyond its work [J/kg]."""
+
+    weight: float
+    stored: float
+
+
 @kernel
-def peak_is_final(m, y, contact, load, in_tendons, base, peak, calm, drift):
-    """Return whether nothing that comes after state ``y`` can exceed the peak, nor overturn the pier.
+def peak_is_final(m, now, carried, peak, calm, drift):
+    """Return whether nothing that comes after the Moment ``now`` can exceed the peak, nor overturn the pier.
 
     Parameters
     ----------
-    base : Supports
-        Where both supports are unstressed [m], and their yield points.
-    in_tendons : float
-        What tendons may give back beyond the work of their share of the load [J/kg].
+    now : Moment
+        Its supports tell where both are unstressed [m], also under their pivots, and their yield points.
+    carried : Load
     peak : float
         Greatest |θ| so far [rad].
     calm : bool
@@ -165,7 +171,8 @@ def peak_is_final(m, y, contact, load, in_tendons, base, peak, calm, drift):
         apart from what vibrates vertically, but for the P–Δ moment of the latter.
     drift : Drift
     """
-    lean = lean_on(m, base)
+    y, contact, base = now
+    load, lean = carried.weight, lean_on(m, base)
     drift_right = drift.right + max(lean, 0.0) * drift.growth
     drift_left = drift.left + max(-lean, 0.0) * drift.growth
     if max(lean + drift_right, drift_left - lean) > peak * (
@@ -203,7 +210,7 @@ def peak_is_final(m, y, contact, load, in_tendons, base, peak, calm, drift):
         gained, at_lean = (load - g) * _drop(m, y.theta), -g * _drop(m, lean)
     kinetic = 0.5 * y.v_rate * y.v_rate + 0.5 * (m.inertia + lever * lever) * y.omega * y.omega
     spring = m.yield_force * m.yield_deflection
-    stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + in_tendons
+    stored = load * y.v + gained + 0.5 * spring * (y.z_left * y.z_left + y.z_right * y.z_right) + carried.stored
     at_lean += load * (middle - softness) + 0.5 * load * softness * (1.0 + uneven * uneven)
     energy = (1.0 + _returned(m, limit)) * (kinetic + stored - at_lean)
     to_right = _climb(m, lean, limit - drift_right, load, base.yield_right)

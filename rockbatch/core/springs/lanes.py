@@ -5,21 +5,22 @@ from typing import NamedTuple
 from rockbatch.core import system
 from rockbatch.core.clock import COMMON, TIMING, ground_at, include_height
 from rockbatch.core.ground import later
-from rockbatch.core.history import write
+from rockbatch.core.history import Stamp, write
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import lowest_within
-from rockbatch.core.springs import events  # noqa: F401  answers of the springs
-from rockbatch.core.springs.ending import Waiting, base_of
+from rockbatch.core.springs import events  # noqa: F401  hooks of the springs
+from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
+from rockbatch.core.springs.equations import clearances
 from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
 from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
-from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, Springs, SpringTraits, State, Supports
-from rockbatch.core.springs.passing import StepStatus
+from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, SpringTraits, State, Supports, model_in
+from rockbatch.core.springs.passing import Reversals
 from rockbatch.core.springs.reversal import pivots
 from rockbatch.core.springs.transitions import with_yield_points
-from rockbatch.core.system import Kind, model, moment, rates
+from rockbatch.core.system import System, rates
 from rockbatch.core.table import get, lanes_of, put, taken
-from rockbatch.core.types import BEFORE_EVENT, SPRING_LEFT, SPRING_RIGHT
+from rockbatch.core.types import BEFORE_EVENT, SPRING_LEFT, SPRING_RIGHT, Instant, Moment, Part
 
 
 class Lowest(NamedTuple):
@@ -32,7 +33,7 @@ class Lowest(NamedTuple):
 
 LANE = lanes_of(COMMON | {
     "model": Numbers, "now": State, "end": State, "rates": State, "contact": Contact, "supports": Supports,
-    "loading": Loading, "lowest": Lowest, "step_status": StepStatus, "waiting": Waiting,
+    "loading": Loading, "lowest": Lowest, "reversals": Reversals, "waiting": Waiting,
 })  # fmt: skip
 
 
@@ -46,42 +47,23 @@ LINE = (
     ("z_left", float),
     ("z_right", float),
 )  # fmt: skip
-"""Fields of a run as it is asked for."""
+"""Fields of a run as it is requested."""
 
 Line = NamedTuple("Line", LINE)  # type: ignore[misc]
 
 
+@system.pier_in.of(SpringTraits)
+def pier_in(traits, lanes, i):
+    """Return the Springs of lane ``i``, and its Moment."""
+    now = Moment(get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports))
+    return model_in(traits, lanes, i), now
+
+
 @inlined
-def _typed(exponent, value):
-    if isinstance(exponent, int):
-        return int(value)
-    if isinstance(exponent, float):
-        return value
-    return None
-
-
-@system.model.of(SpringTraits)
-def model_in(traits, lanes, i):
-    """Return the Springs of lane ``i``, of the types that ``traits`` have."""
-    m = get(lanes.model, i, Numbers)
-    return Springs(
-        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.damping, m.law, m.guided, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
-    )  # fmt: skip
-
-
-@system.moment.of(SpringTraits)
-def moment_in(traits, lanes, i):
-    """Return state, contact and supports of lane ``i``."""
-    return get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports)
-
-
-@system.put_moment.of(SpringTraits)
-def put_moment(traits, lanes, i, y, contact, supports):
-    """Write state, contact and supports of lane ``i``."""
-    put(lanes.now, i, y)
-    put(lanes.contact, i, contact)
-    put(lanes.supports, i, supports)
+def _put_moment(lanes, i, now):
+    put(lanes.now, i, now.y)
+    put(lanes.contact, i, now.contact)
+    put(lanes.supports, i, now.supports)
 
 
 @kernel
@@ -118,7 +100,7 @@ def held_contact(m, y, z_static, plastic):
 def begin(traits, lanes, i, run):
     """Put the model of ``run`` into lane ``i``, in its static state or where it is held at a rotation."""
     put(lanes.model, i, taken(run, Numbers))
-    pier = model(traits, lanes, i)
+    pier = model_in(traits, lanes, i)
     y = static_state(pier, run.gravity + run.prestress)
     level, plastic = y.v, y.v - run.yield_deflection * y.z_left
     contact, supports = static_contact(pier, y)
@@ -128,15 +110,18 @@ def begin(traits, lanes, i, run):
     left, right = pivots(pier, y)
     unstressed_left = left.position - run.yield_deflection * y.z_left
     unstressed_right = right.position - run.yield_deflection * y.z_right
-    put_moment(traits, lanes, i, y, contact, supports)
+    _put_moment(lanes, i, Moment(y, contact, supports))
     put(lanes.loading, i, Loading(unstressed_left, y.z_left, 0.0, unstressed_right, y.z_right, 0.0))
     put(lanes.lowest, i, Lowest(min(level, left.position), min(level, right.position), plastic))
-    lanes.step_status.watched[i] = 1.0
+    set_deadline(lanes, i, pier, run)
 
 
-@system.include.of(SpringTraits)
-def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
-    """Bring the lowest positions up to those of a smooth part of ``h`` [s]."""
+@inlined
+def _include_extremes(lanes, i, m, part):
+    """Bring height of flight and lowest positions up to those of a Part."""
+    (y, contact, supports), end, h = part
+    if system.airborne(m, contact):
+        include_height(lanes, i, clearances(m, y, supports), clearances(m, end, supports), h)
     left, right = pivots(m, y)
     left_end, right_end = pivots(m, end)
     lowest = lanes.lowest
@@ -150,63 +135,53 @@ def include(traits, lanes, i, m, y, k, end, k_end, contact, h):
         )
 
 
-@system.after_event.of(SpringTraits)
-def after_event(traits, lanes, i, m, before, after, y):
-    """Keep where the branches of the springs began, and the plastic work of those that have ended."""
-    put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, branch_change(m, y)))
+@system.take_in_part.of(SpringTraits)
+def take_in_part(traits, lanes, i, m, part, after):
+    """Keep extremes, where the branches of the springs began, and the plastic work of those that have ended."""
+    _include_extremes(lanes, i, m, part)
+    loading, before = get(lanes.loading, i, Loading), part.start.contact
+    put(lanes.loading, i, branches(m, loading, before, after.contact, branch_change(m, after.y)))
+    _put_moment(lanes, i, after)
 
 
-@system.after_step.of(SpringTraits)
-def after_step(traits, lanes, i, marks, contact, whole):
-    """Let the pass take the next sub-step by itself, if all event functions are clear of zero at its start."""
-    clear = whole and contact.held == 0.0 and min(marks.now[0], marks.now[1]) > 0.0
-    for j in (2, 3):  # a velocity leaves zero
-        clear = clear and (marks.now[j] > 0.0 or marks.now_slopes[j] > 0.0)
-    lanes.step_status.watched[i] = 0.0 if clear else 1.0
-
-
-@system.attend.of(SpringTraits)
-def attend(traits, lanes, i, substep, history):
+@system.take_in_step.of(SpringTraits)
+def take_in_step(traits, lanes, i, substep, history):
     """Take in extremes and reversals of a sub-step of lane ``i`` that stands; the lane goes on from its end."""
-    m, h = model(traits, lanes, i), lanes.clock.step[i]
-    y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), get(lanes.contact, i, Contact)
-    if system.airborne(m, contact):
-        include_height(lanes, i, m, get(lanes.supports, i, Supports), y, end, h)
-    include(traits, lanes, i, m, y, y, end, end, contact, h)
-    if lanes.step_status.keeps[i] < 0.0:
-        _change_branches(traits, lanes, i, m, substep, history)
+    m, now = pier_in(traits, lanes, i)
+    end = get(lanes.end, i, State)
+    _include_extremes(lanes, i, m, Part(now, end, lanes.clock.step[i]))
+    if lanes.reversals.keeps[i] < 0.0:
+        _change_branches(lanes, i, m, now, substep, history)
     put(lanes.now, i, end)
 
 
 @kernel
-def _change_branches(traits, lanes, i, m, substep, history):
+def _change_branches(lanes, i, m, now, substep, history):
     """Let the springs of lane ``i`` change their branches where their velocities reversed in its sub-step."""
-    before, at, step_status = get(lanes.contact, i, Contact), get(lanes.step_status, i, BranchChange), lanes.step_status
+    before, at, reversals = now.contact, get(lanes.reversals, i, BranchChange), lanes.reversals
     left, right = before.left_yields, before.right_yields
     after = Contact(
         before.left, before.right,
-        1.0 - left if step_status.left[i] >= 0.0 else left, 1.0 - right if step_status.right[i] >= 0.0 else right, 0.0,
+        1.0 - left if reversals.left[i] >= 0.0 else left, 1.0 - right if reversals.right[i] >= 0.0 else right, 0.0,
     )  # fmt: skip
+    if history.rows.shape[0] > 0:
+        _write_reversals(lanes, i, m, substep, after, history)
     put(lanes.contact, i, after)
     put(lanes.loading, i, branches(m, get(lanes.loading, i, Loading), before, after, at))
-    put(lanes.supports, i, with_yield_points(m, at, before, after, get(lanes.supports, i, Supports)))
-    if history.rows.shape[0] > 0:
-        _write_reversals(traits, lanes, i, m, substep, before, after, history)
+    put(lanes.supports, i, with_yield_points(m, at, before, after, now.supports))
 
 
 @system.finish.of(SpringTraits)
 def finish(traits, lanes, i, t, result):
     """Write residuals, extremes and plastic work of the run in lane ``i``."""
-    m = model(traits, lanes, i)
-    y, contact, supports = moment(traits, lanes, i)
+    m, now = pier_in(traits, lanes, i)
     waiting, lowest = lanes.waiting, lanes.lowest
     t_read, base_left, base_right = waiting.read[i] * lanes.clock.dt[i], waiting.read_left[i], waiting.read_right[i]
     if waiting.read[i] < 0.0:
         t_read = t
-        base_left, base_right = base_of(m, y, contact, supports)
-    loading = branches(
-        m, get(lanes.loading, i, Loading), contact, Contact(0.0, 0.0, 0.0, 0.0, 0.0), branch_change(m, y)
-    )
+        base_left, base_right = base_of(m, now)
+    on_no_branch, loading = Contact(0.0, 0.0, 0.0, 0.0, 0.0), get(lanes.loading, i, Loading)
+    loading = branches(m, loading, now.contact, on_no_branch, branch_change(m, now.y))
     result.base_left = base_left - lowest.plastic[i]
     result.base_right = base_right - lowest.plastic[i]
     result.deepest_left = lowest.left[i]
@@ -216,36 +191,37 @@ def finish(traits, lanes, i, t, result):
     result.t_read = t_read
     result.drift_left = waiting.drift_left[i]
     result.drift_right = waiting.drift_right[i]
-    result.v_end, result.theta_end = y.v, y.theta
 
 
 @kernel
-def _write_reversals(traits, lanes, i, m, substep, contact, after, history):
-    """Write both sides of the reversals that change the ``contact`` of lane ``i`` to that ``after`` its sub-step."""
+def _write_reversals(lanes, i, m, substep, after, history):
+    """Write both sides of the reversals that change the contact of lane ``i`` to that ``after`` its sub-step."""
     start, number = substep * lanes.clock.step[i], int(lanes.clock.number[i])
     t, ground = lanes.clock.sample[i] * lanes.clock.dt[i] + start, ground_at(lanes, i, start)
-    y, left, right, at = get(lanes.now, i, State), lanes.step_status.left[i], lanes.step_status.right[i], 0.0
+    y, contact, supports = get(lanes.now, i, State), get(lanes.contact, i, Contact), get(lanes.supports, i, Supports)
+    left, right, at = lanes.reversals.left[i], lanes.reversals.right[i], 0.0
     for _ in range(2):
         of_left = left >= 0.0 and (right < 0.0 or left <= right)
         when = left if of_left else right
         if when < 0.0:
             return
-        k = rates(m, y, contact, ground.horizontal, ground.vertical)
-        y = rk4(m, None, y, k, contact, ground, when - at)
-        write(history, number, t + when, BEFORE_EVENT, m, None, y, contact, ground)
+        k = rates(m, y, contact, ground)
+        y = rk4(m, None, Instant(y, k, contact, supports, ground), when - at)
+        write(history, Stamp(number, t + when, BEFORE_EVENT), m, None, Moment(y, contact, supports), ground)
         if of_left:
             contact = Contact(contact.left, contact.right, after.left_yields, contact.right_yields, 0.0)
             left = -1.0
         else:
             contact = Contact(contact.left, contact.right, contact.left_yields, after.right_yields, 0.0)
             right = -1.0
-        write(history, number, t + when, SPRING_LEFT if of_left else SPRING_RIGHT, m, None, y, contact, ground)
+        kind = SPRING_LEFT if of_left else SPRING_RIGHT
+        write(history, Stamp(number, t + when, kind), m, None, Moment(y, contact, supports), ground)
         ground, at = later(ground, when - at), when
 
 
-def kind_of(m):
-    """Return the Kind of the pier ``m`` (Springs): what its runs are compiled for."""
-    return Kind(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
+def system_of(m):
+    """Return the System of the pier ``m`` (Springs): what its runs are compiled for."""
+    return System(SpringTraits(m.exponent, m.finite, m.damped), Line, LANE, State._fields + Contact._fields)
 
 
 def line_of(m, *timing):

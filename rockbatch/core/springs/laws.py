@@ -83,12 +83,12 @@ def yield_point(law, point, z):
 
 
 @inlined
-def switching_point(law, yields, point, z, z_rate, velocity, acceleration):
-    """Return the event function of a spring's switching point, positive while it stays on its branch, and its rate."""
-    sign = kept_sign(law, 1.0, yields)
-    if may_yield(law, yields):
-        return z - point, z_rate
-    return (1.0, 0.0) if sign == 0.0 else (sign * velocity, sign * acceleration)
+def switching_point(law, side, z_rate, acceleration):
+    """Return the event function of a switching point, positive while the spring of a Side stays on its branch, and its rate."""
+    sign = kept_sign(law, 1.0, side.yields)
+    if may_yield(law, side.yields):
+        return side.z - side.point, z_rate
+    return (1.0, 0.0) if sign == 0.0 else (sign * side.velocity, sign * acceleration)
 
 
 @inlined

@@ -27,14 +27,23 @@ class BranchChange(NamedTuple):
     z_right: float
 
 
+class Branch(NamedTuple):
+    """Unstressed position [m] and z of a spring at the start of its branch, and its plastic work/F_y so far [m]."""
+
+    unstressed: float
+    z: float
+    work: float
+
+
 @kernel
-def _branch(m, was, now, begun, z_begun, unstressed, z, work):
-    """Return the start of a spring's branch and its plastic work, brought up to an event at ``z``, ``unstressed`` there then."""
+def _branch(m, was, now, begun, unstressed, z):
+    """Return the Branch ``begun``, brought up to an event at ``z``, ``unstressed`` there then."""
     if was == now:
-        return begun, z_begun, work
+        return begun
+    work = begun.work
     if was != 0.0:
-        work += plastic_work(m, z_begun, z, begun - unstressed)
-    return unstressed, z, work
+        work += plastic_work(m, begun.z, z, begun.unstressed - unstressed)
+    return Branch(unstressed, z, work)
 
 
 @kernel
@@ -43,15 +52,11 @@ def branches(m, loading, before, after, at):
 
     ``at`` has unstressed positions [m] and z of both springs at the change of each (BranchChange).
     """
-    left, z_left, work_left = _branch(
-        m, before.left_yields, after.left_yields,
-        loading.left, loading.z_left, at.unstressed_left, at.z_left, loading.work_left,
-    )  # fmt: skip
-    right, z_right, work_right = _branch(
-        m, before.right_yields, after.right_yields,
-        loading.right, loading.z_right, at.unstressed_right, at.z_right, loading.work_right,
-    )  # fmt: skip
-    return Loading(left, z_left, work_left, right, z_right, work_right)
+    left = Branch(loading.left, loading.z_left, loading.work_left)
+    left = _branch(m, before.left_yields, after.left_yields, left, at.unstressed_left, at.z_left)
+    right = Branch(loading.right, loading.z_right, loading.work_right)
+    right = _branch(m, before.right_yields, after.right_yields, right, at.unstressed_right, at.z_right)
+    return Loading(left.unstressed, left.z, left.work, right.unstressed, right.z, right.work)
 
 
 @kernel

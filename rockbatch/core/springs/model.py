@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from rockbatch.core.kernel import inlined
+from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
 # Constitutive models; those from EPP on have a yield point
@@ -29,6 +31,7 @@ class Springs(NamedTuple):
     damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
     law: float  # ELASTIC, BOUC_WEN, EPP or HARDENING
     guided: float  # 1: flight goes on, 0: it ends the run
+    rest: float  # velocity that counts as none [m/s]
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
     finite: bool | None  # True: finite kinematics; None: first-order
     damped: bool | None = None  # True: a dashpot beside each spring; None: none
@@ -48,6 +51,25 @@ NUMBERS = tuple((name, float) for name in Springs._fields[: Springs._fields.inde
 """Fields of Springs that lanes hold."""
 
 Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
+
+
+@inlined
+def _typed(exponent, value):
+    if isinstance(exponent, int):
+        return int(value)
+    if isinstance(exponent, float):
+        return value
+    return None
+
+
+@inlined
+def model_in(traits, lanes, i):
+    """Return the Springs of lane ``i``, of the types that ``traits`` have."""
+    m = get(lanes.model, i, Numbers)
+    return Springs(
+        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
+        m.damping, m.law, m.guided, m.rest, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
+    )  # fmt: skip
 
 
 class State(NamedTuple):

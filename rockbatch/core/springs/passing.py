@@ -9,22 +9,22 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core import system
-from rockbatch.core.clock import ATTEND, CALM, EVENTFUL, ON_ITS_SIDE, UNSET, ground_at, peak_at_end
+from rockbatch.core.clock import CALM, EVENTFUL, ON_ITS_SIDE, STANDS, UNSET, ground_at, peak_at_end
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import excess
 from rockbatch.core.springs.laws import kept_sign, may_yield
-from rockbatch.core.springs.model import Contact, SpringTraits, State
+from rockbatch.core.springs.model import Contact, SpringTraits, State, model_in
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import corrected, once, pivot_accelerations, pivots, reversal
-from rockbatch.core.system import model, rates
-from rockbatch.core.table import NONE, get, put
+from rockbatch.core.system import rates
+from rockbatch.core.table import ZERO, get, put
+from rockbatch.core.types import Instant
 
 
-class StepStatus(NamedTuple):
-    """Outcome of the pass; the reversals that it has corrected are those of the sub-step only where ``keeps`` is negative."""
+class Reversals(NamedTuple):
+    """Reversals that the pass has corrected; they are those of the sub-step only where ``keeps`` is negative."""
 
-    kind: float
     keeps: float  # negative if a spring's velocity has lost the sign that it keeps on its branch [m/s]
     surely: float  # positive unless there may be two reversals of a spring, or one that is too sharp for a correction
     left: float  # when the left velocity reversed [s], UNSET without a reversal
@@ -33,7 +33,6 @@ class StepStatus(NamedTuple):
     z_right: float
     unstressed_left: float  # unstressed position then [m]
     unstressed_right: float
-    watched: float  # above 0 where the sub-step shall be looked at whatever the pass makes of it
 
 
 class Range(NamedTuple):
@@ -59,18 +58,30 @@ def _range(m, start, end, h):
     )  # fmt: skip
 
 
+class Support(NamedTuple):
+    """Support of a pivot in a sub-step."""
+
+    on_spring: float  # 1 if the pivot is on it
+    yields: float  # 1 if the spring is on its inelastic branch
+    unstressed: float  # position at which it is unstressed without its pivot [m]
+    point: float  # yield point
+    z: float
+    z_end: float
+
+
 @inlined
-def _clear(m, on_spring, yields, support, point, start, end, z, z_end, within, h):
-    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield ``point``.
+def _clear(m, support, start, end, within, h):
+    """Return a number, positive if a pivot surely has neither separated nor landed, nor reached its yield point.
 
     What may be no number comes first in maxima and minima: then they are none either.
     """
+    on_spring, yields, unstressed, point, z, z_end = support
     contact = -max(z_end + within.rise_end, z + within.rise)
     if m.damped is not None:  # the dashpot pulls most where the parabola through both velocities and the way is highest
         bulge = 1.5 * abs((end.position - start.position) / h - 0.5 * (start.velocity + end.velocity))
         contact -= lag(m) * (max(start.velocity, end.velocity) + bulge)
     until_yield = min(z_end - within.fall_end, z - within.fall) - point
-    gap = within.lowest - top(m, support, z_end)  # a support creeps up
+    gap = within.lowest - top(m, unstressed, z_end)  # a support creeps up
     contact = min(contact, until_yield) if may_yield(m.law, yields) else contact
     return contact if on_spring != 0.0 else gap
 
@@ -98,20 +109,20 @@ def _signs(m, contact):
 @inlined
 def _stepped(traits, lanes, i, substep):
     """Take lane ``i`` through the sub-step, on the branches that its springs are on."""
-    m, h = model(traits, lanes, i), lanes.clock.step[i]
+    m, h = model_in(traits, lanes, i), lanes.clock.step[i]
     y, contact, ground = get(lanes.now, i, State), _free(lanes, i), ground_at(lanes, i, substep * h)
-    k = rates(m, y, contact, ground.horizontal, ground.vertical)
+    k = rates(m, y, contact, ground)
     lanes.rates.v_rate[i], lanes.rates.omega[i] = k.v_rate, k.omega  # all that a correction takes
-    end = rk4(m, None, y, k, contact, ground, h)
+    end = rk4(m, None, Instant(y, k, contact, None, ground), h)
     put(lanes.end, i, end)
     (left, right), (sign_left, sign_right) = pivots(m, end), _signs(m, contact)
-    lanes.step_status.keeps[i] = lanes.clock.rest[i] + min(sign_left * left.velocity, sign_right * right.velocity)
+    lanes.reversals.keeps[i] = lanes.model.rest[i] + min(sign_left * left.velocity, sign_right * right.velocity)
 
 
 @inlined
 def _next_turned(lanes, i, count):
     """Return the first lane from ``i`` on in which a velocity has reversed; ``count`` if there is none."""
-    while i < count and not lanes.step_status.keeps[i] < 0.0:  # an empty lane has no number there
+    while i < count and not lanes.reversals.keeps[i] < 0.0:  # an empty lane has no number there
         i += 1
     return i
 
@@ -119,18 +130,18 @@ def _next_turned(lanes, i, count):
 @kernel
 def correct_reversals(traits, lanes, i):
     """Correct the end of the sub-step of lane ``i`` for the velocity reversals in it."""
-    m, h, rest, step_status = model(traits, lanes, i), lanes.clock.step[i], lanes.clock.rest[i], lanes.step_status
+    m, h, reversals = model_in(traits, lanes, i), lanes.clock.step[i], lanes.reversals
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), _free(lanes, i)
     (left, right), (left_end, right_end), (sign_left, sign_right) = pivots(m, y), pivots(m, end), _signs(m, contact)
     acceleration_left, acceleration_right = pivot_accelerations(m, y, get(lanes.rates, i, State))
-    turn_left = reversal(m, sign_left, rest, left, acceleration_left, left_end, end.z_left, h)
-    turn_right = reversal(m, sign_right, rest, right, acceleration_right, right_end, end.z_right, h)
+    turn_left = reversal(m, sign_left, left, acceleration_left, left_end, end.z_left, h)
+    turn_right = reversal(m, sign_right, right, acceleration_right, right_end, end.z_right, h)
     put(lanes.end, i, corrected(m, contact, end, turn_left, turn_right))
-    step_status.surely[i] = min(turn_left.surely, turn_right.surely)
-    step_status.left[i] = h - turn_left.after if turn_left.after > 0.0 else UNSET
-    step_status.right[i] = h - turn_right.after if turn_right.after > 0.0 else UNSET
-    step_status.z_left[i], step_status.z_right[i] = turn_left.z, turn_right.z
-    step_status.unstressed_left[i], step_status.unstressed_right[i] = turn_left.unstressed, turn_right.unstressed
+    reversals.surely[i] = min(turn_left.surely, turn_right.surely)
+    reversals.left[i] = h - turn_left.after if turn_left.after > 0.0 else UNSET
+    reversals.right[i] = h - turn_right.after if turn_right.after > 0.0 else UNSET
+    reversals.z_left[i], reversals.z_right[i] = turn_left.z, turn_right.z
+    reversals.unstressed_left[i], reversals.unstressed_right[i] = turn_left.unstressed, turn_right.unstressed
 
 
 @inlined
@@ -139,39 +150,39 @@ def _judged(traits, lanes, i, substep, settings):
 
     Extremes at the end are taken here; a sub-step that may hold one between its ends is not calm.
     """
-    m, h, step_status = model(traits, lanes, i), lanes.clock.step[i], lanes.step_status
+    m, h, step_status = model_in(traits, lanes, i), lanes.clock.step[i], lanes.step_status
     lowest, supports, low_left, low_right = lanes.lowest, lanes.supports, lanes.lowest.left[i], lanes.lowest.right[i]
     y, end, contact = get(lanes.now, i, State), get(lanes.end, i, State), _free(lanes, i)
     (left, right), (left_end, right_end), (sign_left, sign_right) = pivots(m, y), pivots(m, end), _signs(m, contact)
     in_left, in_right = _range(m, left, left_end, h), _range(m, right, right_end, h)
-    clear_left = _clear(
-        m, contact.left, contact.left_yields, supports.left[i], supports.yield_left[i],
-        left, left_end, y.z_left, end.z_left, in_left, h,
-    )  # fmt: skip
-    clear_right = _clear(
-        m, contact.right, contact.right_yields, supports.right[i], supports.yield_right[i],
-        right, right_end, y.z_right, end.z_right, in_right, h,
-    )  # fmt: skip
-    rest, turned = lanes.clock.rest[i], step_status.keeps[i] < 0.0
-    once_left, once_right = once(sign_left, rest, left, left_end, h), once(sign_right, rest, right, right_end, h)
-    surely = step_status.surely[i] if turned else min(once_left, once_right)
+    on_left = Support(contact.left, contact.left_yields, supports.left[i], supports.yield_left[i], y.z_left, end.z_left)
+    on_right = Support(
+        contact.right, contact.right_yields, supports.right[i], supports.yield_right[i], y.z_right, end.z_right
+    )
+    clear_left, clear_right = (
+        _clear(m, on_left, left, left_end, in_left, h),
+        _clear(m, on_right, right, right_end, in_right, h),
+    )
+    turned = lanes.reversals.keeps[i] < 0.0
+    once_left, once_right = once(m, sign_left, left, left_end, h), once(m, sign_right, right, right_end, h)
+    surely = lanes.reversals.surely[i] if turned else min(once_left, once_right)
     tilt_end = abs(end.theta)
     clear = min(clear_left, clear_right, surely, ON_ITS_SIDE - tilt_end)
-    stands = min(clear, (0.5 if settings.locate else -0.5) - step_status.watched[i]) > 0.0  # never of what is no number
+    watched = max(step_status.watched[i], abs(lanes.contact.held[i]))
+    stands = min(clear, (0.5 if settings.locate else -0.5) - watched) > 0.0  # never of what is no number
     eventful = CALM if stands else EVENTFUL
-    on_left, on_right = contact.left, contact.right
     beyond = max(abs(y.theta), tilt_end) + excess(y.omega, end.omega, h)
     nothing_new = min(
         lanes.peak.theta[i] - beyond if y.omega * end.omega < 0.0 else 1.0,
-        _not_lower(on_left, left, left_end, in_left, low_left),
-        _not_lower(on_right, right, right_end, in_right, low_right),
+        _not_lower(contact.left, left, left_end, in_left, low_left),
+        _not_lower(contact.right, right, right_end, in_right, low_right),
     )
-    to_attend = max(-nothing_new, 1.0 if turned else 0.0, 0.5 - on_left - on_right)
-    calm = max(to_attend, eventful) <= 0.0
+    to_take_in = max(-nothing_new, 1.0 if turned else 0.0, 0.5 - contact.left - contact.right)
+    calm = max(to_take_in, eventful) <= 0.0
     stays = 1.0 if calm else 0.0
     peak_at_end(lanes, i, tilt_end if calm else 0.0, substep)
-    lowest.left[i] = min(low_left, left_end.position if min(on_left, stays) > 0.0 else math.inf)
-    lowest.right[i] = min(low_right, right_end.position if min(on_right, stays) > 0.0 else math.inf)
+    lowest.left[i] = min(low_left, left_end.position if min(contact.left, stays) > 0.0 else math.inf)
+    lowest.right[i] = min(low_right, right_end.position if min(contact.right, stays) > 0.0 else math.inf)
     put(lanes.now, i, State(
         end.v if calm else y.v,
         end.theta if calm else y.theta,
@@ -180,7 +191,7 @@ def _judged(traits, lanes, i, substep, settings):
         end.z_left if calm else y.z_left,
         end.z_right if calm else y.z_right,
     ))  # fmt: skip
-    step_status.kind[i] = max(eventful, CALM if calm else ATTEND)
+    step_status.kind[i] = max(eventful, CALM if calm else STANDS)
 
 
 @system.one_pass.of(SpringTraits)
@@ -192,7 +203,7 @@ def one_pass(traits, lanes, count, substep, settings):
     """
     for i in range(count):
         _stepped(traits, lanes, i, substep)
-    i = _next_turned(lanes, NONE, count)
+    i = _next_turned(lanes, ZERO, count)
     while i < count:
         correct_reversals(traits, lanes, i)
         i = _next_turned(lanes, i + 1, count)

@@ -56,22 +56,20 @@ def _size(z):
 
 
 @inlined
-def reversal(m, sign, rest, start, acceleration, end, z_end, h):
+def reversal(m, sign, start, acceleration, end, z_end, h):
     """Return the reversal of a spring in a step of ``h`` [s] that was taken on one branch, from Pivot ``start`` to ``end``.
 
     Parameters
     ----------
     sign : float
         Of :func:`rockbatch.core.springs.laws.kept_sign`.
-    rest : float
-        Velocity that counts as none [m/s].
     acceleration : float
         Of the pivot at the start [m/s²].
     z_end : float
         z at the end of the step, as the branch has it.
     """
     w0, w1 = sign * start.velocity, sign * end.velocity
-    happened = w1 < -rest
+    happened = w1 < -m.rest
     share = w1 / (w1 - max(w0, 0.0)) if happened else 0.0  # of the step after the reversal, by the chord
     before = 1.0 - share
     way = end.position - start.position
@@ -84,20 +82,20 @@ def reversal(m, sign, rest, start, acceleration, end, z_end, h):
     added = stiffness_loss(m, _size(middle)) * abs(unit)
     unloads = (sign if happened else -0.5 - sign) < 0.0  # the branch at the end is elastic; sign is −1 on the other one
     z = z_end - unit + (added if unloads else 0.0)
-    surely = 1.0 if happened else once(sign, rest, start, end, h)
+    surely = 1.0 if happened else once(m, sign, start, end, h)
     unstressed = end.position - m.yield_deflection * (z + unit)
     return Reversal(share * h, z, unstressed, added, 1.0 if unloads else 1.0 - part, min(surely, SHARP - added))
 
 
 @inlined
-def once(sign, rest, start, end, h):
+def once(m, sign, start, end, h):
     """Return a number [m], negative if a velocity that has ``sign`` at both ends may reverse twice between.
 
     The parabola through both velocities and the way between them may dip below zero.
     """
     speed, speed_end = h * (sign * start.velocity), h * (sign * end.velocity)
     sag = 1.5 * (speed + speed_end) - 3.0 * sign * (end.position - start.position)
-    return min(speed, speed_end) + h * rest - 0.5 * sag
+    return min(speed, speed_end) + h * m.rest - 0.5 * sag
 
 
 @inlined

@@ -4,7 +4,7 @@ Written for the left pivot; at the right one, the mirror image is handled (Î¸ â†
 """
 
 from rockbatch.core import system
-from rockbatch.core.kernel import kernel, question
+from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.equations import geometry, on_ground, touching, without
 from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.impact import land, land_flat
@@ -17,6 +17,7 @@ from rockbatch.core.springs.laws import (
 )
 from rockbatch.core.springs.model import Contact, Springs, State, Supports
 from rockbatch.core.springs.recovery import lag, velocity_of_top
+from rockbatch.core.table import with_pull
 from rockbatch.core.types import (
     CONTACT_LEFT,
     HELD_LEFT,
@@ -32,7 +33,10 @@ from rockbatch.core.types import (
     SEPARATION_RIGHT,
     SPRING_LEFT,
     SPRING_RIGHT,
+    Ground,
+    Moment,
     Pull,
+    Transition,
 )
 
 
@@ -41,7 +45,7 @@ def _mirrored(y):
     return State(y.v, -y.theta, y.v_rate, -y.omega, y.z_right, y.z_left)
 
 
-@question
+@hook
 def _mirrored_pull(pull):
     """Return the mirror image of a pull of devices, of the type that it has."""
 
@@ -54,14 +58,6 @@ def _no_pull(pull):
 @_mirrored_pull.of(Pull)
 def _pull_to_the_other_side(pull):
     return Pull(pull.force, -pull.moment)
-
-
-@kernel
-def _mirrored_pier(m):
-    return Springs(
-        m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.damping, m.law, m.guided, m.exponent, m.finite, m.damped, _mirrored_pull(m.pull),
-    )  # fmt: skip
 
 
 @kernel
@@ -86,33 +82,32 @@ def _mirrored_kind(kind):
     return HELD_RIGHT if kind == HELD_LEFT else kind
 
 
-@system.uplifts.of(Springs)
-def uplifts(m, before, after, landed):
-    """Return the number of separations; a pivot may land and be lifted at once."""
-    return landed - on_ground(after) + on_ground(before)
+@kernel
+def _mirrored_moment(now):
+    return Moment(_mirrored(now.y), _mirrored_contact(now.contact), _mirrored_supports(now.supports))
 
 
 @system.transition.of(Springs)
-def transition(m, devices, y, contact, supports, which, rest, ground, dt):
-    """Return state, contact and supports after event ``which``, its kind, and 0: springs have no rest."""
-    horizontal, vertical = ground.horizontal, ground.vertical
-    y, contact, supports, kind = handle(m, y, contact, supports, which, rest, horizontal, vertical)
-    return y, contact, supports, kind, 0.0
+def transition(m, devices, now, which, ground, dt):
+    """Return the Transition by event ``which``; a pivot may land and be lifted at once. Springs have no rest."""
+    after, kind = handle(m, now, which, ground)
+    landed = 2 if kind == IMPACT_BOTH else (1 if kind in (IMPACT_LEFT, IMPACT_RIGHT) else 0)
+    uplifts = landed - on_ground(after.contact) + on_ground(now.contact)
+    return Transition(after, kind, float(landed), float(uplifts), 0.0)
 
 
 @kernel
-def handle(m, y, contact, supports, which, rest, horizontal, vertical):
-    """Return state, contact, supports and kind after event ``which``, of a pivot's contact or of its spring's law."""
+def handle(m, now, which, ground):
+    """Return the Moment after event ``which``, of a pivot's contact or of its spring's law, and its kind."""
     if which in (CONTACT_LEFT, LAW_LEFT):
-        after, now, moved, kind = _at_left(m, y, contact, supports, which == LAW_LEFT, rest, horizontal, vertical)
-        return after, now, with_yield_points(m, y, contact, now, moved), kind
-    after, now, moved, kind = _at_left(
-        _mirrored_pier(m), _mirrored(y), _mirrored_contact(contact), _mirrored_supports(supports),
-        which == LAW_RIGHT, rest, -horizontal, vertical,
-    )  # fmt: skip
-    now = _mirrored_contact(now)
-    moved = with_yield_points(m, y, contact, now, _mirrored_supports(moved))
-    return _mirrored(after), now, moved, _mirrored_kind(kind)
+        after, kind = _at_left(m, now, which == LAW_LEFT, ground)
+    else:
+        mirrored_pier = with_pull(m, _mirrored_pull(m.pull))
+        mirrored_ground = Ground(-ground.horizontal, -ground.horizontal_slope, ground.vertical, ground.vertical_slope)
+        mirrored, kind = _at_left(mirrored_pier, _mirrored_moment(now), which == LAW_RIGHT, mirrored_ground)
+        after, kind = _mirrored_moment(mirrored), _mirrored_kind(kind)
+    supports = with_yield_points(m, now.y, now.contact, after.contact, after.supports)
+    return Moment(after.y, after.contact, supports), kind
 
 
 @kernel
@@ -133,87 +128,91 @@ def _left_moved(supports, position):
 
 
 @kernel
-def _at_left(m, y, contact, supports, of_law, rest, horizontal, vertical):
+def _at_left(m, now, of_law, ground):
     """Do what :func:`handle` does for the left pivot, of its contact or of its spring's law."""
+    y, contact, supports = now
     if contact.held == LEFT:
         at = geometry(m, y.theta)
         if not of_law:
             yields = branch_of_landing(m, y.v_rate + at.arm_left * y.omega)
-            return y, touching(contact, LEFT, yields), supports, HELD_LEFT
+            return Moment(y, touching(contact, LEFT, yields), supports), HELD_LEFT
         waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * y.z_left)
-        return y, without(contact, LEFT), waiting, SEPARATION_LEFT
+        return Moment(y, without(contact, LEFT), waiting), SEPARATION_LEFT
     if of_law:  # the spring changes its branch
         yields, z = after_switch(m.law, contact.left_yields, supports.yield_left, y.z_left)
         changed = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
-        return changed, touching(contact, LEFT, yields), supports, SPRING_LEFT
+        return Moment(changed, touching(contact, LEFT, yields), supports), SPRING_LEFT
     if contact.left != 0.0:
-        return _separation(m, y, contact, supports, rest, horizontal, vertical)
-    return _landing(m, y, contact, supports, rest, horizontal, vertical)
+        return _separation(m, now, ground)
+    return _landing(m, now, ground)
 
 
 @kernel
-def _separation(m, y, contact, supports, rest, horizontal, vertical):
+def _separation(m, now, ground):
     """Separate the left pivot, whose support bears nothing: from here on it stays, or creeps back as fast as the pivot rises."""
+    y, contact, supports = now
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
     z = 0.0 if m.damped is None else -lag(m) * max(velocity, 0.0)
     unborne = State(y.v, y.theta, y.v_rate, y.omega, z, y.z_right)
     waiting = _left_moved(supports, y.v + at.lift_left - m.yield_deflection * z)
-    if m.damped is None and velocity > rest:
-        return unborne, without(contact, LEFT), waiting, SEPARATION_LEFT
-    after = settle(m, unborne, contact, LEFT, horizontal, vertical)
+    if m.damped is None and velocity > m.rest:
+        return Moment(unborne, without(contact, LEFT), waiting), SEPARATION_LEFT
+    after = settle(m, unborne, contact, LEFT, ground)
     kind = HELD_LEFT if on_ground(after) == on_ground(contact) else SEPARATION_LEFT
-    return unborne, after, waiting, kind
+    return Moment(unborne, after, waiting), kind
 
 
 @kernel
-def _landing(m, y, contact, supports, rest, horizontal, vertical):
+def _landing(m, now, ground):
     """Land the left pivot on its support; the right one may land at the same instant."""
+    y, contact, supports = now
     if m.damped is not None:
-        return _damped_landing(m, y, contact, supports, rest, horizontal, vertical)
+        return _damped_landing(m, now, ground)
     at = geometry(m, y.theta)
     velocity = y.v_rate + at.arm_left * y.omega
     loaded = branch_when_pressed(m.law)
     other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
     if other_free:
         gap = y.v + (at.lift_right - supports.right)
-        if abs(gap) <= 1e-10 * m.yield_deflection and y.v_rate + at.arm_right * y.omega < -rest:
+        if abs(gap) <= 1e-10 * m.yield_deflection and y.v_rate + at.arm_right * y.omega < -m.rest:
             landed = land_flat(m, y)
             both = Contact(1.0, 1.0, loaded, loaded, 0.0)
-            if abs(m.epsilon * velocity) <= rest:
-                both = settle(m, landed, both, LEFT, horizontal, vertical)
-                both = settle(m, landed, both, RIGHT, horizontal, vertical)
-            return landed, both, supports, IMPACT_BOTH
+            if abs(m.epsilon * velocity) <= m.rest:
+                both = settle(m, landed, both, LEFT, ground)
+                both = settle(m, landed, both, RIGHT, ground)
+            return Moment(landed, both, supports), IMPACT_BOTH
     landed = land(m, y, LEFT)
-    contact, supports = _right_after_impulse(m, landed, contact, supports, at, rest)
-    if abs(m.epsilon * velocity) > rest:
-        return landed, touching(contact, LEFT, loaded), supports, IMPACT_LEFT
-    after = settle(m, landed, contact, LEFT, horizontal, vertical)
-    return landed, after, _left_moved(supports, y.v + at.lift_left), IMPACT_LEFT
+    contact, supports = _right_after_impulse(m, landed, contact, supports, at)
+    if abs(m.epsilon * velocity) > m.rest:
+        return Moment(landed, touching(contact, LEFT, loaded), supports), IMPACT_LEFT
+    after = settle(m, landed, contact, LEFT, ground)
+    return Moment(landed, after, _left_moved(supports, y.v + at.lift_left)), IMPACT_LEFT
 
 
 @kernel
-def _damped_landing(m, y, contact, supports, rest, horizontal, vertical):
+def _damped_landing(m, now, ground):
     """Land the left pivot on the top of its damped support: its dashpot bears it at once, without an impulse."""
+    y, contact, supports = now
     velocity = y.v_rate + geometry(m, y.theta).arm_left * y.omega
-    if abs(velocity - velocity_of_top(m, y.z_left)) <= rest:
-        return y, settle(m, y, contact, LEFT, horizontal, vertical), supports, IMPACT_LEFT
-    return y, touching(contact, LEFT, branch_of_landing(m, velocity)), supports, IMPACT_LEFT
+    if abs(velocity - velocity_of_top(m, y.z_left)) <= m.rest:
+        return Moment(y, settle(m, y, contact, LEFT, ground), supports), IMPACT_LEFT
+    return Moment(y, touching(contact, LEFT, branch_of_landing(m, velocity)), supports), IMPACT_LEFT
 
 
 @kernel
-def _right_after_impulse(m, y, contact, supports, at, rest):
+def _right_after_impulse(m, y, contact, supports, at):
     """Return contacts and supports once an impulse at the left pivot has made the velocity of the right one jump too.
 
     Its spring may have to change its branch, and a pivot that was held moves.
     """
     velocity = y.v_rate + at.arm_right * y.omega
-    if contact.held == RIGHT and abs(velocity) > rest:
+    if contact.held == RIGHT and abs(velocity) > m.rest:
         if velocity < 0.0:
             return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
         moved = Supports(supports.left, y.v + at.lift_right, supports.yield_left, supports.yield_right)
         return without(contact, RIGHT), moved
     if contact.right == 0.0:
         return contact, supports
-    yields = branch_after_jump(m.law, contact.right_yields, supports.yield_right, y.z_right, velocity, rest)
+    yields = branch_after_jump(m.law, contact.right_yields, supports.yield_right, y.z_right, velocity, m.rest)
     return touching(contact, RIGHT, yields), supports
