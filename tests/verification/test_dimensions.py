@@ -121,9 +121,9 @@ def plain_python(monkeypatch):
                 monkeypatch.setattr(module, name, geometry)
             elif isinstance(kernel, CPUDispatcher):
                 monkeypatch.setattr(module, name, kernel.py_func)
-            elif kernel is table.along or kernel is table.weighted:
+            elif kernel in (table.along, table.weighted, table.with_pull):
                 monkeypatch.setattr(module, name, getattr(table, f"_interpreted_{name}"))
-    for module in (block, block_events, device_laws, elongation):
+    for module in (block_events, device_laws, elongation):
         monkeypatch.setattr(module, "math", MATH)
     without = block._pull_down
     monkeypatch.setattr(block, "_pull_down", lambda pull: without(pull or Pull(*quantities(Pull, (0.0, 0.0)))))
@@ -273,7 +273,9 @@ def test_a_device_has_an_elongation_in_metres(finite):
     found = elongation.gap(m, 0.5 * M, elongation.attitude(m, state(), 0.001 * M), state())
     assert finite or found.bend == 0.0
     assert_units(found._replace(bend=found.bend or 0.0 * ACCELERATION), UNITS[elongation.Gap])
-    assert_units([elongation.lifted(found, 0.3 * ACCELERATION, 0.2 * RAD / S**2)], [ACCELERATION])
+    assert_units(
+        [elongation.lifted(found, Rocking(SPEED, RAD / S, 0.3 * ACCELERATION, 0.2 * RAD / S**2))], [ACCELERATION]
+    )
 
 
 @pytest.mark.parametrize(("kind", "unit"), [
@@ -329,12 +331,13 @@ def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(stance):
 
 
 def step_and_land(m, y, shaking):
-    """A step, its signals and a landing: between them they need every argument."""
+    """A step, its signals, a landing and plastic work: between them they need every argument."""
     k1 = system.rates(m, y, BOTH, shaking)
     start = Instant(y, k1, BOTH, WAITING, shaking)
     rk4.rk4(m, None, start, 0.001 * S)
     system.event_functions(m, None, start)
     impact.land(m, y, 1)
+    laws.plastic_work(m, -0.2 * ONE, -0.6 * ONE, 0.001 * M)
 
 
 def rock(m, shaking):
