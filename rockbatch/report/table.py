@@ -67,7 +67,7 @@ def table(
 
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
-    """Return a :func:`table` with a row for each item, whose cells are what each of ``heads`` is ``of``."""
+    """Return a :func:`table` with a row for each item; ``head.value`` gives its cell under each head."""
     rows = (
         [item.get(head.value) if isinstance(head.value, str) else head.value(item) for head in heads] for item in items
     )

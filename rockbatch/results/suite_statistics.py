@@ -30,7 +30,7 @@ def reasons_of_failure(runs: "pd.DataFrame") -> dict[str, int]:
 
 
 @dataclass(frozen=True)
-class Suite:
+class Statistics:
     """Statistics of one quantity over the records of a case.
 
     ``count`` records have an outcome, ``standing`` of them a value; ``mean`` is over those, NaN without any. ``low``,
@@ -99,14 +99,14 @@ def records(
     return Records(worst, overturned, flown, failed, pairs // (len(names) + 1))
 
 
-def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Suite:
+def suite(values: Values, status: Sequence[str], counted_as: Sequence[str] | None = None) -> Statistics:
     """Return statistics of the magnitudes of ``values``, shape (n,), over their :func:`records`; NaN does not apply."""
     return suites(values, status, counted_as, np.zeros(len(values), dtype=np.int64), 1)[0]
 
 
 def suites(
     values: Values, status: Sequence[str], counted_as: Sequence[str] | None, group: npt.NDArray[np.int64], groups: int
-) -> list[Suite]:
+) -> list[Statistics]:
     """Return the statistics of each of ``groups`` groups of runs; ``group``, shape (n,), is the place of that of each run."""
     data = records(values, status, counted_as, group)
     worst, group_of = data.worst[data.known], data.group[data.known]
@@ -120,7 +120,7 @@ def suites(
     fractiles = [quantiles(ordered, first, n, q) for q in (0.16, 0.5, 0.84, 1.0)]
     counts = [np.bincount(data.group[ended], minlength=groups) for ended in (data.overturned, data.flight, data.failed)]
     return [
-        Suite(*row)
+        Statistics(*row)
         for row in zip(*(column.tolist() for column in (n, standing, mean, *fractiles, *counts)), strict=True)
     ]
 

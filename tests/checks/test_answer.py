@@ -100,7 +100,7 @@ def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case()
     ]
 
 
-def test_what_is_not_asked_of_a_case_is_told_beside_its_passing_or_failing():
+def test_what_is_not_asked_of_a_case_is_reported_beside_its_passing_or_failing():
     """Rigid ground neither settles nor yields: that it passes, or is nearest to passing, is no merit there."""
     none = [verdict("rock", "does not apply", check=name) for name in ("settlement", "ductility")]
     passing = lines([verdict("rock", "pass"), *none, verdict("pads", "pass", value=0.45, ratio=0.9)])
@@ -146,7 +146,7 @@ def test_a_case_to_which_no_check_applies_is_not_checked():
     assert lines(some)[0].text == "1 of 2 cases passes; 1 is not checked"
 
 
-def test_a_case_that_is_not_checked_is_told_where_another_fails():
+def test_a_case_that_is_not_checked_is_reported_where_another_fails():
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     first, last = lines([failed], runs=all_runs(a={}, b={"flight": 2}))
     assert (first.verdict, first.text) == (FAIL, "1 of 2 cases fails")
@@ -164,7 +164,7 @@ def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted(
     assert line.details[0].endswith(f"and {99 - MOST_ENDS} more, {rest} of them with runs that do not end standing.")
 
 
-def test_overturning_that_checks_leave_out_is_told_beside_the_green_and_takes_it_if_nothing_stands():
+def test_overturning_that_checks_leave_out_is_reported_beside_the_green_and_takes_it_if_nothing_stands():
     eta = verdict("a", "pass", check="capacity", demand="eta")
     (line,) = lines([eta], runs=all_runs(a={"overturned": 3}))
     assert line.details[-1] == "Not every run ends standing: a, 3 of 10 runs overturned."
@@ -194,14 +194,14 @@ def test_missing_stations_come_first_and_take_the_green_from_what_passes():
     assert (second.verdict, second.text) == (NOT_DECIDED, "Every check passes in the only case")
 
 
-def test_missing_stations_come_last_where_nothing_passes_and_are_told_without_checks_too():
+def test_missing_stations_come_last_where_nothing_passes_and_are_reported_without_checks_too():
     stations = Stations(["s"], {"RSN1633": [LOST]})
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     assert [line.verdict for line in lines([failed], stations=stations)] == [FAIL, NOT_DECIDED]
     assert [line.text for line in lines([], stations=stations)] == ["1 of 2 stations; RSN1633 could not be used"]
 
 
-def test_a_component_of_a_station_that_is_used_is_told_by_its_files():
+def test_a_component_of_a_station_that_is_used_is_reported_by_its_files():
     other = LOST | {"name": "cut", "station": "s", "reason": "no numbers"}
     (line, _) = lines([verdict("a", "pass")], stations=Stations(["s"], {"RSN1633": [LOST], "s": [other]}))
     assert line.text == "1 of 2 stations; RSN1633, 1 file of s could not be used"
@@ -254,7 +254,7 @@ def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
     [(48123.4, 50000.0, "48,120"), (50003.0, 50000.0, "50,003"), (50000.0, 50000.0, "50,000"), (3e-6, 1.0, "3e-06"),
      (math.inf, 1.0, "∞"), (0.0, 0.5, "0")],
 )  # fmt: skip
-def test_a_demand_is_written_without_an_exponent_and_told_apart_from_its_limit(value, limit, words):
+def test_a_demand_is_written_without_an_exponent_and_distinguished_from_its_limit(value, limit, words):
     assert wording.number(value, limit) == words
 
 

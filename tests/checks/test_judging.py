@@ -175,7 +175,7 @@ def test_a_response_that_is_unknown_does_not_pass_for_an_unacceptable_one_under_
         ("failed", "left out", 0.2, "pass", 2),
     ],
 )
-def test_a_run_that_did_not_go_through_counts_as_the_rule_says_and_is_told(status, way, value, verdict, records):
+def test_a_run_that_did_not_go_through_counts_as_the_rule_says_and_is_reported(status, way, value, verdict, records):
     table = runs([0.1, 0.2, 0.4], status=["ok", "ok", status])
     found = judged(table, **{status: way})
     assert (found.value, found.verdict, found.records, found.runs) == (value, verdict, records, 3)
@@ -291,7 +291,7 @@ def test_without_the_other_spring_law_nothing_passes_where_the_rule_asks_for_it(
     assert judged(elastic, one=ELASTIC, demand="settlement_m", at_most=0.05, other_law=True).verdict == "pass"
 
 
-def test_ratio_and_margin_tell_the_distance_to_the_limit():
+def test_ratio_and_margin_are_the_distance_to_the_limit():
     found = judged(runs([0.6]))
     assert (found.ratio, found.margin) == (pytest.approx(1.2), pytest.approx(-0.1))
     found = judged(runs([0.6]), demand="eta", at_least=2.0)
@@ -577,7 +577,7 @@ def test_every_scale_is_a_suite_of_its_own():
     assert judged(table, scale=(1.5,)).scale == 1.5
 
 
-def test_cases_of_one_name_are_told_apart_by_their_varied_values_as_peaks_csv_writes_them():
+def test_cases_of_one_name_are_distinguished_by_their_varied_values_as_peaks_csv_writes_them():
     """Ten digits of a number; and a word."""
     thirds = [
         case(base=YieldingBase(beta=b, eta=2.5), beta=b, spring=s)
@@ -609,7 +609,7 @@ def test_rows_of_files_that_could_not_be_used_are_in_no_suite():
     assert judged(pd.concat([runs([0.1]), unusable])).counted == ""
 
 
-def test_what_a_rule_chooses_and_the_results_do_not_have_is_told_at_once():
+def test_what_a_rule_chooses_and_the_results_do_not_have_is_reported_at_once():
     rules = [
         Rule("a", "theta_max_over_alpha", 0.5, case=("pad",), scale=(2.0,), polarity="-"),
         Rule("b", "settlement_m", 0.5, other_law=True),

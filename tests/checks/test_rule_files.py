@@ -90,7 +90,7 @@ reason = "statics"
     assert CHECK.keys() == rb.Rule.__dataclass_fields__.keys()
 
 
-def test_every_mistake_in_a_file_of_rules_is_told_with_its_line_at_once(tmp_path):
+def test_every_mistake_in_a_file_of_rules_is_reported_with_its_line_at_once(tmp_path):
     text = """titel = "x"
 [[check]]
 name = "a"
@@ -130,7 +130,7 @@ def test_advice_on_an_unknown_key_hides_no_missing_one(tmp_path):
     assert any("unit" in problem for problem in told)
 
 
-def test_what_the_keys_of_a_rule_say_about_each_other_is_told_at_the_key(tmp_path):
+def test_what_the_keys_of_a_rule_say_about_each_other_is_reported_at_the_key(tmp_path):
     text = '[[check]]\nname = "a"\nreason = "x"\ndemand = "eta"\nstatistic = "mean"\nat_least = 2\nother_law = true\n'
     path = rules_file(tmp_path / "rules.toml", text)
     statistic, law = problems(path)
@@ -143,7 +143,7 @@ def test_a_file_without_checks_is_refused(tmp_path):
     assert "[[check]]" in problem
 
 
-def test_a_study_holds_rules_and_tells_their_mistakes_among_its_own(tmp_path):
+def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
     path = rules_file(tmp_path / "pier.toml", STUDY + MARGIN)
     assert [rule.name for rule in rb.load_study(path).checks] == ["margin"]
     path.write_text((STUDY + MARGIN).replace("at_most", "at_mots").replace("eta = 2.5", "eta = 0.5"), encoding="utf-8")
@@ -154,7 +154,7 @@ def test_a_study_holds_rules_and_tells_their_mistakes_among_its_own(tmp_path):
     assert re.search(r'pier.toml:23: \[\[check\]\] "margin": at_mots: unknown key; did you mean at_most\?', key)
 
 
-def test_what_a_check_chooses_and_the_study_does_not_have_is_told_before_it_is_run(tmp_path):
+def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_is_run(tmp_path):
     """There with its line; by ``rockbatch check`` it would come after hours of work."""
     text = (MARGIN + 'case = "pad"\nscale = 2\npolarity = "-"\n').replace("theta_max_over_alpha", "settlement_m")
     path = rules_file(tmp_path / "pier.toml", STUDY + text + "other_law = true\n[output]\nboth_laws = false\n")
@@ -172,7 +172,7 @@ def test_a_key_of_a_check_elsewhere_is_sent_home(tmp_path):
         rb.load_study(path)
 
 
-def test_mistakes_under_output_are_told(tmp_path):
+def test_mistakes_under_output_are_reported(tmp_path):
     path = rules_file(tmp_path / "pier.toml", STUDY + "[output]\nleger = true\n")
     with pytest.raises(InputError, match="did you mean ledger"):
         rb.load_study(path)
@@ -251,7 +251,7 @@ def test_wrong_input_exits_with_2_and_leaves_no_table(tmp_path, monkeypatch, cap
     assert not (tmp_path / "out/checks.csv").exists()
 
 
-def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, capsys):
+def test_files_that_could_not_be_used_are_reported_beside_the_verdicts(tmp_path, capsys):
     peaks = pd.concat([runs([0.1]), runs([math.nan], "", record="notes", status="failed")])
     out = folder(
         tmp_path / "out",
@@ -264,7 +264,7 @@ def test_files_that_could_not_be_used_are_told_beside_the_verdicts(tmp_path, cap
     assert "? notes could not be used: notes.txt: no record." in capsys.readouterr().out
 
 
-def test_a_case_that_no_check_chooses_is_told_and_is_no_failed_check(tmp_path, capsys):
+def test_a_case_that_no_check_chooses_is_reported_and_is_no_failed_check(tmp_path, capsys):
     table = pd.concat([runs([0.1, 0.2]), runs([0.1, 9.0], "wide", status=["ok", "overturned"])])
     out = folder(
         tmp_path / "out", table, [case(), case("wide")], MARGIN.replace("[[check]]", '[[check]]\ncase = "pads"')
@@ -304,7 +304,7 @@ def many(tmp_path, most=40):
     return folder(tmp_path / "out", table, [case(beta=beta) for beta in betas], MARGIN)
 
 
-def test_many_verdicts_are_summed_up_and_the_worst_told(tmp_path, capsys):
+def test_many_verdicts_are_summed_up_and_the_worst_printed(tmp_path, capsys):
     """Those up to half of α pass or, where one run flew, are left open; there are forty of them, and ten are told."""
     out = many(tmp_path)
     assert main(["check", str(out)]) == 1
@@ -411,7 +411,7 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
     assert read[2].columns == {}
 
 
-def test_a_damaged_checks_csv_is_told_and_a_missing_one_is_empty(tmp_path):
+def test_a_damaged_checks_csv_is_reported_and_a_missing_one_is_empty(tmp_path):
     assert read_verdicts(tmp_path) == []
     (tmp_path / "checks.csv").write_text("check,case\nmargin,pads\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"checks.csv: damaged .*start `rockbatch check` again"):
@@ -458,7 +458,7 @@ def test_the_script_that_sizes_a_foundation_prints_what_its_docstring_says(capsy
     assert printed == [line.split() for line in done["__doc__"].strip().splitlines()[-len(printed) :]]
 
 
-def test_checks_after_the_last_mistake_that_is_told_are_not_made(tmp_path):
+def test_checks_after_the_last_mistake_that_is_reported_are_not_made(tmp_path):
     """So many mistakes that no more are noted: a check without its keys is then none, and no traceback either."""
     path = tmp_path / "rules.toml"
     path.write_text("[[check]]\nwrong = 1\n" * 300 + "[[check]]\n", encoding="utf-8")
@@ -524,7 +524,7 @@ def test_results_of_others_open_no_file_that_they_name(tmp_path):
         ("name =", "", "[suite]: checks = \"limits.toml\": "),
     ],
 )  # fmt: skip
-def test_mistakes_of_the_file_of_checks_are_told_with_those_of_the_study(tmp_path, rules, own, said):
+def test_mistakes_of_the_file_of_checks_are_reported_with_those_of_the_study(tmp_path, rules, own, said):
     study = with_file(tmp_path, rules, own)
     study.write_text("titel = 'x'\n" + study.read_text(encoding="utf-8"), encoding="utf-8")
     with pytest.raises(InputError) as error:

@@ -94,7 +94,7 @@ def test_a_component_that_failed_leaves_its_station_unknown():
     assert (found.station, found.record) == ("A", "A1")
 
 
-def test_a_component_that_is_left_out_is_told_with_its_station():
+def test_a_component_that_is_left_out_is_reported_with_its_station():
     """It still counts, by the direction that is left: nobody shall take that for the worse one."""
     table = pairs(*FOUR, status=["ok", "ok", "ok", "ok", "ok", "failed", "ok", "ok"])
     found = judged(table, statistic="max", failed="left out")
@@ -102,7 +102,7 @@ def test_a_component_that_is_left_out_is_told_with_its_station():
     assert "not every direction counts, and the worst may be another: C (1 of 2)" in found.note
 
 
-def test_a_station_of_which_one_component_could_not_be_read_is_told():
+def test_a_station_of_which_one_component_could_not_be_read_is_reported():
     found = judged(pairs((0.1, 0.2), (0.3,), (0.2, 0.1)), statistic="en1998-2")
     assert (found.verdict, found.records) == ("pass", 3)
     assert "the worst may be another: B (1 of 2)" in found.note
@@ -225,7 +225,7 @@ def test_a_suite_says_what_counts_and_a_check_may_say_otherwise(tmp_path):
     assert counts(suite, file) == [(4, "station")]
 
 
-def test_a_mistake_under_suite_is_told_with_its_line(tmp_path):
+def test_a_mistake_under_suite_is_reported_with_its_line(tmp_path):
     text = study_text(suite={"count": "pair"})
     path = write_study(tmp_path, text)
     with pytest.raises(InputError, match=r'\[suite\]: count = "pair": expected one of "station", "component"'):

@@ -133,7 +133,7 @@ def test_checks_of_which_none_applies_have_not_passed_though_the_suite_has(tmp_p
     assert "none of the checks applies" in capsys.readouterr().err
 
 
-def test_scales_of_cases_are_told_apart_and_the_suite_has_none(tmp_path):
+def test_scales_of_cases_are_distinguished_and_the_suite_has_none(tmp_path):
     out = folder(tmp_path / "out", runs([0.1, 0.4], "rigid", scale=2.0), [RIGID], MARGIN, target=target(0.76))
     main(["check", str(out)])
     cells = [row[0] for row in Page(rb.report(out).path.read_text(encoding="utf-8")).tables["checks"][:3]]

@@ -200,7 +200,7 @@ def test_histories_lead_nowhere_and_have_room_in_their_file(foreign, tmp_path, c
         rb.open_results(foreign).response()
 
 
-def test_a_history_of_a_case_that_nobody_lists_is_told(foreign):
+def test_a_history_of_a_case_that_nobody_lists_is_reported(foreign):
     with h5py.File(foreign / "histories.h5", "r+") as file:
         file["runs/000000"].attrs["case"] = "unheard of"
     assert "there is a history of case unheard of that peaks.csv or run.json does not list" in told(foreign)
@@ -274,7 +274,7 @@ def test_whatever_stands_in_the_place_of_a_value_of_run_json_there_are_words(for
         ([{"psi": "x"}], "[0].psi"),
     ],
 )
-def test_devices_that_are_none_are_told(foreign, devices, place):
+def test_impossible_devices_are_refused(foreign, devices, place):
     """Which checks a case can have hangs on its dampers and tendons."""
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
     info["cases"][0]["parameters"]["restraints"] = devices
@@ -289,7 +289,7 @@ def test_devices_that_are_none_are_told(foreign, devices, place):
         ('{"a": 1', "not JSON"), ("\xff", "not JSON"),
     ],
 )  # fmt: skip
-def test_a_run_json_that_is_none_is_told(foreign, text, words):
+def test_a_damaged_run_json_is_refused(foreign, text, words):
     (foreign / "run.json").write_text(text, encoding="latin-1")
     assert words in told(foreign)
 
@@ -308,7 +308,7 @@ TARGET = {
         ({"range_s": [0.1]}, ""), ({"sa_g": [0.0, 0.0]}, ""),
     ],
 )  # fmt: skip
-def test_a_target_that_is_none_is_told_or_left_out(foreign, wrong, words):
+def test_a_damaged_target_is_refused_or_left_out(foreign, wrong, words):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"target": TARGET | wrong}
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
     assert words in told(foreign)
@@ -317,7 +317,7 @@ def test_a_target_that_is_none_is_told_or_left_out(foreign, wrong, words):
         assert shown is (wrong == {})
 
 
-def test_a_column_without_a_name_is_told(foreign):
+def test_a_column_without_a_name_is_refused(foreign):
     lines = (foreign / "peaks.csv").read_text(encoding="utf-8").splitlines()
     text = "\n".join([lines[0] + ",", *(line + "," for line in lines[1:])])
     (foreign / "peaks.csv").write_text(text, encoding="utf-8")
@@ -325,7 +325,7 @@ def test_a_column_without_a_name_is_told(foreign):
 
 
 @pytest.mark.parametrize("count", [-1, "x", None, {}])
-def test_a_way_of_counting_that_is_none_is_told(foreign, count):
+def test_an_unknown_way_of_counting_is_refused(foreign, count):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8")) | {"count": count}
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
     assert 'count: expected "station" or "component"' in told(foreign)
@@ -341,7 +341,7 @@ def test_spectra_that_do_not_fit_their_periods_are_not_drawn(foreign, more):
 
 
 @pytest.mark.parametrize("command", ["report", "check"])
-def test_a_case_of_values_that_the_table_does_not_have_is_told(foreign, command):
+def test_a_case_of_values_that_the_table_does_not_have_is_reported(foreign, command):
     info = json.loads((foreign / "run.json").read_text(encoding="utf-8"))
     info["cases"][0]["columns"]["a"] = 1
     (foreign / "run.json").write_text(json.dumps(info), encoding="utf-8")
@@ -370,7 +370,7 @@ def test_a_place_that_does_not_fit_is_named_with_what_was_expected():
         (",1,ok", ",,ok", "a run without scale"), (",ok,", ",ok,,,,,,,,,,,,,,,,,,,,,,,", "cells: expected"),
     ],
 )  # fmt: skip
-def test_a_table_that_no_run_can_have_left_is_told_with_its_line(foreign, old, new, words):
+def test_a_table_that_no_run_can_have_left_is_reported_with_its_line(foreign, old, new, words):
     peaks = foreign / "peaks.csv"
     peaks.write_text(peaks.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
     said = told(foreign)
@@ -379,7 +379,7 @@ def test_a_table_that_no_run_can_have_left_is_told_with_its_line(foreign, old, n
 
 
 @pytest.mark.parametrize("word", ["demand", "statistic", "count", "sense", "verdict"])
-def test_a_verdict_of_words_that_no_check_has_is_told(foreign, word):
+def test_a_verdict_of_words_that_no_check_has_is_reported(foreign, word):
     path = foreign / "checks.csv"
     head, row = csv.reader(path.read_text(encoding="utf-8").splitlines())
     row[head.index(word)] = "pads"
@@ -387,7 +387,7 @@ def test_a_verdict_of_words_that_no_check_has_is_told(foreign, word):
     assert told(foreign) == f"{path}: damaged ({word} = 'pads'); start `rockbatch check` again"
 
 
-def test_a_table_that_is_mended_between_two_looks_is_told(foreign, monkeypatch):
+def test_a_table_that_is_mended_between_two_looks_is_reported(foreign, monkeypatch):
     """A row that cannot be is looked for in the file again, where it may be right by then."""
     peaks = foreign / "peaks.csv"
     sound = peaks.read_text(encoding="utf-8")

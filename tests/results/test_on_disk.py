@@ -302,7 +302,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file_and_nothing_else(tmp_path, 
     assert (tmp_path / "histories.h5").read_bytes() == earlier
 
 
-def test_a_full_disk_is_told_before_it_is_written_to(tmp_path, monkeypatch):
+def test_a_full_disk_is_reported_before_it_is_written_to(tmp_path, monkeypatch):
     """HDF5 itself would print a page of errors and may crash at exit."""
     stored(tmp_path, at_rest())
     earlier = (tmp_path / "histories.h5").read_bytes()
@@ -382,7 +382,7 @@ TIED = RIGID | {"damper": [{"kind": "friction", "f": 0.05}], "tendon": {"psi": 0
 @pytest.mark.parametrize(
     "text", [STUDY, study_text(cases=[TIED], output={"histories": "all"})], ids=["springs", "tied"]
 )
-def test_the_size_of_histories_is_told_beforehand(tmp_path, text):
+def test_the_size_of_histories_is_announced_beforehand(tmp_path, text):
     """Of dampers and tendons the loops, too."""
     saved, study, runs = carried_out(tmp_path, text)
     told = sum(
@@ -402,7 +402,7 @@ def test_runs_that_were_refused_have_no_history(tmp_path):
     assert to_keep(study, runs, saved.peaks).numbers == [0, *range(2, len(saved.peaks))]
 
 
-def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path, monkeypatch):
+def test_a_history_too_long_for_memory_is_reported_and_the_others_are_there(tmp_path, monkeypatch):
     saved, study, runs = carried_out(tmp_path, FEW)
     saved.peaks.loc[1, "substeps"] = 1_000  # of its ledger, a hundred thousand rows and more
     monkeypatch.setattr("rockbatch.simulation.histories.MOST_ROWS", 100_000)
@@ -412,7 +412,7 @@ def test_a_history_too_long_for_memory_is_told_and_the_others_are_there(tmp_path
     assert len(rb.open_results(tmp_path).responses) == len(runs) - 1
 
 
-def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
+def test_progress_advances_with_every_run_that_is_kept(tmp_path):
     saved, study, runs = carried_out(tmp_path, FEW)
     calls = []
     keep_histories(saved, study, runs, calls.append)
@@ -422,7 +422,7 @@ def test_progress_is_told_after_every_run_that_is_kept(tmp_path):
 # Choosing one
 
 
-def test_a_response_is_found_by_whatever_tells_it_from_the_others(results):
+def test_a_response_is_found_by_whatever_distinguishes_it_from_the_others(results):
     response = results.response("strong", "pads", polarity="-", alpha=0.25, spring="epp")
     assert (response.record, response.case, response.polarity) == ("strong", "pads", "-")
     assert response.base == rb.YieldingBase(beta=50.0, eta=2.5, epsilon=0.1, spring="epp")
@@ -452,7 +452,7 @@ def test_a_response_is_found_by_whatever_tells_it_from_the_others(results):
         ({}, "32 histories fit; .*; and 24 more$"),
     ],
 )
-def test_a_choice_that_fits_none_or_several_is_told_with_those_that_there_are(results, choice, told):
+def test_a_choice_that_fits_none_or_several_is_reported_with_those_that_there_are(results, choice, told):
     with pytest.raises(rb.InputError, match=told):
         results.response(**choice)
 
@@ -488,7 +488,7 @@ def test_a_name_may_be_begun_where_one_alone_begins_so(results):
         results.response("", **row)
 
 
-def test_a_folder_without_results_is_told():
+def test_a_folder_without_results_is_refused():
     with pytest.raises(rb.InputError, match=r"run\.json: not there"):
         rb.open_results("nowhere")
 
@@ -512,24 +512,24 @@ def edited(change):
     return edit
 
 
-def test_a_truncated_file_is_told(tmp_path):
+def test_a_truncated_file_is_refused(tmp_path):
     assert "damaged" in damaged(tmp_path, lambda path: path.write_bytes(path.read_bytes()[:-1000]))
 
 
-def test_a_file_that_is_no_hdf5_is_told(tmp_path):
+def test_a_file_that_is_no_hdf5_is_refused(tmp_path):
     assert "damaged" in damaged(tmp_path, lambda path: path.write_text("peaks"))
 
 
-def test_hdf5_of_another_kind_is_told(tmp_path):
+def test_hdf5_of_another_kind_is_refused(tmp_path):
     assert "not the histories" in damaged(tmp_path, edited(lambda file: file.attrs.__delitem__("format")))
 
 
 @pytest.mark.parametrize("name", ["theta", "events/kind", "pier", "base", "varied"])
-def test_a_file_in_which_something_is_missing_is_told(tmp_path, name):
+def test_a_file_in_which_something_is_missing_is_refused(tmp_path, name):
     assert "damaged" in damaged(tmp_path, edited(lambda file: file["runs/000000"].__delitem__(name)))
 
 
-def test_columns_of_unlike_length_are_told(tmp_path):
+def test_columns_of_unlike_length_are_refused(tmp_path):
     def shorten(file):
         run = file["runs/000000"]
         theta = run["theta"][:-1]
@@ -540,7 +540,7 @@ def test_columns_of_unlike_length_are_told(tmp_path):
 
 
 @pytest.mark.parametrize("mark", ["created", "sha256"])
-def test_histories_of_another_run_are_told(tmp_path, mark):
+def test_histories_of_another_run_are_refused(tmp_path, mark):
     assert "by another run than run.json" in damaged(
         tmp_path, edited(lambda file: file.attrs.__setitem__(mark, "other"))
     )

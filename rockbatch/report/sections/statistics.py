@@ -14,7 +14,7 @@ from rockbatch.report.labels import heading
 from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.table import MOST_ROWS, Head, alarm, shown_of, table
 from rockbatch.results.rows import counts_as
-from rockbatch.results.suite_statistics import Suite, suites
+from rockbatch.results.suite_statistics import Statistics, suites
 
 Row = tuple[Hashable, ...]
 """Values that tell a row of the tables from others."""
@@ -126,7 +126,7 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
     return heads
 
 
-def _cell(s: Suite | None, name: str, form: str) -> object:
+def _cell(s: Statistics | None, name: str, form: str) -> object:
     if s is None:
         return None
     value = getattr(s, name)
