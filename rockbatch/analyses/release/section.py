@@ -26,16 +26,16 @@ def section(contents: Contents) -> Markup:
         return Markup("")
     varied = analysis.info["varied"]
     keys = ["case", *varied]
-    numbers = [
-        _numbers(measured, named(dict(zip(keys, names, strict=True)), keys))
-        for names, measured in impacts.groupby(keys, sort=False, dropna=False)
-    ]
+    tables = []
+    for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
+        title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"
+        tables.append(listed(quantities.IMPACTS, as_dicts(of_case), name=title))
     lead = (
         "What the pier loses, fitted to the measured times and amplitudes, and the interval of the fit. In the pictures a "
         "measured amplitude stands at the time of the computed one."
     )
     pictures = tag("figure", drawn(rotations(impacts, history, varied)), class_="whole")
-    return join(tag("p", lead), _fits(fits, keys), pictures, *numbers, analysis.provenance())
+    return join(tag("p", lead), _fits(fits, keys), pictures, *tables, analysis.provenance())
 
 
 def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
@@ -43,8 +43,3 @@ def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
     heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
     notes = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
     return join(listed(heads, as_dicts(fits), name="Fitted to the release test"), *(tag("p", words) for words in notes))
-
-
-def _numbers(impacts: "pd.DataFrame", title: str) -> Markup:
-    """Return the table of impacts, measured and computed."""
-    return listed(quantities.IMPACTS, as_dicts(impacts), name=f"Impacts of {title}, measured and computed")
