@@ -76,11 +76,6 @@ def probability(rate: float, years: float) -> float:
     return -math.expm1(-rate * years)
 
 
-def percent(p: float) -> str:
-    """Return a probability in per cent with two digits, without exponent where it is all but certain."""
-    return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
-
-
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
     """Return the risk of every curve that has a fit; none without a hazard."""
     hazard = spec.hazard
