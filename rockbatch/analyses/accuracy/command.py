@@ -14,7 +14,7 @@ from rockbatch.study import Study
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:
-    """Measure error against time, and print them."""
+    """Measure errors against times, and print them."""
     result = accuracy(study, folder(arguments), runs=arguments.runs, seconds=arguments.seconds, progress=Terminal())
     show(shown(result.accuracy))
     print_files(result)
@@ -22,6 +22,6 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 
 
 def shown(table: "pd.DataFrame") -> str:
-    """Return the table for a terminal: errors of θ_max/α, milliseconds per run."""
+    """Return the table for the terminal: errors of θ_max/α, and times per run."""
     change = table["reference_change"].max()
     return f"Error of theta_max/alpha (references to {change:.0e})\n{in_lines(QUANTITIES, rows(of_table(table)))}"
