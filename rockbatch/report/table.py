@@ -24,6 +24,10 @@ class Head(NamedTuple):
     group: str = ""
     value: str | Callable[[Any], object] = ""
 
+    def value_in(self, item: Mapping[str, Any]) -> object:
+        """Return the value of an item, None without one."""
+        return item.get(self.value) if isinstance(self.value, str) else self.value(item)
+
 
 def table(
     heads: Sequence[Head],
@@ -68,10 +72,7 @@ def table(
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
     """Return a :func:`table` with a row for each item; ``head.value`` gives its cell under each head."""
-    rows = (
-        [item.get(head.value) if isinstance(head.value, str) else head.value(item) for head in heads] for item in items
-    )
-    return table(heads, rows, **options)
+    return table(heads, ([head.value_in(item) for head in heads] for item in items), **options)
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:

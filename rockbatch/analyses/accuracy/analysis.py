@@ -32,8 +32,8 @@ class Accuracy(Analysis):
     Attributes
     ----------
     accuracy : DataFrame
-        A row for each method and setting, with the columns :data:`rockbatch.analyses.accuracy.error_and_time.COLUMNS`: errors of
-        θ_max/α, times per run [s].
+        A row for each method and setting, with the fields of
+        :class:`rockbatch.analyses.accuracy.levels.Level` and the SHA-256 of the study as columns.
     records : tuple of str
         Names of the motions.
     """

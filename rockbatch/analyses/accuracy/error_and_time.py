@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.analyses.accuracy.levels import COLUMNS
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.plan import Plan, PlannedRun
@@ -22,21 +23,6 @@ from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
 from rockbatch.study import Study
-
-COLUMNS = (
-    "method",  # located, not located, study
-    "substeps",  # steps per sample, if given
-    "tolerance",  # on θ_max/α, if given
-    "runs",
-    "error_median",  # of θ_max/α, over the runs that end as the reference does and do not overturn
-    "error_95",
-    "error_max",
-    "seconds_per_run",
-    "status_differs",  # runs that end otherwise than the reference
-    "reference_change",  # what the last halving still changed in the least converged reference
-    "machine",
-    "study",  # SHA-256 of the study file
-)
 
 SUBSTEPS = (1, 2, 4, 8, 16, 32)
 REPEATS = 5

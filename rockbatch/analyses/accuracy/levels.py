@@ -12,7 +12,27 @@ from rockbatch.common.lazy import pd
 
 @dataclass(frozen=True)
 class Level:
-    """One row of ``accuracy.csv``: a method at one setting; errors of θ_max/α, times in seconds per run."""
+    """One row of ``accuracy.csv``: a method at one setting, on this machine.
+
+    Attributes
+    ----------
+    method : str
+        "located", "not located" (events, at fixed steps), or "study", the setting of the study.
+    machine : str
+        Operating system, architecture and number of processors.
+    substeps, tolerance : float or None
+        Steps per sample, and tolerance on θ_max/α, if given.
+    runs : float
+        Number of runs.
+    error_median, error_95, error_max : float or None
+        Errors of θ_max/α, over the runs that end as the reference does and do not overturn.
+    seconds_per_run : float or None
+        Time per run [s].
+    status_differs : float
+        Number of runs that end otherwise than the reference.
+    reference_change : float
+        Change of θ_max/α by the last halving of the step, in the least converged reference.
+    """
 
     method: str
     machine: str
@@ -37,7 +57,9 @@ class Level:
         return "" if self.seconds_per_run is None else f"{self.time:.0f}" if self.time >= 100 else f"{self.time:.3g}"
 
 
-NUMBERS = fields(Level)[2:]
+NUMBERS = [field.name for field in fields(Level)[2:]]
+COLUMNS = ("method", *NUMBERS, "machine", "study")
+"""Columns of ``accuracy.csv``; the last one is the SHA-256 of the study file."""
 
 
 def read(path: Path, study: str) -> list[Level]:
@@ -50,7 +72,7 @@ def read(path: Path, study: str) -> list[Level]:
             rows = list(csv.DictReader(file))
         if any(row["study"] != study for row in rows):
             return []
-        return [Level(row["method"], row["machine"], *(_number(row[field.name]) for field in NUMBERS)) for row in rows]
+        return [Level(row["method"], row["machine"], *(_number(row[name]) for name in NUMBERS)) for row in rows]
     except (OSError, KeyError, TypeError, ValueError):
         return []
 
@@ -61,7 +83,7 @@ def _number(text: str) -> float | None:
 
 def of_table(table: "pd.DataFrame") -> list[Level]:
     """Return the levels of the table of which ``accuracy.csv`` is made."""
-    numbers = table[[field.name for field in NUMBERS]].astype(float)
+    numbers = table[NUMBERS].astype(float)
     rows = zip(table["method"], table["machine"], numbers.to_numpy().tolist(), strict=True)
     return [Level(method, machine, *(None if x != x else x for x in row)) for method, machine, row in rows]
 

@@ -314,8 +314,8 @@ def assess(
         return runs.states(points)
 
     keys = [(c, rule, m) for c, rule in pairs for m in range(len(motions))]
-    found = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in first[c, m].values()]))
-    looks = {(c, rule, m): {x: next(found) for x in first[c, m]} for c, rule, m in keys}
+    states = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in first[c, m].values()]))
+    looks = {(c, rule, m): {x: next(states) for x in first[c, m]} for c, rule, m in keys}
     if spec.method == "cloud":
         return [_of_cloud(runs, spec, c, rule) for c, rule in pairs]
     if spec.method == "ida":

@@ -76,11 +76,6 @@ def probability(rate: float, years: float) -> float:
     return -math.expm1(-rate * years)
 
 
-def percent(p: float) -> str:
-    """Return a probability in per cent with two digits, without exponent where it is all but certain."""
-    return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
-
-
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
     """Return the risk of every curve that has a fit; none without a hazard."""
     hazard = spec.hazard
@@ -190,8 +185,8 @@ def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, An
     row = curve.identity(varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
     dispersion = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
     row |= {"dispersion": dispersion, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
-    low, high = map(_or_nothing, risk.interval)
-    within, beyond = map(_or_nothing, risk.undecided or (math.nan, math.nan))
+    low, high = map(finite_or_nan, risk.interval)
+    within, beyond = map(finite_or_nan, risk.undecided or (math.nan, math.nan))
     row |= {"rate_per_year": risk.rate, "rate_low": low, "rate_high": high}
     row |= {"rate_if_withstood": within, "rate_if_exceeded": beyond}
     row |= {"rate_below_points": risk.below, "rate_above_points": risk.above}
@@ -205,7 +200,8 @@ def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, An
     return row | {"note": note(risk, spec)}
 
 
-def _or_nothing(bound: float) -> float:
+def finite_or_nan(bound: float) -> float:
+    """Return a bound as a CSV file has it: NaN, which is empty there, where it is open."""
     return bound if math.isfinite(bound) else math.nan
 
 

@@ -1,20 +1,17 @@
 """Results of ``rockbatch fragility``: for each limit points, curves and bands, and a table of medians."""
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from rockbatch.analyses.fragility.figures import clouds, curves, label
+from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves
 from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, of_files
-from rockbatch.report.markup import Markup, interval, tag
+from rockbatch.report.markup import Markup, tag
 from rockbatch.report.svg import drawn
 from rockbatch.report.table import Head, listed, table
 from rockbatch.report.templates import render
 
 CAPACITIES = ("record", "case", "limit_state", "at_most", "scale_at_most", "widest_step")
-
-Curve = Mapping[str, Any]
-"""One of ``curves`` of fragility.json."""
 
 
 @of_files("fragility")
@@ -24,10 +21,10 @@ def section(contents: Contents) -> Markup:
     if analysis is None or not analysis.info["curves"]:
         return Markup("")
     info = analysis.info
-    share, entries = f"{100 * info['confidence']:g} %", info["curves"]
+    entries = info["curves"]
     of_clouds = clouds(info)
     return render(
-        "analyses/fragility/section.html", info=info, share=share, panels=drawn(curves(info)), table=_table(info, share),
+        "analyses/fragility/section.html", info=info, share=level_of(info), panels=drawn(curves(info)), table=_table(info),
         little=[f"{entry['limit_state']}, {label(entry)}" for entry in entries if entry["says_little"]],
         open=any("open" in entry for entry in entries), looked=any(entry.get("looked") for entry in entries),
         clouds=drawn(of_clouds) if of_clouds.panels else "", factors=_factors(info),
@@ -36,22 +33,11 @@ def section(contents: Contents) -> Markup:
     )  # fmt: skip
 
 
-def _table(info: Mapping[str, Any], share: str) -> Markup:
+def _table(info: Mapping[str, Any]) -> Markup:
     heads = [
         Head("limit", value="limit_state"),
         Head("case", value=label),
-        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", value="median"),
-        Head(share, note="profile-likelihood interval of the median", value=_interval("median_interval")),
-        Head(
-            "undecided", note="the median with all undecided runs beyond the limit, and with all within it",
-            value=_interval("median_undecided"),
-        ),
-        Head("dispersion", ".2f", "β: standard deviation of the logarithm", value="dispersion"),
-        Head(share, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
-        Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
-             value="dispersion_total"),
-        Head("by shares", ".3g", info.get("by_shares"), value=_of_windows("median")),
-        Head("apart [%]", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
+        *of_curves(info),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
         Head("note", value="note"),
@@ -94,14 +80,11 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("case", value=case),
         Head(f"exceeded from [{analysis.info['unit']}]", ".4g", "empty: not up to the highest level", value="at_most"),
         Head("as scale", ".4g", value="scale_at_most"),
-        Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below", value=_step_below),
+        Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below",
+             value=lambda row: 100.0 * float(row["widest_step"])),
     ]  # fmt: skip
     rows = ({str(name): value for name, value in row.items()} for row in capacities.to_dict("records"))
     return tag("details", tag("summary", "Capacities of the records"), listed(heads, rows, name="Capacities"))
-
-
-def _step_below(row: Mapping[str, Any]) -> float:
-    return 100.0 * float(row["widest_step"])
 
 
 def _factor(factor: float | None, used: bool) -> str:
@@ -113,22 +96,3 @@ def _factor(factor: float | None, used: bool) -> str:
 def _greatest(name: str) -> Callable[[Curve], object]:
     """Return a function to the largest number of records at a level; of a cloud to their sum."""
     return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
-
-
-def _of_windows(name: str) -> Callable[[Curve], Any]:
-    return lambda entry: entry.get("windows", {}).get(name)
-
-
-def _apart(entry: Curve) -> float | None:
-    above = entry.get("windows", {}).get("above")
-    return None if above is None else 100.0 * above
-
-
-def _interval(name: str) -> Callable[[Curve], object]:
-    def written(entry: Curve) -> Markup:
-        if entry.get(name) is None:
-            return Markup("")
-        low, high = ("∞" if bound in (None, math.inf) else f"{bound:.3g}" for bound in entry[name])
-        return interval(low, high)
-
-    return written

@@ -70,12 +70,12 @@ class FragilitySpec:
 
     @property
     def of_runs(self) -> "FragilitySpec":
-        """The settings on which runs depend, with the others as they are by default."""
+        """Return the settings on which runs depend, with the defaults of all others."""
         return replace(self, confidence=0.95, hazard=None, dispersions=())
 
     @property
     def added(self) -> float:
-        """Dispersion added to that of the records, the root of the squares of all; 0 without any."""
+        """Return the dispersion that is added to that of the records: the root of the sum of squares, 0 without any."""
         return root_of_squares(self.dispersions)
 
     def step_on(self, base: Base) -> float | None:
@@ -94,12 +94,12 @@ class FragilitySpec:
 
     @property
     def unit(self) -> str:
-        """Unit of the levels."""
+        """Return the unit of the levels."""
         return "m/s" if self.measure == "PGV" else "g"
 
     @property
     def label(self) -> str:
-        """The measure in words: "Sa(1 s, 5 %)"."""
+        """Return the measure in words: "Sa(1 s, 5 %)"."""
         return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)" if self.measure == "Sa" else self.measure
 
 

@@ -14,7 +14,7 @@ from rockbatch.analyses.fragility.curves import Curve
 from rockbatch.analyses.fragility.ida import Capacity
 from rockbatch.analyses.fragility.limit_states import words
 from rockbatch.analyses.fragility.lognormal import Values
-from rockbatch.analyses.fragility.risk import Risk, described_hazard
+from rockbatch.analyses.fragility.risk import Risk, described_hazard, finite_or_nan
 from rockbatch.analyses.fragility.risk import described as described_risk
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows
@@ -87,9 +87,9 @@ def capacities(
     rows: list[dict[str, Any]] = []
     for curve in curves:
         for motion, cap in curve.capacities:
-            bounds = {"above": cap.decided.low, "at_most": _or_nothing(cap.decided.high)}
+            bounds = {"above": cap.decided.low, "at_most": finite_or_nan(cap.decided.high)}
             otherwise = {
-                "if_exceeded": _or_nothing(cap.if_exceeded.high) if cap.undecided else math.nan,
+                "if_exceeded": finite_or_nan(cap.if_exceeded.high) if cap.undecided else math.nan,
                 "if_withstood": cap.if_withstood.low if cap.undecided else math.nan,
             }
             rows.append(
@@ -99,10 +99,6 @@ def capacities(
                 | {"undecided": cap.undecided, **otherwise, "returns": cap.returns, "widest_step": cap.widest_step}
             )
     return pd.DataFrame(rows)
-
-
-def _or_nothing(bound: float) -> float:
-    return bound if math.isfinite(bound) else math.nan
 
 
 def _state(cap: Capacity) -> str:

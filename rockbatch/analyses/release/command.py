@@ -1,15 +1,18 @@
 """``rockbatch release``: restitution, or the losses of springs, fitted to a release test."""
 
 import argparse
-import math
+from collections.abc import Mapping
+from typing import Any
 
 from rockbatch.analyses.release.analysis import release
-from rockbatch.commands.analysis import print_files
+from rockbatch.analyses.release.quantities import FIT, IMPACTS
+from rockbatch.commands.analysis import cell, in_lines, print_files
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import folder
-from rockbatch.commands.streams import in_width, show
+from rockbatch.commands.streams import show
 from rockbatch.commands.summary import named
 from rockbatch.common.lazy import pd
+from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
 
 
@@ -24,34 +27,18 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
 def shown(fits: "pd.DataFrame", impacts: "pd.DataFrame", varied: tuple[str, ...]) -> str:
     """Return a block for each case: the fitted value, how well it describes the test, and a table of impacts."""
     keys, blocks = ["case", *varied], []
-    for (names, rows), fit in zip(
-        impacts.groupby(keys, sort=False, dropna=False), fits.to_dict("records"), strict=True
-    ):
-        cells = {
-            "impact": rows["impact"].map(str),
-            "t [s]": rows["t_measured_s"].map(lambda t: _number(t, ".4f")),
-            "computed": rows["t_computed_s"].map(lambda t: _number(t, ".4f")),
-            "amplitude [rad]": rows["amplitude_measured_rad"].map(lambda a: _number(a, ".5f")),
-            "computed ": rows["amplitude_computed_rad"].map(lambda a: _number(a, ".5f")),
-            "apparent e": rows["restitution_measured"].map(lambda e: _number(e, ".3f")),
-            "computed  ": rows["restitution_computed"].map(lambda e: _number(e, ".3f")),
-        }
+    for (names, rows), fit in zip(impacts.groupby(keys, sort=False, dropna=False), as_dicts(fits), strict=True):
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()
-        table = in_width(list(cells), list(zip(*cells.values(), strict=True)))
-        blocks.append(f"{head}: {in_words({str(key): value for key, value in fit.items()})}\n{table}")
+        blocks.append(f"{head}: {in_words(fit)}\n{in_lines(IMPACTS, as_dicts(rows))}")
     return "\n\n".join(blocks)
 
 
-def in_words(fit: "dict[str, object]") -> str:
+def in_words(fit: Mapping[str, Any]) -> str:
     """Return what was fitted in a case, in sentences."""
-    value = {name: float(str(fit[name])) for name in ("value", "low", "high", "confidence", "scatter", "over_housner")}
-    text = f"{fit['parameter']} = {value['value']:.4g}, {value['low']:.4g} to {value['high']:.4g} ({value['confidence']:.0%})"
-    if not math.isnan(value["over_housner"]):
-        text += f", {value['over_housner']:.3f} of Housner's"
-    if value["scatter"] > 1e-3 * value["value"]:
-        text += f"; it scatters by ±{value['scatter']:.2g} from impact to impact"
+    parameter, value, interval, scatter, over_housner = (cell(quantity, fit) for quantity in FIT)
+    text = f"{parameter} = {value}, {interval}"
+    if over_housner:
+        text += f", {over_housner} of Housner's"
+    if fit["scatter"] > 1e-3 * fit["value"]:
+        text += f"; it scatters by ±{scatter} from impact to impact"
     return f"{text}.\n  {fit['remark']}"
-
-
-def _number(value: float, form: str) -> str:
-    return "" if math.isnan(value) else format(value, form)

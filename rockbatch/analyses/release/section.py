@@ -1,12 +1,10 @@
 """A release test in the report: what was fitted, and the measured impacts and amplitudes on the computed rotation."""
 
-from collections.abc import Mapping
-from typing import Any
-
+from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.lazy import pd
 from rockbatch.report.finished_analysis import Contents, named, of_files
-from rockbatch.report.markup import Markup, join, number, tag
+from rockbatch.report.markup import Markup, join, tag
 from rockbatch.report.svg import drawn
 from rockbatch.report.table import Head, listed
 from rockbatch.results.labelled import as_dicts
@@ -28,39 +26,20 @@ def section(contents: Contents) -> Markup:
         return Markup("")
     varied = analysis.info["varied"]
     keys = ["case", *varied]
-    numbers = [
-        _numbers(measured, named(dict(zip(keys, names, strict=True)), keys))
-        for names, measured in impacts.groupby(keys, sort=False, dropna=False)
-    ]
+    tables = []
+    for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
+        title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"
+        tables.append(listed(quantities.IMPACTS, as_dicts(of_case), name=title))
     lead = (
         "What the pier loses, fitted to the measured times and amplitudes, and the interval of the fit. In the pictures a "
         "measured amplitude stands at the time of the computed one."
     )
     pictures = tag("figure", drawn(rotations(impacts, history, varied)), class_="whole")
-    return join(tag("p", lead), _fits(fits, keys), pictures, *numbers, analysis.provenance())
+    return join(tag("p", lead), _fits(fits, keys), pictures, *tables, analysis.provenance())
 
 
 def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
     """Return the table of what was fitted."""
-    heads = [
-        Head("case", value=lambda fit: named(fit, keys)), Head("fitted", value="parameter"), Head("value", ".4g", value="value"),
-        Head("interval", value=_interval),
-        Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
-        Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
-    ]  # fmt: skip
+    heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
     notes = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
     return join(listed(heads, as_dicts(fits), name="Fitted to the release test"), *(tag("p", words) for words in notes))
-
-
-def _interval(fit: Mapping[str, Any]) -> str:
-    return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
-
-
-def _numbers(impacts: "pd.DataFrame", title: str) -> Markup:
-    """Return the table of impacts, measured and computed."""
-    heads, kinds = [Head("impact", "d", value="impact")], {
-        "t": ("_s", "time [s]", ".4f"), "amplitude": ("_rad", "amplitude [rad]", ".5f"), "restitution": ("", "apparent e", ".3f"),
-    }  # fmt: skip
-    for name, (unit, over, form) in kinds.items():
-        heads += [Head(origin, form, group=over, value=f"{name}_{origin}{unit}") for origin in ("measured", "computed")]
-    return listed(heads, as_dicts(impacts), name=f"Impacts of {title}, measured and computed")

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rockbatch.analyses.sensitivity import sampled
-from rockbatch.analyses.sensitivity.sampled import INDICES, Design, Point, Points, indices
+from rockbatch.analyses.sensitivity.quantities import SOBOL, TORNADO
+from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, indices
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.digests import digests
@@ -29,9 +30,6 @@ from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-ONE_AT_A_TIME, SOBOL = "sensitivity.csv", "sobol.csv"
-TORNADO_COLUMNS = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -132,8 +130,8 @@ def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, A
     with opened_text(results.directory / sampled.RUNS) as rows:
         results.info["statuses"], values = values_of(csv.DictReader(rows), len(points), spec.overturned)
     swings, shares = tables(study, spec, points, values)
-    results.keep_table(ONE_AT_A_TIME, swings)
-    results.keep_table(SOBOL, shares)
+    results.keep_table("sensitivity.csv", swings)
+    results.keep_table("sobol.csv", shares)
     results.info["engine"] = str(results.engine)
     return {"spec": spec}
 
@@ -210,6 +208,6 @@ def tables(
         if inputs:
             shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**identity))
     return (
-        pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO_COLUMNS]),
-        pd.concat(shares, ignore_index=True)[["case", *study.varied, *INDICES]],
+        pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO]),
+        pd.concat(shares, ignore_index=True)[["case", *study.varied, *SOBOL]],
     )

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.analyses.sensitivity.quantities import SOBOL
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, applying, own_values, varied
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.common.lazy import pd
@@ -24,7 +25,6 @@ RUNS = "sensitivity_runs.csv"
 COLUMNS = ("record", "polarity", "scale", "status", "theta_max_over_alpha", "reason")
 """Columns of :data:`RUNS`."""
 
-INDICES = ("parameter", "first", "first_error", "total", "total_error")
 RESAMPLES = 1000
 """Resamples of the bootstrap that gives the intervals."""
 
@@ -164,7 +164,7 @@ def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidenc
     """
     from SALib.analyze import sobol
 
-    table = pd.DataFrame({"parameter": [parameter.name for parameter in inputs]}, columns=list(INDICES), dtype=object)
+    table = pd.DataFrame({"parameter": [parameter.name for parameter in inputs]}, columns=list(SOBOL), dtype=object)
     names = {"first": "S1", "first_error": "S1_conf", "total": "ST", "total_error": "ST_conf"}
     if np.ptp(answers) == 0:
         return table.astype(dict.fromkeys(names, float))

@@ -54,7 +54,7 @@ class Input:
 
     @property
     def at(self) -> tuple[str, ...]:
-        """Its place under [sensitivity]."""
+        """Return its place under [sensitivity]."""
         return self.spread, *self.name.split(".")
 
 

@@ -74,7 +74,7 @@ class MapSpec:
 
     @property
     def grid(self) -> tuple[list[float], list[float]]:
-        """Frequencies and amplitudes, evenly spaced."""
+        """Return frequencies and amplitudes, evenly spaced."""
         return (
             np.linspace(*self.frequency, self.frequencies).tolist(),
             np.linspace(*self.amplitude, self.amplitudes).tolist(),

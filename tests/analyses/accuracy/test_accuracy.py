@@ -10,7 +10,8 @@ import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.analyses.accuracy.error_and_time
-from rockbatch.analyses.accuracy.error_and_time import COLUMNS, SUBSTEPS, Clock, measure, reference, references, spread
+from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, measure, reference, references, spread
+from rockbatch.analyses.accuracy.levels import COLUMNS
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.cli import main

@@ -386,7 +386,8 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     (curve,), spec, study = made_up(
         tmp_path, STRIPES, lambda m, x: "failed" if m % 2 and x < 0.5 else stands_or_falls(m, x)
     )
-    printed = table([curve], spec)
+    told = described([curve], spec, study, 30)
+    printed = table(told, spec)
     first, *rest = printed.splitlines()
     assert first == "Fragility for PGA, stripes; 1 of 1 curve says little: too many runs are undecided"
     assert any("says little: 30 of 120 runs undecided: 30 failed; they count for nothing here" in line for line in rest)
@@ -394,7 +395,6 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     assert list(rows["undecided"]) == [15, 15, 0, 0]
     assert (rows["p_low"] <= rows["p"]).all()
     assert (rows["p"] <= rows["p_high"]).all()
-    told = described([curve], spec, study, 30)
     told |= {"study": {"sha256": "here"}}
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
     page = section(Contents(tmp_path, told["study"]))

@@ -1,0 +1,28 @@
+"""Quantities of accuracy.csv: heads, formats and meanings on the terminal and the page."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rockbatch.analyses.accuracy.levels import Level
+from rockbatch.report.table import Head
+
+QUANTITIES = (
+    Head("method", value="method"),
+    Head("k", ".0f", "substeps: steps per sample", value="substeps"),
+    Head("tolerance", ".0e", "on θ_max/α", value="tolerance"),
+    Head("runs", ".0f", value="runs"),
+    Head("median error", ".1e", value="error_median"),
+    Head("95 %", ".1e", "error that 95 % of the runs keep", value="error_95"),
+    Head("largest", ".1e", value="error_max"),
+    Head("time per run [ms]", ".3g", value="milliseconds"),
+    Head(
+        "other outcome", ".0f", "runs that end otherwise than the reference: overturned, flight",
+        value=lambda level: level["status_differs"] or None,
+    ),
+)  # fmt: skip
+"""Of :func:`rows`."""
+
+
+def rows(levels: Sequence[Level]) -> list[Mapping[str, Any]]:
+    """Return the fields of each level, with its time per run [ms]."""
+    return [vars(level) | {"milliseconds": level.milliseconds} for level in levels]

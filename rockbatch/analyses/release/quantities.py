@@ -1,0 +1,36 @@
+"""Quantities of a release test, as the terminal and the page show them: heads, formats and meanings."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rockbatch.report.markup import number
+from rockbatch.report.table import Head
+
+
+def interval(fit: Mapping[str, Any]) -> str:
+    """Return the interval of a fitted value with its confidence."""
+    return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
+
+
+FIT = (
+    Head("fitted", value="parameter"),
+    Head("value", ".4g", value="value"),
+    Head("interval", value=interval),
+    Head("scatter", ".2g", "standard deviation from impact to impact, beside errors of reading", value="scatter"),
+    Head("of Housner's", ".3f", "over the value that keeps the angular momentum", value="over_housner"),
+)
+"""Of a row of release.csv."""
+
+IMPACTS = (
+    Head("impact", "d", value="impact"),
+    *(
+        Head(origin, form, group=group, value=f"{name}_{origin}{unit}")
+        for name, unit, group, form in (
+            ("t", "_s", "time [s]", ".4f"),
+            ("amplitude", "_rad", "amplitude [rad]", ".5f"),
+            ("restitution", "", "apparent e", ".3f"),
+        )
+        for origin in ("measured", "computed")
+    ),
+)
+"""Of a row of release_impacts.csv."""

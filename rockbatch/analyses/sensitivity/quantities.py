@@ -1,0 +1,32 @@
+"""Quantities of a sensitivity study: columns of its files, and heads and formats on the terminal and the page."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rockbatch.analyses.sensitivity.figures import written
+from rockbatch.report.table import Head
+
+TORNADO = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
+"""Columns of sensitivity.csv after those of the case."""
+
+SOBOL = ("parameter", "first", "first_error", "total", "total_error")
+"""Columns of sobol.csv after those of the case."""
+
+_ENDS = {"low": "low", "base": "study", "high": "high"}
+_INDICES = {"first": "first-order", "total": "total"}
+
+
+def _value(end: str) -> Callable[[Mapping[str, Any]], str]:
+    return lambda row: written(row[end])
+
+
+QUANTITIES = (
+    *(Head(head, value=_value(end)) for end, head in _ENDS.items()),
+    *(Head(head, ".4f", group="answer at", value=f"answer_{end}") for end, head in _ENDS.items()),
+    *(
+        Head(head, ".3f", group="Sobol index", value=column)
+        for index, name in _INDICES.items()
+        for head, column in ((name, index), ("±", f"{index}_error"))
+    ),
+)
+"""Of an input, a row of both files together."""
