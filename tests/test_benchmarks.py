@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rockbatch.motions import Motion, pulse
-from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.simulation import run_to_tolerance
 
@@ -150,48 +149,6 @@ def test_a_survey_of_the_rigid_base_has_no_wrong_outcome(benchmark):
     assert counts["with flights"] > 0
     assert counts["overturned"] > 0
     assert cells(survey.table(rows))[-1][:2] == ["all", str(len(rows))]
-
-
-def test_the_period_of_free_rocking_is_housners(benchmark):
-    """Four quarters of θ̈ = p²(θ − α) from rest at φα: 1 − (1 − φ) cosh pt = 0."""
-    for share in (0.01, 0.3, 0.9):
-        quarter = benchmark("code_estimates").rocking_period(share, 0.5) / 4
-        assert (1 - share) * np.cosh(0.5 * quarter) == pytest.approx(1.0)
-
-
-def test_the_damping_of_priestley_is_that_of_the_decay_of_free_rocking(benchmark):
-    """After n impacts φ_n = 1 − √(1 − rⁿ (1 − (1 − φ0)²)) (Housner 1963); a cycle has two: ζ = ln(φ0/φ_n)/(π n)."""
-    damping = benchmark("code_estimates").DAMPING
-    for alpha in (0.1, 0.15, 0.2):
-        restitution = Pier(alpha=alpha, p=1.0).restitution
-        r = restitution**2
-        for start in (0.1, 0.15, 0.2):
-            left = 1 - np.sqrt(1 - r**4 * (1 - (1 - start) ** 2))
-            # 0.34 is a fit; it grows with the amplitude, to 0.46 at φ0 = 0.5
-            assert damping["priestley"](restitution) == pytest.approx(np.log(start / left) / (np.pi * 4), rel=0.05)
-        assert damping["fema_356"](restitution) == pytest.approx(0.4 * (1 - np.sqrt(r)))
-
-
-def test_the_estimates_end_at_a_fixed_point_or_say_why_not(benchmark):
-    module = benchmark("code_estimates")
-    assert module.fixed_point(lambda share: 0.1 + 0.5 * share) == pytest.approx(0.2, rel=1e-3)
-    assert module.fixed_point(lambda share: 0.1 * share) == 0.0
-    assert module.fixed_point(lambda share: 2.0 * share) == np.inf
-    assert np.isnan(module.fixed_point(lambda share: 0.7 - share))  # goes to and fro between START and 0.2
-
-
-def test_an_estimate_is_zero_below_uplift_and_a_fixed_point_of_the_spectrum_above(benchmark):
-    module, pier = benchmark("code_estimates"), Pier(alpha=0.2, p=1.0)
-    weak, strong = (
-        pulse("sine", name="p", amplitude=share * 9.81 * np.tan(0.2), period=0.8, dt=0.01, duration=3.0)
-        for share in (0.99, 1.6)
-    )
-    assert module.estimate(pier, weak, "priestley") == 0.0
-    share = module.estimate(pier, strong, "priestley")
-    assert 0.0 < share < 1.0
-    period, damping = module.rocking_period(share, pier.p), module.DAMPING["priestley"](pier.restitution)
-    (sa,) = spectral_acceleration(strong.horizontal, strong.dt, [period], damping)
-    assert sa * (period / 2 / np.pi) ** 2 / pier.size / pier.alpha == pytest.approx(share, rel=1e-3)
 
 
 def test_tables_that_differ_in_a_byte_or_are_missing_are_named(benchmark, monkeypatch):

@@ -95,7 +95,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
 }), instead=names({
     "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
-    "the estimates of design practice are an example now, benchmarks/code_estimates.py; leave it out": "estimate estimates",
+    "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
 }))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""

@@ -1,6 +1,6 @@
 """An example: the estimates of design practice beside the computed peaks of piers on rigid ground.
 
-    python benchmarks/code_estimates.py configs/suite_to_spectrum.toml
+    python configs/code_estimates.py configs/suite_to_spectrum.toml
 
 They take the rocking pier as an elastic oscillator whose period grows with its rotation. Priestley, Evison & Carr (1978, Bull. NZ
 Nat. Soc. Earthq. Eng. 11(3), 141–150) take the period of free rocking (Housner 1963),
