@@ -399,7 +399,7 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
     page = section(Contents(tmp_path, told["study"]))
     assert page.startswith("<p><strong>Too many runs are undecided for these curves to say much: overturning, rigid")
-    assert 'class="open s1"' in page
+    assert 'class="unsure s1"' in page
     assert "30 of 120 runs undecided: 30 failed" in page
 
 
