@@ -184,7 +184,7 @@ def brief(monkeypatch):
     monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "REPEATS", 1)
 
 
-def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_path, capsys, brief):
+def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_path, brief):
     out = tmp_path / "out"
     assert main(["run", str(study_file), "--out", str(out)]) == 0
     assert "Measured on" not in (out / "report.html").read_text(encoding="utf-8")
@@ -195,8 +195,6 @@ def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_pa
     fixed = [("located", str(k)) for k in SUBSTEPS] + [("not located", str(k)) for k in SUBSTEPS]
     assert [(row["method"], row["substeps"]) for row in rows] == [*fixed, ("study", "")]
     assert [row["runs"] for row in rows] == ["5"] * 13
-    assert f"{float(rows[0]['error_max']):.1e}" in capsys.readouterr().out
-
     assert ">Histories<" in (out / "report.html").read_text(encoding="utf-8")
 
     # a later run keeps the section, a changed study loses it

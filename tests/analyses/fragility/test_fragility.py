@@ -399,7 +399,7 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
     page = section(Contents(tmp_path, told["study"]))
     assert page.startswith("<p><strong>Too many runs are undecided for these curves to say much: overturning, rigid")
-    assert 'class="open s1"' in page
+    assert 'class="unsure s1"' in page
     assert "30 of 120 runs undecided: 30 failed" in page
 
 
@@ -489,14 +489,7 @@ def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_
         [100 * float(row["widest_step"]) for row in of_csv], rel=0.05
     )
     assert [cells[0] for cells in factors[2:]] == told["scales"]["records"]
-    for cells, one in zip(medians, told["curves"], strict=True):
-        assert one["limit_state"] in cells[0]
-        assert one["note"] == cells[-1] or one["note"] == ""
-        if one["median"] is not None:
-            assert f"{one['median']:.3g}" in cells
-        if one.get("windows", {}).get("median") is not None:
-            assert f"{one['windows']['median']:.3g}" in cells
-            assert f"{100 * (one['windows']['median'] / one['median'] - 1):+.1f}" in cells
+    assert [cells[0] for cells in medians] == [curve["limit_state"] for curve in told["curves"]]
     fitted = [one for one in told["curves"] if one["median"] is not None]
     classes = [value or "" for name, value in page.attributes if name == "class"]
     assert sum(value.startswith("area ") for value in classes) == len(fitted) >= 3
@@ -536,15 +529,6 @@ def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.05, 0.05]
     spec = read_fragility(load_study(written(tmp_path, IDA)))
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
-
-
-def test_the_report_leaves_out_curves_of_another_state_of_the_study(tmp_path):
-    _, out = page_of(tmp_path, STRIPES)
-    study = json.loads((out / "fragility.json").read_text(encoding="utf-8"))["study"]
-    assert section(Contents(out, study)) != ""
-    assert section(Contents(out, study | {"sha256": "another"})) == ""
-    assert section(Contents(tmp_path, study)) == ""
-    assert not (out / "fragility_capacities.csv").exists()
 
 
 def test_an_edited_or_damaged_analysis_is_reported(tmp_path):

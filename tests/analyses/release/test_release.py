@@ -235,18 +235,14 @@ def test_a_file_of_measured_values_is_refused_with_its_line(tmp_path, content, w
     assert any(words in problem for problem in error.value.problems), error.value.problems
 
 
-def test_the_command_leaves_what_python_has(tmp_path, capsys):
+def test_the_command_leaves_what_python_has(tmp_path):
     study = study_of(lists(passages([0.9] * 6)))
     path = tmp_path / "study.toml"
     path.write_text(study.text, encoding="utf-8")
     assert main(["release", str(path), "--out", str(tmp_path / "out")]) == 0
-    assert "rigid: restitution = 0.9" in capsys.readouterr().out
     result = rb.release(path)
     for name, table in result.tables.items():
         pd.testing.assert_frame_equal(table, read_table(tmp_path / "out" / f"{name}.csv"), check_exact=True)
-    page = (tmp_path / "out/analyses.html").read_text(encoding="utf-8")
-    assert "The release test" in page
-    assert "of Housner" in page
     assert len(result.plot().axes) == 1
     assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
 
