@@ -34,9 +34,9 @@ from rockbatch.batch.digests import study_digests
 from rockbatch.batch.finishing import cost_of_finished
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
-from rockbatch.cli import main
-from rockbatch.errors import EditedTable
-from rockbatch.report.finished_analysis import digest_of
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import EditedTable
+from rockbatch.reporting.finished_analysis import digest_of
 from rockbatch.results.columns import JOURNAL, columns
 from rockbatch.simulation import first_substeps, steps_of
 from rockbatch.study import Study

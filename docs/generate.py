@@ -25,7 +25,7 @@ from printing import as_pdf
 
 import rockbatch
 from rockbatch import motions
-from rockbatch.cli import COMMANDS, main
+from rockbatch.commands.cli import COMMANDS, main
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import BASES_IN_WORDS
 from rockbatch.quantities.statistics import STATISTICS

@@ -2,20 +2,20 @@
 
 from typing import Any
 
-from rockbatch._version import __version__ as __version__
 from rockbatch.common.lazy import loading
+from rockbatch.common.version import __version__ as __version__
 
 _NAMES = {
     "batch.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
     "checks.checking": "check",
-    "errors": "InputError",
+    "common.errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
-    "report": "report",
+    "reporting": "report",
     "results.opened": "open_results",
     "simulation.response": "Response",
     "study": "Study load_study",

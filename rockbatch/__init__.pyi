@@ -1,6 +1,5 @@
 """The public names, for type checkers and editors."""
 
-from rockbatch._version import __version__ as __version__
 from rockbatch.analyses.accuracy.analysis import accuracy as accuracy
 from rockbatch.analyses.fragility.analysis import fragility as fragility
 from rockbatch.analyses.release.analysis import release as release
@@ -10,7 +9,8 @@ from rockbatch.batch.running import run as run
 from rockbatch.batch.single import simulate as simulate
 from rockbatch.checks import Rule as Rule
 from rockbatch.checks.checking import check as check
-from rockbatch.errors import InputError as InputError
+from rockbatch.common.errors import InputError as InputError
+from rockbatch.common.version import __version__ as __version__
 from rockbatch.motions import Motion as Motion
 from rockbatch.motions import MotionSet as MotionSet
 from rockbatch.motions import ReadOptions as ReadOptions
@@ -30,7 +30,7 @@ from rockbatch.pier import Tendon as Tendon
 from rockbatch.pier import YieldingBase as YieldingBase
 from rockbatch.pier.statics import Statics as Statics
 from rockbatch.pier.statics import statics as statics
-from rockbatch.report import report as report
+from rockbatch.reporting import report as report
 from rockbatch.results.opened import open_results as open_results
 from rockbatch.simulation.response import Response as Response
 from rockbatch.study import Study as Study

@@ -12,7 +12,7 @@ def main() -> int:
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     collect_rarely()
     try:
-        from rockbatch.cli import main as command_line
+        from rockbatch.commands.cli import main as command_line
 
         return command_line()
     except KeyboardInterrupt:

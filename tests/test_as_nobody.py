@@ -11,7 +11,7 @@ from motion_files import wiggle, write_at2
 from studies import RIGID, study_text, write_study
 
 import rockbatch
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 
 NOBODY = 200_000 + os.getpid() % 100_000
 """A number that no user has, and no other process of these tests."""

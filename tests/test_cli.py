@@ -13,7 +13,7 @@ import pytest
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import COMMANDS, EXIT_CODES, main, parser
+from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.streams import in_width
 from rockbatch.results.beside_peaks import write_semicolons
 
@@ -209,7 +209,7 @@ def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
 
 def test_help_loads_neither_compiler_nor_tables_nor_obspy():
     """Start-up stays light: what costs is loaded inside the command that needs it."""
-    code = "import sys; from rockbatch.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    code = "import sys; from rockbatch.commands.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
     heavy = "numba", "numpy", "pandas", "obspy", "h5py", "matplotlib", "scipy"
     code += f"print([m for m in {heavy!r} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -247,7 +247,7 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
             "_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "bash", "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "told"),
             "COMP_LINE": line, "COMP_POINT": str(len(line)), "COMP_TYPE": "9", "_ARGCOMPLETE_IFS": "\n",
         }  # fmt: skip
-        code = "from rockbatch.cli import main; main()"
+        code = "from rockbatch.commands.cli import main; main()"
         subprocess.run([sys.executable, "-c", code], env=os.environ | asked, check=True, capture_output=True)
         return (tmp_path / "told").read_text(encoding="utf-8").split()
 
@@ -392,7 +392,7 @@ import rockbatch.core.kernel as kernel
 from pathlib import Path
 kernel._CORE = Path(sys.argv[1])  # a file: there is no folder to be made below it
 print(kernel._usable_folder())
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 sys.exit(main(["run", sys.argv[1]]))
 """
     study = write_study(tmp_path, study_text(motions={"path": "~/records"}))

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from rockbatch.batch.analysis import AnalysisFolder
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 
 TOP = Path(__file__).parents[1] / "rockbatch"
-OF_FOLDERS = ("analyses", "batch", "checks", "report", "results")
+OF_FOLDERS = ("analyses", "batch", "checks", "reporting", "results")
 ROUND = re.compile(
     r"(?<!temporary)(?<!h5[ao])\.open\(|(?<![.\w])open\(|(?<!joinpath\(name\))\.read_text\(|\.read_bytes\(|\.write_text\(|\.touch\("
 )

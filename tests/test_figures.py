@@ -12,7 +12,7 @@ from figure_makers import makers
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-import rockbatch.report
+import rockbatch.reporting
 from rockbatch.common.figures import description, paper
 from rockbatch.common.figures.description import (
     COLOURS,
@@ -35,7 +35,7 @@ from rockbatch.common.figures.description import (
     without_repeats,
     written,
 )
-from rockbatch.report import svg
+from rockbatch.reporting import svg
 
 NASTY = "_$x_1$ <b>&"
 X, Y = np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 1.0])
@@ -171,7 +171,7 @@ def _laid_out(shown, width_mm):
 
 
 def test_colours_and_dashes_of_paper_are_those_of_the_page():
-    style = (Path(rockbatch.report.__file__).parent / "style.css").read_text(encoding="utf-8").split("@media")[0]
+    style = (Path(rockbatch.reporting.__file__).parent / "style.css").read_text(encoding="utf-8").split("@media")[0]
     colours = dict(re.findall(r"--(\w+): (#\w{6})", style))
     assert list(paper.PALETTE) == [colours["ink"], *(colours[f"s{i}"] for i in range(1, COLOURS + 1))]
     assert tuple(colours[name] for name in ("alarm", "muted", "band")) == (paper.ALARM, paper.MUTED, paper.PALE)

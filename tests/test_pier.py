@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from core_samples import FIG5
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import (
     WITH_EXPONENT,

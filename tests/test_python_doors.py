@@ -12,7 +12,7 @@ import pytest
 import rockbatch as rb
 import rockbatch.analyses.accuracy.error_and_time
 import rockbatch.batch.threads
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.common.files import read_table
 
 STUDY = """
@@ -275,7 +275,7 @@ def test_the_report_is_called_by_its_name_before_and_after_its_package_is_loaded
     code = (
         f"import rockbatch as rb\nprint(callable(rb.report))\nprint(rb.report({str(commanded / 'run')!r}).path.name)\n"
     )
-    code += "import rockbatch.report\nprint(callable(rb.report))"
+    code += "import rockbatch.reporting\nprint(callable(rb.report))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True", "report.html", "True"]
 

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.core.springs.laws import static_deflection as series
 from rockbatch.pier import (
     ElasticBase,

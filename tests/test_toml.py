@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.reader import TomlFile
 

@@ -11,12 +11,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeVar
 
-from rockbatch._version import __version__
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.execution import RowOf, Runs, execute_runs
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of
 from rockbatch.batch.threads import Engine, Threads, engine_of
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import (
     csv_text,
     is_plain,
@@ -30,10 +30,10 @@ from rockbatch.common.files import (
 )
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
-from rockbatch.errors import InputError
+from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet, Unusable
-from rockbatch.report import REPORT, write_analyses
-from rockbatch.report.finished_analysis import digest_of
+from rockbatch.reporting import REPORT, write_analyses
+from rockbatch.reporting.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.study import Case, Motions, Study, given_study
 from rockbatch.study.suite import ground_motions

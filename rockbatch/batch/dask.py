@@ -15,7 +15,7 @@ from rockbatch.batch.digests import program
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun, scaled
 from rockbatch.batch.threads import Outcomes, cores, finished
-from rockbatch.errors import InputError, starting_threads
+from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.motions import Motion
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Numerics, Output

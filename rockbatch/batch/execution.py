@@ -10,7 +10,7 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import MOST_RUNS, PlannedRun, Runs, some_of
 from rockbatch.batch.threads import Engine
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.results.columns import cells, row
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Numerics, Output

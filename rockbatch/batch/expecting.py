@@ -13,7 +13,7 @@ from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, PlannedRun, some_of
 from rockbatch.batch.running import described
-from rockbatch.errors import starting_threads
+from rockbatch.common.errors import starting_threads
 from rockbatch.results.columns import columns
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome

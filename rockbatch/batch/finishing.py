@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockbatch._version import __version__
 from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.half_cycles import HALF_CYCLES, rows_of_half_cycles
 from rockbatch.batch.journal import Journal
@@ -22,10 +21,11 @@ from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.checking import verdicts
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, read_text
-from rockbatch.errors import InputError
+from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
-from rockbatch.report import REPORT, write_report
+from rockbatch.reporting import REPORT, write_report
 from rockbatch.results.beside_peaks import SEMICOLONS, write
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rockbatch.batch.plan import PlannedRun
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.simulation.error_control import run_all_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, with_observed
 from rockbatch.simulation.models import first_substeps

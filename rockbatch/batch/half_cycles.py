@@ -6,8 +6,8 @@ from typing import Any
 
 from rockbatch.batch.listening import Advance
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS, apparent_restitution
 from rockbatch.simulation.histories import cycles_of, written
 from rockbatch.simulation.runs import run_fixed

@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any, NamedTuple, Self
 
 from rockbatch.batch.plan import MOST_RUNS
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import (
     csv_line,
     csv_lines,
@@ -24,7 +25,6 @@ from rockbatch.common.files import (
     opened,
     replacing,
 )
-from rockbatch.errors import InputError
 
 ABSENT = -1
 ROWS_AT_ONCE = 1000

@@ -10,8 +10,8 @@ import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.pier import Base, Pier, places, vertical_frequency
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write

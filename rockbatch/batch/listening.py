@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext, supp
 from threading import Timer
 from typing import TYPE_CHECKING
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -24,10 +24,10 @@ from rockbatch.batch.listening import Listener, Progress, count, listener_of, on
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import refuse_folders
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
 from rockbatch.results.run_json import FROM_PYTHON

@@ -6,8 +6,8 @@ from typing import Any
 
 from rockbatch.batch.listening import Advance
 from rockbatch.batch.plan import PlannedRun
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.results.shocks import shock_rows
 from rockbatch.simulation.outcome import ShockOutcome
 from rockbatch.simulation.runs import run_fixed

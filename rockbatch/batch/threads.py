@@ -9,7 +9,7 @@ from typing import Protocol, Self, runtime_checkable
 
 from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.plan import PlannedRun
-from rockbatch.errors import InputError, starting_threads
+from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Numerics, Output

@@ -8,8 +8,8 @@ from typing import Any
 from rockbatch.checks.judging import judge
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case

@@ -9,8 +9,8 @@ import numpy as np
 
 from rockbatch.checks.bounds import SCATTER, by_other_law, by_record, chaotic, counted, governing, lacking, of_runs
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.quantities.cases import Case, creeps, has_device
 from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values

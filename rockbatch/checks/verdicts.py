@@ -7,9 +7,9 @@ from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.rules import COUNTS, is_ban

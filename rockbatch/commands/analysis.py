@@ -8,8 +8,8 @@ from rockbatch.batch.analysis import Analysis
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import in_width, say
-from rockbatch.report.markup import number
-from rockbatch.report.table import Head
+from rockbatch.reporting.markup import number
+from rockbatch.reporting.table import Head
 
 
 def analysis_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -24,7 +24,7 @@ def print_files(analysis: Analysis) -> None:
 
 
 def in_lines(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], names: int = 1) -> str:
-    """Return a table for the terminal, with the heads and cells of the page's (:func:`rockbatch.report.table.listed`).
+    """Return a table for the terminal, with the heads and cells of the page's (:func:`rockbatch.reporting.table.listed`).
 
     The first ``names`` columns name a row; others without a value are left out. A head over several columns stands above the
     first of them.

@@ -18,8 +18,8 @@ from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
 from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
-from rockbatch.report import report as make_report
-from rockbatch.report import write_report
+from rockbatch.reporting import report as make_report
+from rockbatch.reporting import write_report
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
 from rockbatch.results.rows import simulated, with_case

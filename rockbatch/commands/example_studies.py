@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rockbatch.common.analyses import doors
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import made_folder
-from rockbatch.errors import InputError
 
 FIRST = "first_study"
 """The example from which a new study begins."""

@@ -6,8 +6,8 @@ from typing import Any
 
 from rockbatch.batch.listening import count
 from rockbatch.commands.streams import in_width, say, show
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_whole
-from rockbatch.errors import InputError
 from rockbatch.motions import LeftOut, MotionSet, ReadOptions, Unusable, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row

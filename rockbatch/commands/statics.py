@@ -10,8 +10,8 @@ import numpy as np
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_whole
-from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.results.run_json import describe_case

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, Union, Unpack, get_args, get_origin, get_type_hints
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 
 Door = TypeVar("Door", bound=Callable[..., Any])
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rockbatch.common.lazy import loading
 
 if TYPE_CHECKING:
-    from rockbatch.errors import InputError
+    from rockbatch.common.errors import InputError
     from rockbatch.motions.baseline import Offset
     from rockbatch.motions.design_spectra import (
         EUROCODE,
@@ -67,7 +67,7 @@ _NAMES = {
     "velocity_pulses": "VelocityPulse pulse_of",
 }
 _HOMES = {name: f"{__name__}.{home}" for home, names in _NAMES.items() for name in names.split()} | {
-    "InputError": "rockbatch.errors"
+    "InputError": "rockbatch.common.errors"
 }
 
 __all__ = [

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import state_of, whole_input
-from rockbatch.errors import InputError
 
 LARGEST = 256 * 2**20
 """Bytes of a file, packed or unpacked; a day of three channels at 200 Hz has a fifth of it."""

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.arguments import checked
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.toml.reader import TomlFile
 
 Array = npt.NDArray[np.float64]

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import h5py
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions.azimuths import resolved
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of

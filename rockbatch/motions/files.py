@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible
-from rockbatch.errors import InputError
 from rockbatch.motions import archives
 
 MANIFESTS = ("motions.toml", "motions.csv")

@@ -12,10 +12,10 @@ from typing import Literal
 import numpy as np
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.common.files import CHANGED
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component, file_of

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet

@@ -13,10 +13,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_whole
 from rockbatch.common.grouping import grouped
-from rockbatch.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files

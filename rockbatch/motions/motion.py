@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
-from rockbatch.errors import InputError
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration

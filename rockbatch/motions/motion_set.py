@@ -6,11 +6,11 @@ from difflib import get_close_matches
 from numbers import Integral
 from typing import Any, overload
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 

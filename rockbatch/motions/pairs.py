@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.orientation import not_square
 from rockbatch.motions.spectrum import PERIODS, Samples, responses

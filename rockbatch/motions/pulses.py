@@ -25,8 +25,8 @@ from collections.abc import Callable, Collection
 import numpy as np
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError, remedy
 from rockbatch.motions.motion import Initial, Motion, Samples
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")

@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 
 Samples = npt.NDArray[np.float64]
 

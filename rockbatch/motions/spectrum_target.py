@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
-from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import Spectrum
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.pairs import DIRECTIONS, station_spectra, unpaired

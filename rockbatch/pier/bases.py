@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
-from rockbatch.errors import InputError
 from rockbatch.pier.block import Pier
 from rockbatch.pier.places import holds_a_tilt, prestress_over_weight
 from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
-from rockbatch.errors import InputError, remedy
 
 
 def _slenderness(alpha: float) -> str:

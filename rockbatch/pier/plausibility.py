@@ -6,8 +6,8 @@ Implausible ones, as of a wrong unit, are refused until their ``confirm`` names 
 import math
 from typing import NamedTuple, get_args
 
+from rockbatch.common.errors import remedy
 from rockbatch.common.units import POSITIVE
-from rockbatch.errors import remedy
 from rockbatch.pier.block import HIGHEST, Pier
 from rockbatch.pier.places import WAYS, offsets, symmetric
 from rockbatch.pier.restraints import (

@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
-from rockbatch.errors import InputError
 from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import Pier
 

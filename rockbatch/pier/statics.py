@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
-from rockbatch.errors import InputError
 from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
 from rockbatch.pier.block import Pier
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import (
     COLOURS,
     DASHES,
@@ -26,7 +27,6 @@ from rockbatch.common.figures.description import (
 )
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
 from rockbatch.results.rows import counts_as

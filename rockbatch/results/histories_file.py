@@ -28,9 +28,9 @@ from typing import Any, overload
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing
 from rockbatch.common.lazy import h5py, pd
-from rockbatch.errors import InputError
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, restraint_of
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.simulation.outcome import TERMS

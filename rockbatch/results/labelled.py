@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity
 from rockbatch.results.rows import simulated, with_case
 from rockbatch.study import PIER_KEYS

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several
-from rockbatch.errors import InputError
 from rockbatch.quantities.catalogue import in_words
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders

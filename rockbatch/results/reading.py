@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockbatch._version import __version__
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import EditedTable, InputError, MissingColumns
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.lazy import pd
-from rockbatch.errors import EditedTable, InputError, MissingColumns
+from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
 from rockbatch.results.columns import PEAKS, STATUSES
 from rockbatch.results.run_json import INFO, SHAPE

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import read_table
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.simulation.outcome import ShockOutcome

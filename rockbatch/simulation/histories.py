@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
-from rockbatch.errors import InputError
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
-from rockbatch.errors import InputError
 from rockbatch.pier import Base, Pier
 
 if TYPE_CHECKING:

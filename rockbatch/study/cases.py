@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
-from rockbatch.errors import remedy
+from rockbatch.common.errors import remedy
 from rockbatch.pier import (
     EPSILON_AND_ZETA,
     MOST_ETA,

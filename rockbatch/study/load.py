@@ -11,9 +11,9 @@ from typing import Any
 
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.showing import Shown, several
 from rockbatch.common.units import MOST, Bounds
-from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY, Bounds
-from rockbatch.errors import InputError, remedy
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset

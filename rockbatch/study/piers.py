@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 from dataclasses import asdict, replace
 from typing import Any
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
 from rockbatch.pier.block import BOUNDS, unlikely_deck
 from rockbatch.study.lists import Grid, complain_where_due, too_many

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rockbatch.errors import remedy
+from rockbatch.common.errors import remedy
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS

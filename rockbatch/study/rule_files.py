@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import CHECK, COUNT, COUNTS, Rule
 from rockbatch.toml.kinds import choice, shown, text

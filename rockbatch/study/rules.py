@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import (

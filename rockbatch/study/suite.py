@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import at_targets

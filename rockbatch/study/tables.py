@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")

@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError
 from rockbatch.motions.design_spectra import (
     EUROCODE,
     NZS_1170_5,

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError, remedy
 from rockbatch.toml.kinds import KindError, Number, Other, Whole, shown
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.meant import Meant, number_meant, similar

@@ -8,8 +8,8 @@ import pytest
 from report_page import Page
 from studies import RIGID, SINE, study_text, write_study
 
-from rockbatch.cli import main
-from rockbatch.report.markup import number
+from rockbatch.commands.cli import main
+from rockbatch.reporting.markup import number
 
 PULSES = [
     SINE | {"name": f"sine {period}", "period_s": period, "amplitude_g": 0.4, "duration_s": 3.0}

@@ -17,8 +17,8 @@ TOP = Path(rockbatch.__file__).parent
 LOOK = """
 import sys
 import rockbatch
-from rockbatch.cli import parser
-from rockbatch.report.page import PARTS
+from rockbatch.commands.cli import parser
+from rockbatch.reporting.page import PARTS
 from rockbatch.study.schema import FILES, schema_of
 print(parser().format_help())
 print(*rockbatch.__all__)
@@ -86,7 +86,7 @@ def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
         'def main(arguments, study):\n    import rockbatch\n    print(rockbatch.census(study), "cases")\n    return 0\n'
     )
     (folder / "section.py").write_text(
-        "from rockbatch.report.markup import tag\ndef section(contents):\n    return tag('p', 'one census')\n"
+        "from rockbatch.reporting.markup import tag\ndef section(contents):\n    return tag('p', 'one census')\n"
     )
     write_tuple(copied, [*ANALYSES, "census"])
     text = study_text(pier=PIER, pulses=[SINE], cases=[RIGID], census={"all": True})
@@ -97,8 +97,8 @@ def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
     assert " Census" in seen
     draw = """
 from pathlib import Path
-from rockbatch.report.finished_analysis import Contents
-from rockbatch.report.page import page
+from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.page import page
 print(page(Contents(Path("."), {"title": "t", "notes": "", "text": "", "sha256": "x", "path": "x"})))
 """
     assert "one census" in python(copied, "-c", draw)

@@ -75,7 +75,7 @@ def test_every_module_that_can_change_a_row_takes_part():
         ("analyses/fragility/ida.py", True),
         ("pier/block.py", True),
         ("common/units.py", True),
-        ("report/page.py", False),
+        ("reporting/page.py", False),
         ("analyses/fragility/section.py", False),
         ("cli.py", False),
     ],

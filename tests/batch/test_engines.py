@@ -24,8 +24,8 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import silent
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import Threads
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -9,7 +9,7 @@ from studies import PADS, RIGID, study_text, write_study
 from rockbatch.batch import expecting
 from rockbatch.batch.expecting import expected
 from rockbatch.batch.listening import Listener
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.commands.run import in_words
 from rockbatch.study import load_study
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rockbatch.batch.journal import Journal
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import UNFINISHED, only_writer
-from rockbatch.errors import InputError
 
 COLUMNS = ("record", "theta", "reason")
 DIGEST = {"cases": "5f1c", "motions": "09ab"}

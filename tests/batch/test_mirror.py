@@ -14,7 +14,7 @@ from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.results.columns import columns
 from rockbatch.results.rows import simulated

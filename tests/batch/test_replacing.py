@@ -3,7 +3,7 @@
 import pytest
 from studies import study_text, write_study
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 
 
 def run(study, out, *more):

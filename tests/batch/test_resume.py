@@ -15,7 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.groups
 import rockbatch.batch.threads
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.common.files import only_writer
 
 SIMULATED = 18 * 3
@@ -204,7 +204,7 @@ def test_a_full_disk_is_reported_and_with_room_the_same_command_continues(study,
     kept.mkdir()
     script = f"""
 import contextlib, shutil, subprocess, sys
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 
 sizes = {{"first": "{len(undisturbed) // 2}", "second": "{len(undisturbed) * 3 // 2}", "third": "50m"}}
 for name, size in sizes.items():

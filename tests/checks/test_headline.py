@@ -4,7 +4,7 @@ from motion_files import wiggle, write_at2
 from report_page import Page
 from studies import RIGID, SINE, study_text, toml, write_study
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 
 LIMIT = {"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.9, "reason": "half"}
 TENDON = RIGID | {"name": "with tendon", "tendon": [{"psi": 0.5, "lambda": 3.0}]}

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.checks import Rule, judge
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS, quantile

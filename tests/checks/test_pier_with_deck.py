@@ -11,7 +11,7 @@ from studies import write_study
 
 import rockbatch as rb
 from rockbatch.batch.running import described
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.study.suite import ground_motions
 
 STUDY = Path(rb.__file__).parents[1] / "configs" / "pier_with_deck.toml"

@@ -10,9 +10,9 @@ from studies import study_text, write_study
 import rockbatch as rb
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.pier import YieldingBase
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 
 WEAK = YieldingBase(beta=50.0, eta=1.7, spring="epp", zeta=0.05)
 SETTLED = {"settlement_m": [0.1, 0.381, 0.0, 0.2], "base_tilt_rad": 1e-3}

@@ -17,9 +17,9 @@ from studies import PADS, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, write_verdicts
 from rockbatch.checks.checking import verdicts
-from rockbatch.cli import main
 from rockbatch.commands import check
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS, listed
 from rockbatch.study.rule_files import CHECK, load_rules
 
@@ -366,7 +366,7 @@ def test_a_ratio_that_would_round_to_1_says_on_which_side_it_is(tmp_path, capsys
 
 
 def test_checking_never_loads_the_compiler(passing):
-    code = f"import sys; from rockbatch.cli import main; main(['check', {str(passing)!r}])\n"
+    code = f"import sys; from rockbatch.commands.cli import main; main(['check', {str(passing)!r}])\n"
     code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

@@ -13,8 +13,8 @@ from studies import PADS, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts
 from rockbatch.checks.checking import verdicts
-from rockbatch.cli import main
-from rockbatch.errors import InputError, MissingColumns
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.study.rule_files import load_rules
 
 INF = math.inf

@@ -14,7 +14,7 @@ from rockbatch.checks import read_verdicts, wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -11,7 +11,7 @@ import motion_files  # noqa: F401  loads ObsPy, which warns
 import pytest
 from jsonschema import Draft7Validator
 
-from rockbatch.cli import COMMANDS, main
+from rockbatch.commands.cli import COMMANDS, main
 from rockbatch.study.load import load_study
 from rockbatch.study.schema import MANIFEST, STUDY, schema_of
 

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 from report_samples import write_results
 
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 
 DOCS = Path(__file__).parents[2] / "docs"
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.commands.example_studies import FIRST, copy, examples
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.rule_files import load_rules
 from rockbatch.study.suite import ground_motions
@@ -137,8 +137,8 @@ def test_a_wheel_has_them(tmp_path):
     assert len(list((tmp_path / "mine" / "records").rglob("*.V2*"))) == 7
     names = {path.stem for path in (installed / "rockbatch" / "examples" / "configs").glob("*.toml")}
     assert names == set(NAMES)
-    report = installed / "rockbatch" / "report"
+    report = installed / "rockbatch" / "reporting"
     assert {"style.css", "script.js", "page.html"} <= {path.name for path in report.iterdir()}
     assert len(list((report / "sections").glob("*.html"))) == len(
-        list((CHECKOUT / "rockbatch/report/sections").glob("*.html"))
+        list((CHECKOUT / "rockbatch/reporting/sections").glob("*.html"))
     )

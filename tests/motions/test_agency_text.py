@@ -36,7 +36,7 @@ from national_files import (
     usc_text,
 )
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats import (
     RecordFile,

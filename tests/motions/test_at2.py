@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.formats.at2 import is_at2, read_at2
 
 VALUES = wiggle(12)

@@ -12,7 +12,7 @@ from national_files import afad_text, unam_text
 from obspy import Trace
 from waveform_files import trace
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import draft, write_manifest
 

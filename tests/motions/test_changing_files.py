@@ -10,7 +10,7 @@ from motion_files import at2_text, wiggle, write_at2
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import archives, folder, read_motions
 from rockbatch.motions.formats import stationxml
 from rockbatch.toml.reader import LARGEST, TomlFile

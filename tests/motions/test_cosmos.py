@@ -16,7 +16,7 @@ from fixed_column_files import (
     read,
 )
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats.cosmos import is_cosmos_file, read_cosmos_stream
 

@@ -17,7 +17,7 @@ from fixed_column_files import (
     read,
 )
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats.csmip import read_csmip_stream
 from rockbatch.motions.motion import Unusable

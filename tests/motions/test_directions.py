@@ -11,8 +11,8 @@ from motion_files import wiggle, write_at2
 from obspy import Trace
 from studies import FOLDER_STUDY, write_study
 
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.orientation import counted, orientation_in, orientation_of, split_stem

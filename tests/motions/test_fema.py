@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import fema_p695, read_motions
 
 needs_package = pytest.mark.skipif(

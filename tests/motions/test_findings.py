@@ -9,8 +9,8 @@ from fixed_column_files import A, B, C, cosmos_text, csmip_channel, smc_text
 from motion_files import needs_records, real_components, wiggle, write_at2
 from studies import FOLDER_STUDY, write_study
 
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions import fema_p695, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation

@@ -11,7 +11,7 @@ from agency_files import knet_text
 from motion_files import wiggle
 from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import FORMATS, with_obspy
 from rockbatch.motions.manifest_draft import write_manifest

@@ -14,7 +14,7 @@ from bounds import bounds
 from damaged_files import SAMPLES, damaged
 from motion_files import wiggle, write_at2
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import FORMATS, ReadOptions, RecordFile, read_record

@@ -11,7 +11,7 @@ from fixed_column_files import csmip_channel
 from motion_files import at2_text, wiggle, write_at2
 from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import ReadOptions, columns, miniseed, with_obspy

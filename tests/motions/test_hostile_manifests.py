@@ -5,7 +5,7 @@ import pytest
 from bounds import bounds
 from motion_files import wiggle, write_at2
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.toml.reader import LARGEST, MOST_REPORTED
 

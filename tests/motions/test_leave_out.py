@@ -3,7 +3,7 @@
 import pytest
 from motion_files import wiggle, write_at2
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions

@@ -10,7 +10,7 @@ from agency_files import knet_text
 from motion_files import wiggle, write_at2
 from waveform_files import trace
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.manifest_draft import write_manifest
 

@@ -13,7 +13,7 @@ from motion_files import at2_text, needs_records, wiggle, write_at2
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 from studies import FOLDER_STUDY, write_study
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import Origin, directed, origin_of

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, read_motions
 from rockbatch.motions.design_spectra import TableSpectrum
 from rockbatch.motions.pairs import aligned, station_spectra

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.measures import velocity
 from rockbatch.motions.pulses import SHAPES, pulse
 

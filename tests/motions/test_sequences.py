@@ -6,7 +6,7 @@ from motion_files import wiggle, write_at2
 from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, measures, read_motions
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.sequences import MOST_IN_PAUSE, ShockSequence

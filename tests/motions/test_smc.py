@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fixed_column_files import NPTS, A, B, C, film_text, read, smc_text
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats.smc import is_smc_file, read_smc_stream
 

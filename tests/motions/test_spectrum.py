@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.measures import pgd
 from rockbatch.motions.spectrum import spectral_acceleration
 

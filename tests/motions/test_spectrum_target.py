@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from studies import study_text, write_study
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.motions.design_spectra import (
     EUROCODE,

@@ -9,7 +9,7 @@ from pathlib import Path
 from rockbatch import motions
 
 ROOT = Path(__file__).parents[2]
-USED = ("motions", "toml", "common", "errors.py", "_version.py")
+USED = ("motions", "toml", "common")
 
 SCRIPT = """
 import importlib, pkgutil, sys

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from motion_files import wiggle, write_at2
 
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats.column_header import stated_step
 

@@ -8,8 +8,8 @@ import pytest
 from motion_files import wiggle, write_at2
 from studies import FOLDER_STUDY, write_study
 
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, measures, read_motions
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component

@@ -8,7 +8,7 @@ from motion_files import wiggle
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.motions.design_spectra import TableSpectrum
 from rockbatch.motions.scaling import Target, verticals, with_vertical

@@ -6,7 +6,7 @@ import pytest
 from browser import browse, chromium, needs_chromium
 from report_samples import FIG7, FOUNDATIONS, response, write_results
 
-from rockbatch.report import write_comparison, write_report
+from rockbatch.reporting import write_comparison, write_report
 
 pytestmark = needs_chromium
 

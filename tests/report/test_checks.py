@@ -9,7 +9,7 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.pier import Pier
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 
 GOVERNING = ("theta_max_over_alpha", "toe_settlement_m", "ductility")
 """Demands whose limits bound all that governs a pier on yielding springs: the settlement of the toe has the tilt in it."""

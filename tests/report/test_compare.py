@@ -12,11 +12,11 @@ from report_page import Page, panels
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
 from rockbatch.checks import write_verdicts
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.pier import Pier, YieldingBase
-from rockbatch.report import write_comparison
-from rockbatch.report.finished import read
-from rockbatch.report.pair import pair
+from rockbatch.reporting import write_comparison
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.pair import pair
 
 PIER = Pier(alpha=0.13, p=0.38)
 
@@ -131,7 +131,7 @@ def test_the_command_makes_the_report_again_or_compares_without_the_compiler(tmp
     assert main(["report", str(a)]) == 0
     assert (a / "report.html").exists()
     code = (
-        "import sys; from rockbatch.cli import main; "
+        "import sys; from rockbatch.commands.cli import main; "
         f"main(['report', {str(a)!r}, {str(b)!r}, '--out', {str(tmp_path / 'c.html')!r}]); "
         "print([m for m in ('numba', 'rockbatch.core', 'matplotlib') if m in sys.modules])"
     )

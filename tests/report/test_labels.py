@@ -4,7 +4,7 @@ import pytest
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.report.finished import read
+from rockbatch.reporting.finished import read
 from rockbatch.results.labels import digits_that_tell, quantity
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}

@@ -9,10 +9,10 @@ from check_samples import verdict
 from report_page import Page
 from report_samples import FIG7, case_entry, write_results
 
-import rockbatch.report
+import rockbatch.reporting
 from rockbatch.checks import write_verdicts
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 
 PIER = Pier(alpha=0.13, p=0.38)
 BETAS, ETAS = range(20, 120, 10), (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0)
@@ -182,7 +182,7 @@ def test_the_legend_stands_above_the_fold(tmp_path):
 
 
 def test_the_picture_is_not_parted_from_its_axis_or_legend_on_paper():
-    style = (Path(rockbatch.report.__file__).parent / "style.css").read_text(encoding="utf-8")
+    style = (Path(rockbatch.reporting.__file__).parent / "style.css").read_text(encoding="utf-8")
     printed = style[style.index("@media print") :]
     whole = next(line for line in printed.splitlines() if line.endswith("{ break-inside: avoid; }"))
     assert "figure:has(> .dots)" in whole

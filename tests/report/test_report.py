@@ -16,14 +16,14 @@ from jinja2 import Environment
 from report_page import Page, figures, panels, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import COLOURS, SHAPES, marks_of, thin
-from rockbatch.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
-from rockbatch.report import templates, write_report
-from rockbatch.report.finished import read
-from rockbatch.report.markup import escape, tag
-from rockbatch.report.svg import curve
-from rockbatch.report.templates import document
+from rockbatch.reporting import templates, write_report
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.markup import escape, tag
+from rockbatch.reporting.svg import curve
+from rockbatch.reporting.templates import document
 
 NASTY = ["<script>alert(1)</script>", "$x_1$ & a&b", '"><img src=x onerror=alert(1)>', r"\frac{1}{2} </title></svg>"]
 
@@ -323,7 +323,7 @@ def test_templates_are_compiled_once_where_modules_are_kept(tmp_path, monkeypatc
     counts = []
     for _ in compiled:
         compilations.clear()
-        templates._environment.__wrapped__().get_template("report/sections/notes.html")
+        templates._environment.__wrapped__().get_template("reporting/sections/notes.html")
         counts.append(len(compilations))
     assert counts == compiled
 
@@ -334,7 +334,7 @@ def test_templates_are_compiled_anew_by_another_jinja(tmp_path, monkeypatch):
     for version in ("3.1.6", "99.0"):
         (tmp_path / "__init__.py").write_text(version)
         monkeypatch.setattr("jinja2.__file__", str(tmp_path / "__init__.py"))
-        templates._environment.__wrapped__().get_template("report/sections/notes.html")
+        templates._environment.__wrapped__().get_template("reporting/sections/notes.html")
     assert len(list(tmp_path.glob("*.jinja"))) == 2
 
 
@@ -480,7 +480,7 @@ def test_a_record_called_na_keeps_its_name(tmp_path):
 def test_the_report_never_loads_the_compiler_nor_what_it_does_not_need(tmp_path):
     write_results(tmp_path)
     code = (
-        "import sys; from pathlib import Path; from rockbatch.report import write_report;"
+        "import sys; from pathlib import Path; from rockbatch.reporting import write_report;"
         f"write_report(Path({str(tmp_path)!r}));"
         "print([m for m in ('numba', 'rockbatch.core', 'matplotlib', 'scipy', 'obspy', 'h5py') if m in sys.modules])"
     )

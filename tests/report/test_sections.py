@@ -10,15 +10,15 @@ import pytest
 from report_page import Page
 from report_samples import FOUNDATIONS, case_entry, write_results
 
-import rockbatch.report.sections
+import rockbatch.reporting.sections
 from rockbatch.pier import Damper, Pier, RigidBase
-from rockbatch.report import compared
-from rockbatch.report.finished import read
-from rockbatch.report.finished_analysis import Contents
-from rockbatch.report.markup import Markup
-from rockbatch.report.page import PARTS, PARTS_OF_TWO, page, sections
-from rockbatch.report.sections import answer, forces
-from rockbatch.report.templates import Section, document
+from rockbatch.reporting import compared
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
+from rockbatch.reporting.sections import answer, forces
+from rockbatch.reporting.templates import Section, document
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -26,7 +26,7 @@ STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title =
 
 
 def test_every_module_of_sections_stands_in_the_list_of_the_page():
-    package = rockbatch.report.sections
+    package = rockbatch.reporting.sections
     modules = {module.name for module in pkgutil.iter_modules(package.__path__)}
     assert len(modules) >= 7
     of_modules = [import_module(f"{package.__name__}.{name}").section for name in modules]

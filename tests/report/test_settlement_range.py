@@ -4,7 +4,7 @@ from report_page import Page
 from studies import PADS, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 
 LIMIT = {"name": "settlement", "demand": "settlement_m", "reason": "bearings"}
 

@@ -5,9 +5,9 @@ from report_page import Page
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
-from rockbatch.report.finished import read
-from rockbatch.report.sections import shocks
+from rockbatch.common.errors import InputError
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.sections import shocks
 from rockbatch.results.shocks import SHOCKS
 
 STRONG = SINE | {"name": "strong", "amplitude_g": 2.0, "period_s": 2.0}  # overturns the pier

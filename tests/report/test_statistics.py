@@ -9,7 +9,7 @@ from report_page import Page
 from report_samples import FIG7, write_results
 
 from rockbatch.quantities.statistics import quantile
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 from rockbatch.results.suite_statistics import records, suite, suites
 
 

@@ -6,7 +6,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import described
-from rockbatch.report.structure import base_of, restraints_of
+from rockbatch.reporting.structure import base_of, restraints_of
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 

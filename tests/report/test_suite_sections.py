@@ -11,9 +11,9 @@ from studies import COSINE, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.pier import Pier, YieldingBase
-from rockbatch.report import write_report
-from rockbatch.report.finished import read
-from rockbatch.report.sections import distribution, forces, intensity, studied, target
+from rockbatch.reporting import write_report
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.sections import distribution, forces, intensity, studied, target
 
 PULSES = tuple(
     {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}

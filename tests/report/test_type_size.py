@@ -9,8 +9,8 @@ from browser import browse, chromium, needs_chromium
 from report_page import figures
 from studies import PADS, RIGID, SINE, study_text, write_study
 
-from rockbatch.cli import main
-from rockbatch.report import write_report
+from rockbatch.commands.cli import main
+from rockbatch.reporting import write_report
 from rockbatch.simulation.figures import QUANTITIES, History, history
 
 STUDY = study_text(

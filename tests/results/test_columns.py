@@ -15,8 +15,8 @@ from report_samples import write_results
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
-from rockbatch.errors import InputError, MissingColumns
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
@@ -30,7 +30,7 @@ from rockbatch.quantities.catalogue import (
     report_columns,
 )
 from rockbatch.quantities.quantity import Limit, Quantity
-from rockbatch.report import write_comparison, write_report
+from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
@@ -236,7 +236,7 @@ def test_results_without_newer_columns_are_read_and_say_which_are_missing(tmp_pa
     assert rb.open_results(full).missing == ()
 
 
-@pytest.mark.filterwarnings("ignore::rockbatch.errors.MissingColumns")
+@pytest.mark.filterwarnings("ignore::rockbatch.common.errors.MissingColumns")
 @pytest.mark.parametrize("first", range(4))
 def test_a_report_without_newer_columns_is_made_and_says_so(tmp_path, first):
     """Every column is missing in one of four reports."""
@@ -250,7 +250,7 @@ def test_a_report_of_all_columns_speaks_of_no_earlier_version(tmp_path):
     assert "earlier version" not in write_report(write_results_in(tmp_path / "full")).read_text(encoding="utf-8")
 
 
-@pytest.mark.filterwarnings("ignore::rockbatch.errors.MissingColumns")
+@pytest.mark.filterwarnings("ignore::rockbatch.common.errors.MissingColumns")
 def test_a_folder_without_newer_columns_is_compared_with_one_that_has_them(tmp_path):
     (tmp_path / "old").mkdir()
     old, new = without(tmp_path / "old", *names(TRAILING)), write_results_in(tmp_path / "new")

@@ -14,7 +14,7 @@ from report_samples import response, write_results
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.common.files import csv_line, is_plain, opened, read_text
 from rockbatch.results import reading
 from rockbatch.results.run_json import SHAPE
@@ -240,7 +240,7 @@ def test_all_that_is_written_about_a_base_and_its_devices_has_a_shape(base):
     assert fits(written, shape)
 
 
-@pytest.mark.filterwarnings("ignore::rockbatch.errors.AboutResults")  # of a digest that is another
+@pytest.mark.filterwarnings("ignore::rockbatch.common.errors.AboutResults")  # of a digest that is another
 @pytest.mark.parametrize("command", ["report", "check"])
 def test_whatever_stands_in_the_place_of_a_value_of_run_json_there_are_words(foreign, command):
     """Every place that is read, with one of many values: a page, a sentence, or verdicts."""
@@ -443,7 +443,7 @@ def test_nothing_of_a_foreign_folder_reaches_terminal_or_report_as_a_command(tmp
 def test_the_report_of_made_up_histories_still_comes(tmp_path):
     """The samples that other tests draw stay what a folder may hold."""
     write_results(tmp_path)
-    from rockbatch.report import write_report
+    from rockbatch.reporting import write_report
 
     base = rb.YieldingBase(beta=40.0, eta=2.5, epsilon=0.05)
     assert write_report(tmp_path, [response("ERZ-NS", "1", base)]).exists()

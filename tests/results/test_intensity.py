@@ -9,7 +9,7 @@ from motion_files import wiggle, write_at2
 from studies import COSINE, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions import measures
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results.intensity import order_of

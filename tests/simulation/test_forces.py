@@ -10,8 +10,8 @@ from report_page import Page
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.results.columns import columns
 from rockbatch.study.suite import ground_motions

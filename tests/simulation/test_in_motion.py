@@ -7,7 +7,7 @@ import pytest
 from core_samples import FIG5, pulse
 from studies import study_text, write_study
 
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.results.reading import read_saved

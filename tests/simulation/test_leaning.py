@@ -11,11 +11,11 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.judging import judge
 from rockbatch.commands.summary import summary, warnings
+from rockbatch.common.errors import InputError
 from rockbatch.core.types import SAMPLE
-from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.report.sections.peaks import outcome
+from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.results.columns import FinishedRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance

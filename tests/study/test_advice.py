@@ -6,7 +6,7 @@ import tomllib
 import pytest
 from studies import write_study
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.manifest import Manifest
 from rockbatch.study import Study, load_study
 from rockbatch.study.rule_files import load_rules

@@ -7,7 +7,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch import execution
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.study import lists
 
 

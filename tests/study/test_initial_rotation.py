@@ -6,7 +6,7 @@ import pytest
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

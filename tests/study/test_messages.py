@@ -3,7 +3,7 @@
 import pytest
 from studies import PIER, SINE, study_text, write_study
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.toml.reader import MOST_REPORTED
 

@@ -10,8 +10,8 @@ import rockbatch as rb
 from rockbatch.analyses.sensitivity.sampled import low_base_high
 from rockbatch.analyses.sensitivity.study import applying, read_sensitivity, varied
 from rockbatch.analyses.spectrum.study import read_spectrum
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
 from rockbatch.study import load_study
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.motions.design_spectra import TableSpectrum
 from rockbatch.motions.scaling import at_target

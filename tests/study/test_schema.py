@@ -16,8 +16,8 @@ import rockbatch.checks
 import rockbatch.motions
 import rockbatch.study
 from rockbatch.analyses.sensitivity.study import read_sensitivity
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import Bounds
-from rockbatch.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
 from rockbatch.toml import kinds

@@ -16,8 +16,8 @@ from reference_solver import reference
 from scipy.optimize import brentq
 
 import rockbatch as rb
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, problems
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run

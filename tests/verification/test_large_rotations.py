@@ -7,7 +7,7 @@ from report_page import Page
 from studies import SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.pier import MOST_NEGLECTED, neglected
 from rockbatch.simulation.outcome import LINEARISED
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier, in_kilonewtons
 from rockbatch.simulation import run_fixed
 

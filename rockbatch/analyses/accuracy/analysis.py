@@ -12,10 +12,10 @@ from rockbatch.batch.analysis import Analysis
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
-from rockbatch.report import write_report
+from rockbatch.reporting import write_report
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.run_json import INFO
 from rockbatch.study import Motions, Study, given_study

@@ -16,8 +16,8 @@ from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.plan import Plan, PlannedRun
 from rockbatch.batch.threads import cores
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions import MotionSet
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rockbatch.analyses.accuracy.levels import Level
-from rockbatch.report.table import Head
+from rockbatch.reporting.table import Head
 
 QUANTITIES = (
     Head("method", value="method"),

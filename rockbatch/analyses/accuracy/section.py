@@ -3,11 +3,11 @@
 from rockbatch.analyses.accuracy.figures import error_and_time
 from rockbatch.analyses.accuracy.levels import chosen, read
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
-from rockbatch.report.finished_analysis import Contents
-from rockbatch.report.markup import Markup
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import listed
-from rockbatch.report.templates import render
+from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import listed
+from rockbatch.reporting.templates import render
 
 
 def section(contents: Contents) -> Markup:

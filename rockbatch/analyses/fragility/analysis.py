@@ -20,8 +20,8 @@ from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
 from rockbatch.batch.waves import Waves
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study

@@ -14,7 +14,7 @@ from rockbatch.commands.analysis import analysis_arguments, in_lines, print_file
 from rockbatch.commands.options import folder
 from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import named
-from rockbatch.report.table import Head
+from rockbatch.reporting.table import Head
 from rockbatch.study import Study
 
 

@@ -5,8 +5,8 @@ import io
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError
 from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
 

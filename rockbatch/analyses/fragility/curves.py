@@ -28,8 +28,8 @@ from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, samples, windows
 from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockbatch.analyses.fragility.csv_columns import columns_of
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile

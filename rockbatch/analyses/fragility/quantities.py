@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rockbatch.report.markup import Markup, interval
-from rockbatch.report.table import Head
+from rockbatch.reporting.markup import Markup, interval
+from rockbatch.reporting.table import Head
 
 Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 from rockbatch.analyses.fragility.figures import label, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_rates
-from rockbatch.report.finished_analysis import Contents, of_files
-from rockbatch.report.markup import Markup, tag
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import Head, listed
-from rockbatch.report.templates import render
+from rockbatch.reporting.finished_analysis import Contents, of_files
+from rockbatch.reporting.markup import Markup, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import Head, listed
+from rockbatch.reporting.templates import render
 
 
 @of_files("fragility")

@@ -5,11 +5,11 @@ from typing import Any
 
 from rockbatch.analyses.fragility.figures import clouds, curves, label
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves
-from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, of_files
-from rockbatch.report.markup import Markup, tag
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import Head, listed, table
-from rockbatch.report.templates import render
+from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_files
+from rockbatch.reporting.markup import Markup, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import Head, listed, table
+from rockbatch.reporting.templates import render
 
 CAPACITIES = ("record", "case", "limit_state", "at_most", "scale_at_most", "widest_step")
 

@@ -10,7 +10,7 @@ from rockbatch.analyses.fragility import cloud as clouds
 from rockbatch.analyses.fragility import lognormal
 from rockbatch.analyses.fragility.cloud import Cloud
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 
 Curve = TypeVar("Curve", Lognormal, Cloud)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockbatch.analyses.fragility.csv_columns import columns_of
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.errors import InputError
 from rockbatch.toml.kinds import positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Clash, Key, Section

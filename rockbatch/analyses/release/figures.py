@@ -6,7 +6,7 @@ import numpy as np
 
 from rockbatch.common.figures.description import Axis, Figure, Look, Panel, Points, Polyline, line_of
 from rockbatch.common.lazy import pd
-from rockbatch.report.finished_analysis import named
+from rockbatch.reporting.finished_analysis import named
 
 MEASURED = Look("", 2)
 

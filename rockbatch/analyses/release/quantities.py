@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.report.markup import number
-from rockbatch.report.table import Head
+from rockbatch.reporting.markup import number
+from rockbatch.reporting.table import Head
 
 
 def interval(fit: Mapping[str, Any]) -> str:

@@ -3,10 +3,10 @@
 from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.lazy import pd
-from rockbatch.report.finished_analysis import Contents, named, of_files
-from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import Head, listed
+from rockbatch.reporting.finished_analysis import Contents, named, of_files
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import Head, listed
 from rockbatch.results.labelled import as_dicts
 
 FIT = ("case", "parameter", "value", "low", "high", "confidence", "scatter", "over_housner", "remark")

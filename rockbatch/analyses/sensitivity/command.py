@@ -8,7 +8,7 @@ from rockbatch.commands.analysis import analysis_arguments, in_lines, print_file
 from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import named
 from rockbatch.common.lazy import pd
-from rockbatch.report.table import Head
+from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from rockbatch.common.figures.description import Area, Axis, Figure, Look, Mark, Panel, Polyline, Rule, Words, spanning
 from rockbatch.common.lazy import pd
-from rockbatch.report.finished_analysis import named
-from rockbatch.report.markup import number
+from rockbatch.reporting.finished_analysis import named
+from rockbatch.reporting.markup import number
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import SYMBOLS
 

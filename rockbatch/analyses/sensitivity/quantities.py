@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rockbatch.analyses.sensitivity.figures import written
-from rockbatch.report.table import Head
+from rockbatch.reporting.table import Head
 
 TORNADO = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
 """Columns of sensitivity.csv after those of the case."""

@@ -3,11 +3,11 @@
 from rockbatch.analyses.sensitivity.figures import bars, symbol
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES, SOBOL, TORNADO
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.report.finished_analysis import Contents, of_files
-from rockbatch.report.markup import Markup, join, tag
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import Head, listed
-from rockbatch.report.templates import render
+from rockbatch.reporting.finished_analysis import Contents, of_files
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import Head, listed
+from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import as_dicts
 
 

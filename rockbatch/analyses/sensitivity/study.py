@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from itertools import product
 from typing import Any
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.cases import CASE

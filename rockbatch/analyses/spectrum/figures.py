@@ -9,8 +9,8 @@ import numpy as np
 from rockbatch.analyses.spectrum.map_regions import Outline, areas, between, inside, strips
 from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Look, Mark, Panel, Points, Polyline, Span
 from rockbatch.common.lazy import pd
-from rockbatch.report.finished_analysis import named
-from rockbatch.report.labels import symbol
+from rockbatch.reporting.finished_analysis import named
+from rockbatch.reporting.labels import symbol
 from rockbatch.results.labels import quantity
 
 ROW = 0.06

@@ -17,8 +17,8 @@ from typing import Any
 
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
 from rockbatch.batch.plan import Made, Plan, PlannedRun, Runs, scaled
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.errors import InputError
 from rockbatch.motions import Motion, MotionSet, measures
 from rockbatch.results.columns import row
 from rockbatch.results.suite_statistics import suite

@@ -2,11 +2,11 @@
 
 from rockbatch.analyses.spectrum.figures import QUANTILES, maps, spectra
 from rockbatch.common.lazy import pd
-from rockbatch.report.finished_analysis import Contents, FinishedAnalysis, of_files
-from rockbatch.report.labels import heading
-from rockbatch.report.markup import Markup, figure, join, tag
-from rockbatch.report.svg import drawn
-from rockbatch.report.table import sub
+from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_files
+from rockbatch.reporting.labels import heading
+from rockbatch.reporting.markup import Markup, figure, join, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import sub
 from rockbatch.results.labels import plain
 
 

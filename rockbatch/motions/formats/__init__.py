@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import (
     afad,

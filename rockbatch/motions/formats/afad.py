@@ -6,7 +6,7 @@ beside their peaks, "RAW PGA VALUES (gal)", which the columns must bear out. The
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in

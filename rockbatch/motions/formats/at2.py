@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
 from rockbatch.motions.formats.obspy_plugin import plugin

@@ -7,7 +7,7 @@ that of the Center's own files. What is corrected, or pairs of time and value as
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, past_mark, read_header

@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.orientation import orientation_in, orientation_of
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
     SAME_STEP,

@@ -12,8 +12,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
 from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines

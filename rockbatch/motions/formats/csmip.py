@@ -9,7 +9,7 @@ that declares the data. Pairs of time and value, as digitised from film, are rea
 
 import re
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import number_in, one_after_another

@@ -7,7 +7,7 @@ description of them; lines in between differ from year to year.
 
 import re
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
 from rockbatch.motions.formats.header_lines import line_with, search_lines

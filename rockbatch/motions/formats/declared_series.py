@@ -6,7 +6,7 @@ SPACED AT .020 SEC. IN UNITS CM/SEC/SEC". Corrected ones go on with velocities a
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in
 from rockbatch.motions.formats.header_lines import line_at, match_line
 from rockbatch.motions.formats.recording import Series

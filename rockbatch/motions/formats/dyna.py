@@ -6,7 +6,7 @@ files; empty ones are unknown.
 
 import re
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, moment_in, number_if_any

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 

@@ -6,7 +6,7 @@ its velocities and displacements, ten to a line of 8 characters each. The layout
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header

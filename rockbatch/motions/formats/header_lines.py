@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.formats.fixed_width import number_in
 
 _LONGEST_OF_HEADER = 200  # characters of a header line that are looked at

@@ -6,7 +6,7 @@ the recorders, and nine hours ahead of UTC. The stated peak is that without the 
 
 from datetime import UTC, datetime
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import layout, moment_of, read_header

@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import acceleration_factor
-from rockbatch.errors import InputError
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile, no_acceleration

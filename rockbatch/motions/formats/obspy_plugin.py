@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import obspy
-from rockbatch.errors import InputError
 from rockbatch.motions.formats.record_file import text_of
 from rockbatch.motions.formats.recording import Recording, letters
 

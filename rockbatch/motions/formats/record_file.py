@@ -5,8 +5,8 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.units import GRAVITY, acceleration_factor
-from rockbatch.errors import InputError, UnstatedError
 from rockbatch.motions.formats.column_header import SAME_STEP
 from rockbatch.motions.limits import STEPS, is_step
 

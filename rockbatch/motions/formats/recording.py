@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor, length_factor
-from rockbatch.errors import InputError
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.measures import initial_of

@@ -5,7 +5,7 @@ columns of 7 characters (F7.3), and a line that begins with ``/&``. Volume 1 fil
 same words in line 12, digitised from film at uneven times, are read as well.
 """
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
 from rockbatch.motions.formats.header_lines import layout, moment_of, past_mark, read_header

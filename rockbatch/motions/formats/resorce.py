@@ -6,7 +6,7 @@ touch. The layout is that of the database's own files.
 
 import re
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with

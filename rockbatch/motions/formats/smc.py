@@ -8,7 +8,7 @@ Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 
 import re
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header

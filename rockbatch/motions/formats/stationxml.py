@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import state_of
-from rockbatch.errors import InputError
 from rockbatch.motions import archives
 
 LARGEST = 64 * 2**20

@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from rockbatch.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of
 from rockbatch.motions.limits import HUGE

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.motion import Samples
 
 _EVEN = 0.05  # of the step: what clocks and printing may be off from an even grid; a lost sample is off by 1

@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
 from rockbatch.motions.formats.header_lines import count_and_step, date_in, keys_of, line_with, moment, number_of

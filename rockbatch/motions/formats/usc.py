@@ -9,7 +9,7 @@ the network's own files.
 import re
 from typing import Any
 
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another

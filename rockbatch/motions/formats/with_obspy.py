@@ -18,8 +18,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import obspy
-from rockbatch.errors import InputError
 
 _ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # another one each time
 _UNDEFINED = -12345  # of SAC; as text for its words of eight letters

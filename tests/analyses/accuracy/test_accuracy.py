@@ -14,8 +14,8 @@ from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, measure,
 from rockbatch.analyses.accuracy.levels import COLUMNS
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.pier import YieldingBase
 from rockbatch.simulation import run_fixed
 from rockbatch.study import load_study

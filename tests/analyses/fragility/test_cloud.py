@@ -14,7 +14,7 @@ import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
 from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
 

@@ -23,13 +23,13 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.threads import Threads
 from rockbatch.batch.waves import Waves
 from rockbatch.checks import Rule
-from rockbatch.cli import main
-from rockbatch.errors import EditedTable, InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
-from rockbatch.report import finished_analysis
-from rockbatch.report.finished_analysis import Contents
+from rockbatch.reporting import finished_analysis
+from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.results.columns import columns
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study

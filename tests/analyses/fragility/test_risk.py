@@ -18,8 +18,8 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 from rockbatch.analyses.fragility.risk import probability
 from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
 

@@ -6,7 +6,7 @@ import scipy.optimize
 import scipy.stats
 
 from rockbatch.analyses.fragility.statistics import cloud, fragility
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -13,7 +13,7 @@ from studies import seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility.curves import level_plan
 from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.errors import InputError
+from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 

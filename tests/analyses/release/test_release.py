@@ -11,9 +11,9 @@ from scipy.interpolate import CubicSpline
 
 import rockbatch as rb
 from rockbatch.analyses.release.fit import Passages, fitted
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.common.files import read_table
-from rockbatch.errors import InputError
 
 BLOCK = rb.Pier.rectangle(0.3, 1.2)
 START, IMPACTS = 0.1, 10

@@ -17,12 +17,12 @@ from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design
 from rockbatch.analyses.sensitivity.section import section
 from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity, varied
 from rockbatch.batch.threads import Threads
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.units import GRAVITY
-from rockbatch.errors import EditedTable, InputError
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
-from rockbatch.report.finished_analysis import Contents
+from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

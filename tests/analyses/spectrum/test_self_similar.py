@@ -11,9 +11,9 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.spectrum.figures import spectra
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import Points
-from rockbatch.errors import InputError
 from rockbatch.results.figures import self_similar
 from rockbatch.results.labelled import labelled
 

@@ -11,8 +11,8 @@ from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
 from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import Threads
-from rockbatch.cli import main
-from rockbatch.errors import InputError
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study

@@ -16,7 +16,7 @@ from rockbatch.analyses.spectrum.study import MapSpec
 from rockbatch.batch.execution import row_of
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.threads import Threads
-from rockbatch.cli import main
+from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, RigidBase
 from rockbatch.results.columns import as_table
 from rockbatch.study import Case, Numerics, Study

@@ -1,0 +1,106 @@
+"""The command line: subcommands, and how mistakes are reported."""
+# PYTHON_ARGCOMPLETE_OK: shells with argcomplete's global completion complete it, too
+
+import argparse
+import os
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from difflib import get_close_matches
+from typing import Any
+
+from rockbatch.commands.arguments import COMMANDS
+from rockbatch.commands.streams import is_lost, open_missing, say
+from rockbatch.common.errors import AboutResults, InputError
+from rockbatch.common.version import __version__
+
+EXIT_CODES = """exit codes:
+  0    all is fine
+  1    a record could not be used, a run failed, or a check did not pass
+  2    the input is wrong, and nothing was run
+  130  interrupted; what is finished is kept"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())
+    first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
+    root = argparse.ArgumentParser(
+        prog="rockbatch",
+        usage="rockbatch [-h] [--version] COMMAND ...",
+        description="Peak rotations of stepping bridge piers under a folder of ground motions.",
+        epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    root.add_argument("--version", action="version", version=f"rockbatch {__version__}")
+    subparsers = root.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
+    for name, command in COMMANDS.items():
+        command.add_to(subparsers, name, EXIT_CODES)
+    return root
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit code (:data:`EXIT_CODES`); without a command, list the commands."""
+    open_missing()
+    root = parser()
+    if "_ARGCOMPLETE" in os.environ:  # the shell asks what may come next
+        with suppress(ImportError):
+            import argcomplete
+
+            argcomplete.autocomplete(root)
+    parsed, unknown = root.parse_known_args(arguments)
+    if unknown:
+        options = COMMANDS[parsed.command].arguments if parsed.command else ()
+        words = [word.partition("=")[0] for word in unknown if word.startswith("--")]
+        matches = [match for word in words for match in get_close_matches(word, options, 1)]
+        hint = f"; did you mean {', '.join(matches)}?" if matches else ""
+        root.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
+    if parsed.command is None:
+        root.print_help()
+        return 2
+    code = _exit_code(parsed)
+    return code or int(is_lost(sys.stdout))
+
+
+def _exit_code(parsed: argparse.Namespace) -> int:
+    """Run a command and return its exit code; report what went wrong in words."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", AboutResults)
+            warnings.showwarning = _plainly(warnings.showwarning)
+            return COMMANDS[parsed.command].run_command(parsed)
+    except InputError as error:
+        for problem in error.problems:
+            say(f"rockbatch: {problem}")
+        return 2
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        say(f"rockbatch: {place}{error.strerror or error}; choose another folder, or make this one writable")
+        return 2
+    except MemoryError as error:
+        say(
+            f"rockbatch: {str(error) or 'out of memory: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
+        )
+        return 2
+    except KeyboardInterrupt:
+        say("rockbatch: interrupted")
+        return 130
+
+
+def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """Return how warnings are shown: those about a folder of results once and in plain words, others ``otherwise``."""
+    shown = set()
+
+    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if not issubclass(category, AboutResults):
+            otherwise(message, category, *place)
+        elif str(message) not in shown:
+            shown.add(str(message))
+            say(f"rockbatch: {message}")
+
+    return show
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,179 @@
+"""The report of finished results: one HTML file that needs nothing else. Never loads the compiler."""
+
+import hashlib
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rockbatch.checks import as_table, read_verdicts
+from rockbatch.common.arguments import checked
+from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.lazy import pd
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.page import comparison, page
+from rockbatch.reporting.pair import pair
+from rockbatch.results.opened import Results, open_results
+from rockbatch.simulation.response import Response
+from rockbatch.study import Study
+
+REPORT = "report.html"
+
+__all__ = ["REPORT", "Report", "report", "write_analyses", "write_comparison", "write_report"]
+
+
+def write_report(
+    directory: Path,
+    responses: Sequence[Response] | None = None,
+    *,
+    out: Path | None = None,
+    saved: Results | None = None,
+) -> Path:
+    """Write ``report.html`` beside its results.
+
+    Parameters
+    ----------
+    directory : Path
+        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them. Histories, verdicts and the measurement
+        of ``rockbatch accuracy`` are shown if ``histories.h5``, ``checks.csv`` and ``accuracy.csv`` exist.
+    responses : sequence of Response, optional
+        Runs whose histories are shown instead of those in ``histories.h5``.
+    out : Path, optional
+        File to write instead.
+    saved : Results, optional
+        The results, where they were read already.
+
+    Returns
+    -------
+    Path of the report. An earlier one is replaced as a whole, or not at all.
+
+    Raises ``InputError`` if the results are missing, damaged or do not belong together.
+    """
+    directory = Path(directory)
+    target = out or directory / REPORT
+    write_whole(target, page(read(directory, responses, saved)))
+    return target
+
+
+def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> Path:
+    """Write one page that compares two studies run by run, and return its path.
+
+    ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
+    if results are missing or damaged.
+    """
+    first, second = Path(first), Path(second)
+    target = out or first / f"compare-{second.resolve().name}.html"
+    write_whole(target, comparison(pair(read(first, ()), read(second, ()))))
+    return target
+
+
+def write_analyses(directory: Path, study: Study) -> Path:
+    """Write the report again with the analyses in it, if the folder holds results of the study; return its path.
+
+    Otherwise they get a page of their own, ``analyses.html``.
+    """
+    sha256 = hashlib.sha256(study.text.encode()).hexdigest()
+    if _holds_results(directory, sha256):
+        return write_report(directory)
+    target = directory / "analyses.html"
+    description = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
+    write_whole(target, page(Contents(directory, description)))
+    return target
+
+
+def _holds_results(directory: Path, sha256: str) -> bool:
+    try:
+        info = json.loads(read_text(directory / "run.json"))
+        return bool(info["study"]["sha256"] == sha256) and is_plain(directory / "peaks.csv")
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return False
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Report:
+    """A written page, and the tables that it shows.
+
+    Attributes
+    ----------
+    path : Path
+        The page.
+    folders : tuple of Path
+        Folders of the results, one or two.
+    peaks, checks : DataFrame
+        The rows of ``peaks.csv`` and ``checks.csv``; of two studies with a first column ``study``, "A" or "B".
+    """
+
+    path: Path
+    folders: tuple[Path, ...]
+    peaks: "pd.DataFrame"
+    checks: "pd.DataFrame"
+
+    def __repr__(self) -> str:
+        return f"<report of {' and '.join(map(str, self.folders))}: {self.path}>"
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write the page into ``folder``, under its name; return its path."""
+        directory = made_folder(Path(folder))
+        return _write([open_results(folder) for folder in self.folders], directory / self.path.name)
+
+
+@checked
+def report(
+    directory: str | os.PathLike[str],
+    other: str | os.PathLike[str] | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+) -> Report:
+    """Write the report of finished results again, or of two studies side by side.
+
+    Parameters
+    ----------
+    directory : path
+        A folder that ``rockbatch run``, or :func:`rockbatch.run` with ``out``, has written.
+    other : path, optional
+        A second folder, to compare with the first.
+    out : path, optional
+        File to write; by default ``report.html`` in the folder, or ``compare-OTHER.html``.
+
+    Returns
+    -------
+    Report
+        With the tables ``peaks`` and ``checks``.
+
+    Raises
+    ------
+    InputError
+        If results are missing, damaged or do not belong together.
+
+    Examples
+    --------
+    >>> table = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.report("reports/pier4")
+    <report of reports/pier4: reports/pier4/report.html>
+    >>> rb.report("reports/pier4", "reports/pier4", out="both.html").peaks["study"].value_counts()
+    study
+    A    4
+    B    4
+    Name: count, dtype: int64
+    """
+    folders = (Path(directory),) if other is None else (Path(directory), Path(other))
+    saved = [open_results(folder) for folder in folders]
+    path = _write(saved, None if out is None else Path(out))
+    tables = [(results.peaks, as_table(read_verdicts(results.directory))) for results in saved]
+    peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
+    return Report(path, folders, peaks, checks)
+
+
+def _write(saved: Sequence[Results], out: Path | None) -> Path:
+    if len(saved) > 1:
+        return write_comparison(*(results.directory for results in saved), out=out)
+    return write_report(saved[0].directory, out=out, saved=saved[0])
+
+
+def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
+    """Return one table as it is, or two stacked, with a first column ``study`` that says which."""
+    if len(tables) == 1:
+        return tables[0]
+    return pd.concat(dict(zip("AB", tables, strict=True)), names=["study"]).reset_index("study").reset_index(drop=True)

@@ -1,0 +1,188 @@
+"""Peaks as dots on one axis, a row for each record or foundation, with labels of the same size at any width.
+
+Places along the axis are shares of the width, so that nothing but the axis stretches.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rockbatch.common.figures.description import DASHES, ENDED, Axis, Look, Mark, Points, Rule, marks_of, sign_of
+from rockbatch.common.lazy import pd
+from rockbatch.reporting.markup import Markup, escape, join, number, tag
+from rockbatch.reporting.svg import classes, key, marker, text
+from rockbatch.reporting.table import THETA, THETA_FORMAT
+from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labels import Series
+
+FIRST, LAST = 1.5, 97.0
+"""Ends of the axis [% of the width]."""
+MOST_LETTERS = 20
+"""Longest list of the names of foundations without a peak; if it is longer, their number stands instead."""
+MIDDLE = 10
+"""Middle of a row of 20 px [px]."""
+
+DOT = Look("dot", 1)
+"""Look of runs that are all alike."""
+
+
+class Row(NamedTuple):
+    """A row: its label, whose ``end`` is never cut off, its tooltip, and its runs in each column."""
+
+    words: str
+    end: str
+    more: str
+    runs: "Sequence[pd.DataFrame]"
+
+
+class Limit(NamedTuple):
+    """A limit that a check sets: its description, and the rotation θ/α that it allows."""
+
+    words: str
+    theta: float
+
+
+class Marks(NamedTuple):
+    """Style of the marks of runs: by ``series``, or all alike if these are too many; and the tooltip of each."""
+
+    series: Sequence[Series] | None
+    describe: Callable[[dict[str, Any]], str]
+    kind: str
+    """The thing that a mark stands for, if all are alike: "foundation"."""
+
+
+def draw(
+    rows: Sequence[Row], columns: Sequence[str], top: float, marks: Marks, limits: Sequence[Sequence[Limit]] = ()
+) -> Markup:
+    """Draw the legend, every row in every column, and the common axis, which ends at ``top`` [θ_max/α].
+
+    ``limits`` are those of each column.
+    """
+    limits = limits or [[] for _ in columns]
+    ticks = Axis("", 0.0, top, about=4).ticks()
+    grids = [
+        [_line(_across(tick, top), "grid") for tick in ticks]
+        + [
+            _line(_across(limit.theta, top), classes(Look("limit", dash=place % DASHES)), tag("title", limit.words))
+            for place, limit in enumerate(of_column)
+            if limit.theta <= top
+        ]
+        for of_column in limits
+    ]
+    cells: list[Markup] = []
+    if any(columns):
+        cells.append(tag("span", class_="of"))
+        cells += [tag("span", words, class_="column") for words in columns]
+    for row in rows:
+        end = tag("span", row.end, class_="end") if row.end else ""
+        cells.append(tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more))
+        for words, runs, grid in zip(columns, row.runs, grids, strict=True):
+            label = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
+            cells += [_strip(runs, top, grid, marks, label), _without_peak(runs, marks)]
+    axis = [text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in ticks.items()]
+    cells.append(tag("span", tag("span", THETA), class_="of axis"))
+    for _ in columns:
+        cells += [tag("svg", *axis, class_="plot strip", aria_hidden="true"), tag("span")]
+    drawn = tag(
+        "div", *cells, class_="dots", style=f"--n:{len(columns)}", tabindex="0", role="group",
+        aria_label="Peaks, a row each; arrow keys go through the values",
+    )  # fmt: skip
+    entries = _legend([runs for row in rows for runs in row.runs], marks)
+    return join(key(entries | _of_limits(limits, top)), drawn)
+
+
+def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> dict[str, list[Mark]]:
+    """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
+    entries: dict[str, list[Mark]] = {}
+    for place, limit in (numbered for of_column in limits for numbered in enumerate(of_column)):
+        words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
+        entries.setdefault(words, [_rule(Look("limit", dash=place % DASHES))])
+    return entries
+
+
+def _rule(look: Look) -> Mark:
+    return Rule("x", np.empty(0), look=look)
+
+
+def _points(look: Look) -> Mark:
+    return Points(np.empty(0), np.empty(0), look=look)
+
+
+def _across(theta: float, top: float) -> float:
+    return round(FIRST + (LAST - FIRST) * theta / top, 1)
+
+
+def _line(x: float | str, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
+    return tag("line", *content, x1=f"{x}%", x2=f"{x}%", y1=high, y2=low, class_=class_)
+
+
+def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
+    """Draw the peaks of a row in one column."""
+    peaks = runs["theta_max_over_alpha"].to_numpy(dtype=np.float64)
+    order = np.argsort(-peaks, kind="stable")
+    order = order[((runs["status"] == "ok").to_numpy() & ~np.isnan(peaks))[order]]
+    thetas = peaks[order].tolist()
+    series = runs["series"].to_numpy()[order].tolist() if marks.series else [None] * len(order)
+    first: dict[tuple[object, float], int] = {}
+    for foundation, theta, place in zip(series, thetas, order.tolist(), strict=True):
+        first.setdefault((foundation, _across(theta, top)), place)  # others would lie under it
+    drawn = [_mark(run, x, marks) for (_, x), run in zip(first, as_dicts(runs.iloc[list(first.values())]), strict=True)]
+    low, high = (number(theta, THETA_FORMAT) for theta in (thetas[-1:] + thetas[:1] or [math.nan, math.nan]))
+    label = f"{words}: θmax/α {low} to {high}" if len(thetas) > 1 else f"{words}: θmax/α {high}"
+    return tag(
+        "svg", *grid, *drawn, class_="plot strip marks", role="img", data_of=words,
+        aria_label=label if thetas else f"{words}: no peak",
+    )  # fmt: skip
+
+
+def _mark(run: dict[str, Any], x: float, marks: Marks) -> Markup:
+    series = None if marks.series is None else marks.series[run["series"]]
+    return Markup(_template(series).format(x=x, said=escape(marks.describe(run))))
+
+
+@cache
+def _template(series: Series | None) -> Markup:
+    """Return a mark with {x} where its position [% of the width] stands, and {said} for its tooltip: thousands are alike."""
+    if series is None:
+        return marker(DOT, "{x}%", MIDDLE, "{said}")
+    if series.rigid:
+        return _line("{x}", classes(_rigid(series)), tag("title", "{said}"), low=MIDDLE + 7, high=MIDDLE - 7)
+    return marker(marks_of(series.index), "{x}%", MIDDLE, "{said}")
+
+
+def _rigid(series: Series) -> Look:
+    return Look("rigid", dash=series.index % DASHES)
+
+
+def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
+    """Draw what had no peak: by the foundations' letters, or how many."""
+    shown: list[Markup] = []
+    statuses = set(runs["status"])
+    for status, words in ENDED.items() if statuses != {"ok"} else ():
+        ended = runs[runs["status"] == status]
+        if status in statuses:
+            series = [] if marks.series is None else [marks.series[place] for place in dict.fromkeys(ended["series"])]
+            names = ", ".join(strip.label if strip.rigid else strip.tick for strip in series)
+            names = names if 0 < len(names) <= MOST_LETTERS else str(len(ended))
+            sign = tag("svg", marker(sign_of(status), 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
+                       aria_hidden="true")  # fmt: skip
+            class_ = "undecided" if status == "failed" else "alarm"
+            shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_))
+    return tag("span", *shown, class_="ends")
+
+
+def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> dict[str, list[Mark]]:
+    present = {place for runs in drawn for place in runs["series"].unique().tolist()}
+    if marks.series is None:
+        entries = {f"a {marks.kind}": [_points(DOT)]}
+    else:
+        shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
+        entries = {
+            series.keyed: [_rule(_rigid(series)) if series.rigid else _points(marks_of(series.index))]
+            for series in shown
+        }
+    statuses = {status for runs in drawn for status in runs["status"].unique().tolist()}
+    return entries | {words: [_points(sign_of(status))] for status, words in ENDED.items() if status in statuses}

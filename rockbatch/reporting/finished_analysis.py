@@ -1,0 +1,130 @@
+"""Results of a command other than ``rockbatch run`` in a folder: NAME.json and its tables."""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockbatch.common.errors import EditedTable, InputError
+from rockbatch.common.files import read_table, read_text, sha256_of
+from rockbatch.common.lazy import pd
+from rockbatch.reporting.labels import counted
+from rockbatch.reporting.markup import Markup, tag
+from rockbatch.results.labels import quantity
+
+MOST_NAMES = 60
+
+_DAMAGE = (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError)
+"""Exceptions that drawing raises if the file of an analysis does not hold what its command writes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """Contents of a folder: its analyses, and ``path``, ``title``, ``notes``, ``text`` and ``sha256`` of the study."""
+
+    directory: Path
+    study: Mapping[str, Any]
+
+    def analysis(self, name: str) -> "FinishedAnalysis | None":
+        """Return the analysis in NAME.json; None if there is none for this state of the study."""
+        return read(self.directory, name, self.study["sha256"])
+
+
+@dataclass(frozen=True)
+class FinishedAnalysis:
+    """A finished analysis: the contents of NAME.json, and its folder."""
+
+    directory: Path
+    info: dict[str, Any]
+
+    def provenance(self) -> Markup:
+        """Return the ground motions and versions behind the analysis as HTML; empty if an earlier version did not note them."""
+        motions = [str(motion["label"]) for motion in self.info.get("under", ())]
+        versions = {"rockbatch": self.info["rockbatch"], **self.info["versions"]} if "versions" in self.info else {}
+        parts = []
+        if motions:
+            more = f"; and {len(motions) - MOST_NAMES} more" if len(motions) > MOST_NAMES else ""
+            parts.append(f"{counted(len(motions), 'ground motion')}: {'; '.join(motions[:MOST_NAMES])}{more}")
+        if versions:
+            parts.append(f"made with {', '.join(f'{name} {version}' for name, version in versions.items())}")
+        sentences = ". ".join(part[0].upper() + part[1:] for part in parts)
+        return tag("p", sentences, ".", class_="legend") if parts else Markup("")
+
+    def table(self, name: str, columns: Collection[str]) -> "pd.DataFrame | None":
+        """Return one of its tables; None if NAME.json does not list it, or if it is damaged or lacks a column.
+
+        Warns with ``EditedTable`` if the table was changed after it was written.
+        """
+        if name not in self.info.get("files", []):
+            return None
+        path, noted = self.directory / name, self.info.get("digests", {}).get(name, {}).get("sha256")
+        try:
+            if noted and sha256_of(path) != noted:
+                _warn_edited(path)
+            table = read_table(path)
+        except (OSError, ValueError):
+            return None
+        return table if len(table) and set(columns) <= set(table.columns) else None
+
+
+def read(directory: Path, name: str, sha256: str) -> FinishedAnalysis | None:
+    """Return the analysis ``name`` in a folder.
+
+    None if there is none, or if it belongs to another state of the study than the one with the digest ``sha256``; the
+    report then omits it. Warns with ``EditedTable`` if NAME.json was changed after it was written.
+    """
+    path = Path(directory) / f"{name}.json"
+    try:
+        info = json.loads(read_text(path))
+        of_study = info["study"]["sha256"]
+        intact = "sha256" not in info or info["sha256"] == digest_of(info)
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        of_study, intact = None, False
+    if not intact:
+        _warn_edited(path)
+    return FinishedAnalysis(Path(directory), info) if of_study == sha256 else None
+
+
+def digest_of(info: Mapping[str, Any]) -> str:
+    """Return the digest of everything in NAME.json but its own ``sha256``."""
+    content = {key: value for key, value in info.items() if key != "sha256"}
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+
+
+def _warn_edited(path: Path) -> None:
+    """Warn of a file that was changed after it was written."""
+    message = f"{path}: not as it was written: it was edited, or is damaged; what can be read of it is shown"
+    warnings.warn(message, EditedTable, stacklevel=3)
+
+
+@contextmanager
+def of_files(name: str) -> Iterator[None]:
+    """Raise ``InputError`` if NAME.json and its tables, of which a section is drawn, do not fit each other; a decorator, too.
+
+    Numbers of which a picture cannot be made, since arithmetic on them overflows, do not fit either.
+    """
+    try:
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            yield
+    except InputError:
+        raise
+    except _DAMAGE as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise InputError(
+            f"{name}.json and its tables do not fit each other, or are damaged ({reason}); start `rockbatch {name}` again"
+        ) from error
+
+
+def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:
+    """Describe a picture among the others by its values: "pads, β = 40"."""
+    words = [str(values["case"])]
+    words += [quantity(name, values[name]) for name in shown if name != "case" and values[name] == values[name]]
+    return ", ".join(words)

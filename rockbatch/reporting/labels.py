@@ -1,0 +1,31 @@
+"""Counts, names of quantities and heads of columns on the page."""
+
+import re
+
+from rockbatch.quantities.quantity import Quantity
+from rockbatch.reporting.markup import Markup, escape, tag
+from rockbatch.reporting.table import Head
+from rockbatch.results.labels import SYMBOLS
+
+
+def counted(count: int, word: str) -> str:
+    """Return a number of things in words: "one run", "30 runs"."""
+    return f"{count:,} {word}s" if count != 1 else f"one {word}"
+
+
+def symbol(key: str) -> str:
+    """Return the head of a column that holds values of a study key: "p [rad/s]"."""
+    letter, unit = SYMBOLS.get(key, ("", ""))
+    return (letter or key) + (f" [{unit}]" if unit else "")
+
+
+def heading(words: str) -> Markup:
+    """Return words with their subscripts as HTML, such as that of "θ_max/α"."""
+    return Markup(re.sub(r"_([a-z0]+)", lambda match: tag("sub", match[1]), escape(words)))
+
+
+def head(column: Quantity) -> Head:
+    """Return the head of a column of peaks.csv, with its name in the file and its meaning."""
+    assert column.page is not None
+    factor = f" × {column.page.factor}" if column.page.factor != 1 else ""
+    return Head(heading(column.page.head), column.page.form, f"{column.name}{factor}: {column.meaning}")

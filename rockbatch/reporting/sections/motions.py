@@ -1,0 +1,111 @@
+"""The ground motions: response spectra, intensity measures, sources, and those that could not be used."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rockbatch.motions.figures import drawable, response_spectra
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.markup import Markup, figure, join, tag
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import MOST_ROWS, Head, listed, table
+from rockbatch.results.labelled import as_dicts
+
+PULSE_LIKE = (
+    "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
+    "below 0.3 m/s"
+)
+Record = Mapping[str, Any]
+COLUMNS = (
+    Head("station", note="its components count as one record", value="station"),
+    Head("PGA [g]", ".3f", value="pga_g"),
+    Head("PGV [m/s]", ".3f", value="pgv_m_s"),
+    Head("PGD [m]", ".3f", value="pgd_m"),
+    Head("vertical PGA [g]", ".3f", value="pga_v_g"),
+    Head("Arias [m/s]", ".3f", "arias_m_s: Arias intensity", value="arias_m_s"),
+    Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity", value="d5_95_s"),
+    Head("dt [s]", value="dt_s"),
+    Head("points", value="npts"),
+    Head("length [s]", ".2f", "duration_s: from the first to the last sample", value="duration_s"),
+    Head(
+        "processed", note="whether its agency has corrected it; empty: the file does not say",
+        value=lambda record: {True: "yes", False: "no"}.get(record.get("processed", "")),
+    ),
+    Head(
+        "to check", note="what is odd about it; the notes below say more",
+        value=lambda record: ", ".join(finding["what"] for finding in record.get("findings", [])) or None,
+    ),
+    Head("azimuth [°]", note="degrees clockwise from north", value="azimuth_deg"),
+    Head("M", note="magnitude", value="magnitude"),
+    Head("distance [km]", value="distance_km"),
+    Head("factor", ".4g", "what brought the record to the study's target", value="factor"),
+    Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", value="vertical_factor"),
+    Head("pulse-like", note=PULSE_LIKE, value="pulse"),
+    Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", value="pulse_indicator"),
+    Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", value="pulse_period_s"),
+)  # fmt: skip
+"""Columns of the table of ground motions; those of a name hold that value of run.json."""
+
+
+def section(finished: Finished) -> Markup:
+    """Describe the ground motions that could be used, in a table like the paper's Table 1, the weakest first."""
+    if not finished.info["records"]:
+        return Markup("")
+    caption = "before the study's scale."
+    picture = Markup("") if "target" in finished.info else spectra(finished, caption)
+    records = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
+    name = Head("record", value=lambda record: finished.shown(record["record"]))
+    scaled = any(record.get("factor", 1.0) != 1.0 for record in records)
+    heads = [name, *(head for head in COLUMNS if scaled or head.value != "factor")]
+    lacking = finished.info.get("without_vertical")
+    no_vertical = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
+    sources = [
+        name,
+        Head("horizontal from", value=lambda record: _path(record["source"])),
+        Head("vertical from", value=lambda record: _path(record["vertical_source"])),
+        Head("what was done", value=_processing),
+    ]
+    return join(
+        picture, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
+        tag("h3", "Where they come from, and what was done to them"), listed(sources, records, prose=True, name="Sources"),
+    )  # fmt: skip
+
+
+def spectra(finished: Finished, caption: str, fitted: tuple[float, float] | None = None) -> Markup:
+    """Draw the response spectra; empty if run.json has none that fit its records, as for very large suites."""
+    records, shown = finished.info["records"], finished.info.get("spectra")
+    if not shown or len(shown["sa_g"]) != len(records) or not drawable(shown):
+        return Markup("")
+    described = response_spectra(shown, [finished.label(record["record"]) for record in records], fitted)
+    lead = f"Pseudo-spectral accelerations of the horizontal components, {100 * shown['damping']:g} % damped, "
+    return figure(drawn(described), lead, caption)
+
+
+def _path(source: str | None) -> object:
+    return source and tag("span", source, class_="path")
+
+
+def _processing(record: Record) -> object:
+    return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
+
+
+def unusable(finished: Finished) -> Markup:
+    """List files and runs that gave no result, and files and records that were left out on purpose, with reasons."""
+    rows = [[entry["name"], "", entry["source"], entry["reason"]] for entry in finished.info["unusable"]]
+    failed = finished.runs[finished.runs["status"] == "failed"]
+    most = max(MOST_ROWS - len(rows), 0)
+    rows += [
+        [finished.shown(run["record"]), finished.case_of(run), "", run["reason"]] for run in as_dicts(failed[:most])
+    ]
+    rows += [[]] * (len(failed) - most)  # not shown
+    heads = [Head("record"), Head("case"), Head("file"), Head("why")]
+    shown = table(heads, rows, prose=True, name="Not used") if rows else Markup("")
+    left_out = finished.info.get("left_out")
+    if not left_out:
+        return shown
+    heads = [Head("record", value="name"), Head("file", value="source"), Head("why", value="reason")]
+    named = [file for file in left_out if file.get("named")]
+    others = [file for file in left_out if not file.get("named")]
+    for title, files in (("Left out by name", named), ("Left out", others)):
+        if files:
+            shown = join(shown, tag("h3", title), listed(heads, files, prose=True, name=title))
+    return shown

@@ -1,0 +1,147 @@
+"""Peaks in tables: Fig. 7 in numbers, and every run with the worst first."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import creeps
+from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
+from rockbatch.reporting.finished import Finished, worst_first
+from rockbatch.reporting.labels import head, symbol
+from rockbatch.reporting.markup import Markup, join, number, tag
+from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
+from rockbatch.reporting.templates import render
+from rockbatch.results.columns import PEAKS
+from rockbatch.results.labelled import as_dicts
+from rockbatch.simulation.outcome import LINEARISED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+MOST_COLUMNS = 24
+
+
+def section(finished: Finished) -> Markup:
+    """Return every run in a table."""
+    runs = finished.runs
+    if runs.empty:
+        return Markup("")
+    gap = (runs["settlement_m"] - runs[OTHER_LAW]).abs() if OTHER_LAW in runs else None
+    widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
+    return render(
+        "reporting/sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
+        linearised=LINEARISED, far=int(runs["note"].str.contains(LINEARISED).sum()), one_law=gap is None,
+        ratchets=any(map(creeps, finished.info["cases"])),
+        range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
+    )  # fmt: skip
+
+
+def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
+    """Return the paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
+    series = [(place, finished.series[place]) for place in runs["series"].unique()]
+    series.sort(key=lambda pair: (not pair[1].rigid, pair[1].index))
+    signs = sorted(runs["polarity"].unique())
+    if len(series) * len(signs) > MOST_COLUMNS:
+        return Markup("")
+    heads = [Head("record"), Head("PGA [g]", ".3f")]
+    heads += [
+        Head(f.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, f in series for sign in signs
+    ]
+    stood = runs[runs["status"] == "ok"]["theta_max_over_alpha"]
+    shown = runs[runs["record"].isin(records)]
+    run_of = {(run["record"], run["series"], run["polarity"]): run for run in as_dicts(shown)}
+    rows: list[list[object]] = []
+    for name in records:
+        values = [run_of.get((name, place, sign)) for place, _ in series for sign in signs]
+        pga = next((run["pga"] for run in values if run), math.nan)
+        rows.append([finished.shown(name), pga, *(outcome(run, stood.max()) for run in values)])
+    return table(heads, rows, name="Peak rotations in numbers")
+
+
+def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
+    """Return θ_max/α of a run, or how it ended instead."""
+    if run is None:
+        return ""
+    status, theta, flight = run["status"], float(run["theta_max_over_alpha"]), run["flight_s"]
+    if status == "flight" and flight == flight:
+        return alarm(f"flight at {number(flight)} s")
+    if status != "ok" or math.isnan(theta):
+        return alarm(join(status, ", ", least) if (least := at_least(run)) else status)
+    value = number(theta, THETA_FORMAT)
+    shown = tag("strong", value) if theta == worst else value
+    marks = []
+    if flight == flight:
+        marks.append(tag("sup", "f", title=f"both pivots in the air first at {number(flight)} s"))
+    if leans := run["theta_max_is"]:
+        marks.append(tag("sup", "\u2009", leans, title="mostly the lean of a base that has yielded; see its note"))
+    return join(shown, *marks) if marks or isinstance(shown, Markup) else theta
+
+
+def at_least(run: dict[str, Any]) -> Markup:
+    """Return the lower bound of θ_max/α of a run that failed after its motion: "≥ 0.31240"; empty if it has none."""
+    error = run[IN_MOTION_ERROR]
+    if run["status"] != "failed" or error != error:
+        return Markup("")
+    return Markup(f"≥\u00a0{number(run[IN_MOTION] - error, THETA_FORMAT)}")
+
+
+def _every_run(finished: Finished) -> Markup:
+    """Return the rows of ``peaks.csv``, the worst first."""
+    runs, varied = finished.runs, finished.info["varied"]
+    # Shown only if they vary
+    also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
+    has_stations = (runs["station"] != "").any() and (runs["station"] != runs["record"]).any()
+    names = {name: head(COLUMNS[name]) for name in (("station", "case") if has_stations else ("case",))}
+    names |= {key: Head(symbol(key), note=key) for key in varied}
+    names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
+    if runs["with_vertical"].nunique() > 1:
+        names["with_vertical"] = Head("vertical component")
+    columns = {column.name: head(column) for column in report_columns() if column.source and column.name in runs}
+    columns |= {
+        name: Head(name)
+        for name in map(str, finished.saved.peaks)
+        if name not in COLUMNS and name not in ("vertical", *varied)
+    }
+
+    def cell(run: dict[str, Any], name: str) -> object:
+        if name == "settlement_m":
+            return _settlement(run)
+        return (name == "theta_max_over_alpha" and at_least(run)) or _cell(name, run[name])
+
+    def cells(run: dict[str, Any]) -> list[object]:
+        return [*(run[name] for name in names), *(cell(run, name) for name in columns)]
+
+    return every_run(finished, [head(COLUMNS["record"]), *names.values(), *columns.values()], cells, "Every run")
+
+
+def every_run(
+    finished: Finished, heads: "Sequence[Head]", cells: "Callable[[dict[str, Any]], Sequence[object]]", name: str
+) -> Markup:
+    """Return a table with a row for each run, the worst first; ``cells`` returns those behind the record."""
+    runs = worst_first(finished.runs, MOST_ROWS)
+    rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
+    drawn = table(heads, rows, sortable=True, name=name)
+    return join(shown_of(len(runs), len(finished.runs), "worst"), drawn)
+
+
+def _cell(name: str, value: Any) -> object:
+    if name == "status":
+        return alarm(value) if value != "ok" else value
+    return value if isinstance(value, str) else on_scale(name, value)
+
+
+def _settlement(run: dict[str, Any]) -> object:
+    """Return the settlement [mm] of a run; by two spring laws, the range between both."""
+    by_law, by_other = (on_scale(name, run.get(name)) for name in ("settlement_m", OTHER_LAW))
+    if by_law is None or by_other is None:
+        return by_law
+    form = COLUMNS["settlement_m"].page
+    low, high = (number(value, form.form if form else ".2f") for value in sorted((by_law, by_other)))
+    return Markup(low if low == high else f"{low}\u00a0–\u00a0{high}")
+
+
+def on_scale(name: str, value: float | None) -> float | None:
+    """Return a number of column ``name`` in the unit of the page; None for NaN and None."""
+    column = COLUMNS.get(name)
+    factor = column.page.factor if column and column.page else 1
+    return None if value is None or value != value else factor * float(value)

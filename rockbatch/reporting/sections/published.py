@@ -1,0 +1,49 @@
+"""Published values beside computed ones."""
+
+import math
+from fnmatch import fnmatchcase
+from typing import Any
+
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import symbol
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.sections.peaks import outcome
+from rockbatch.reporting.table import THETA, THETA_FORMAT, Head, table
+from rockbatch.results.labelled import as_dicts
+from rockbatch.results.suite_statistics import NO_PEAK
+
+
+def section(finished: Finished) -> Markup:
+    """Compare with the references of the study: every run that matches a record pattern, case and columns; empty without any."""
+    runs, references = finished.runs, finished.info["references"]
+    if not references:
+        return Markup("")
+    keys = [*finished.info["varied"], *(key for key in ("polarity", "scale") if runs[key].nunique() > 1)]
+    heads = [Head("record"), Head("case"), *(Head(symbol(key)) for key in keys)]
+    heads += [Head(join(THETA, ", ours"), THETA_FORMAT), Head(join(THETA, ", published"))]
+    heads += [Head("difference [%]", "+.1f"), Head("source")]
+    rows: list[list[object]] = []
+    for reference in references:
+        case, theirs, source = reference["case"], reference["theta_max_over_alpha"], reference["source"]
+        fits = [run for run in as_dicts(runs[runs["case"] == case]) if _fits(run, reference)]
+        for run in fits:
+            ours = run["theta_max_over_alpha"] if run["status"] not in (*NO_PEAK, "failed") else None
+            difference = 100 * (ours / theirs - 1) if ours is not None and theirs else None
+            values = [run[key] for key in keys]
+            rows.append([finished.shown(run["record"]), case, *values, outcome(run), theirs, difference, source])
+        if not fits:
+            values = [reference["columns"].get(key, "") for key in keys]
+            nothing = tag("span", "no such run", class_="muted")
+            rows.append([reference["record"], case, *values, nothing, theirs, None, source])
+    return table(heads, rows, name="Compared with published values")
+
+
+def _fits(run: dict[str, Any], reference: dict[str, Any]) -> bool:
+    def equal(ours: object, theirs: object) -> bool:
+        if isinstance(ours, float) and isinstance(theirs, float | int):
+            return math.isclose(ours, theirs, rel_tol=1e-9)
+        return ours == theirs
+
+    return fnmatchcase(run["record"], reference["record"]) and all(
+        equal(run.get(key), value) for key, value in reference["columns"].items()
+    )

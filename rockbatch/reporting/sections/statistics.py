@@ -1,0 +1,141 @@
+"""Statistics of the suite in each case: mean, median, percentiles, and the number of runs without a peak."""
+
+import math
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.catalogue import COLUMNS
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import heading
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.table import MOST_ROWS, Head, alarm, shown_of, table
+from rockbatch.results.rows import counts_as
+from rockbatch.results.suite_statistics import Statistics, suites
+
+Row = tuple[Hashable, ...]
+"""Values that tell a row of the tables from others."""
+
+RECORDS = {
+    "station": "A record is a station, as in the checks: the worst of its components and polarities counts.",
+    "component": "A record is a horizontal component, with the worse of its polarities.",
+}
+WORDS = (
+    " One under which the pier overturned, or that was ended by flight, has no largest value and counts as larger than any (∞) "
+    "in the median, the percentiles and the maximum; the mean is then that of the records that stood, with their number. One "
+    "with a failed run is unknown and counts in its own column only. Percentiles are linear between the records in order."
+)
+
+
+def section(finished: Finished) -> Markup:
+    """Return tables of every quantity, a row for each case; with and without the vertical component side by side."""
+    if finished.runs.empty:
+        return Markup("")
+    runs, keys = finished.runs, ["scale", "pier", "series"]
+    names, heads = rows_of(finished, runs, keys)
+    shown = dict(islice(names.items(), MOST_ROWS))
+    sides = {str(side): group for side, group in runs.groupby("with_vertical")}
+    return join(shown_of(len(shown), len(names)), tables(sides, keys, shown, heads, finished.count))
+
+
+def rows_of(finished: Finished, runs: "pd.DataFrame", keys: list[str]) -> tuple[dict[Row, list[str]], list[Head]]:
+    """Return the texts of the first cells of each row, and their heads; ``keys`` are columns of ``runs`` that tell rows apart."""
+    many_scales = runs["scale"].nunique() > 1
+    columns: dict[str, tuple[str, Callable[[Any], str]]] = {
+        "series": ("case", lambda place: finished.series[place].label),
+        "pier": ("pier", lambda place: finished.piers[place]),
+        "scale": ("scale of motions", lambda scale: f"{scale:g}" if many_scales else ""),
+        "with_vertical": ("vertical", str),
+    }
+    shown = {keys.index(name): column for name, column in columns.items() if name in keys}
+    rows = runs[keys].drop_duplicates().sort_values(keys).itertuples(index=False, name=None)
+    names = {key: [words(key[place]) for place, (_, words) in shown.items()] for key in rows}
+    return names, [Head(heading) for heading, _ in shown.values()]
+
+
+def tables(
+    sides: "Mapping[str, pd.DataFrame]",
+    keys: list[str],
+    names: Mapping[Row, Sequence[str]],
+    heads: Sequence[Head],
+    count: str,
+) -> Markup:
+    """Return a table for each quantity that has values.
+
+    Parameters
+    ----------
+    sides : mapping
+        Runs of every side that is compared, by the words for it; one side needs no words.
+    keys : list of str
+        Columns of the runs that tell rows apart.
+    names : mapping
+        Texts of the first cells of each row, by its values of ``keys``, which stand under ``heads``. Other runs do not count.
+    count : str
+        What counts as one record, one of :data:`rockbatch.study.rules.COUNTS`.
+    """
+    drawn = [tag("p", RECORDS[count] + WORDS)]
+    index = pd.MultiIndex.from_tuples(list(names), names=keys)
+    placed = [(runs, index.get_indexer(pd.MultiIndex.from_frame(runs[keys]))) for runs in sides.values()]
+    grouped = [(runs[place >= 0], place[place >= 0].astype(np.int64)) for runs, place in placed]
+    counted_as = [counts_as(runs, count)[0].to_list() for runs, _ in grouped]
+    for column in COLUMNS.values():
+        present = all(column.name in runs for runs, _ in grouped)
+        if column.suite is None or column.page is None or not present:
+            continue
+        title, form = heading(column.suite.heading), column.suite.form
+        of_sides = []
+        for (runs, rows), records in zip(grouped, counted_as, strict=True):
+            values = column.page.factor * runs[column.name].to_numpy(dtype=np.float64)
+            has_value = np.bincount(rows, ~np.isnan(values), len(names)) > 0
+            of_rows = suites(values, runs["status"].to_list(), records, rows, len(names))
+            of_sides.append([suite if any_ else None for suite, any_ in zip(of_rows, has_value, strict=True)])
+        cells = [
+            [*words, *(_cell(suite, name, form) for name in _COLUMNS for suite in cells_of_sides)]
+            for words, *cells_of_sides in zip(names.values(), *of_sides, strict=True)
+            if any(cells_of_sides)
+        ]
+        if cells:
+            drawn += [
+                tag("h3", title),
+                table([*heads, *_heads(list(sides), form)], cells, name=f"Suite: {column.suite.heading}"),
+            ]
+    return join(*drawn)
+
+
+_COLUMNS = {
+    "count": ("n", "records with an outcome"),
+    "mean": ("mean", "of the records that stood"),
+    "median": ("median", None),
+    "low": ("16 %", "value that 16 % of the records do not exceed"),
+    "high": ("84 %", "value that 84 % of the records do not exceed"),
+    "largest": ("maximum", None),
+    "overturned": ("overturned", "records under which the pier overturned"),
+    "flight": ("flight", "records with a run that ended when both pivots left the ground"),
+    "failed": ("failed", "records with a run without an outcome"),
+}
+
+
+def _heads(sides: Sequence[str], form: str) -> list[Head]:
+    heads = []
+    for name, (label, note) in _COLUMNS.items():
+        fmt = form if name in ("mean", "median", "low", "high", "largest") else ".0f"
+        heads += [Head(side, fmt, note, label) if len(sides) > 1 else Head(label, fmt, note) for side in sides]
+    return heads
+
+
+def _cell(s: Statistics | None, name: str, form: str) -> object:
+    if s is None:
+        return None
+    value = getattr(s, name)
+    if name in ("overturned", "flight", "failed"):
+        return alarm(str(value)) if value else value
+    if isinstance(value, int):
+        return value
+    if math.isinf(value):
+        return alarm("∞")
+    if name == "mean" and s.standing < s.count:
+        return "—" if math.isnan(value) else join(f"{value:{form}} ", tag("span", f"of {s.standing}", class_="muted"))
+    return value

@@ -1,0 +1,133 @@
+"""The study in words and units: the pier, its foundations and the ground motions."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from rockbatch.pier.figures import devices, sketches
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import symbol
+from rockbatch.reporting.markup import Markup, join
+from rockbatch.reporting.structure import pier_of, restraints_of
+from rockbatch.reporting.svg import sketch
+from rockbatch.reporting.table import Head, sub, table
+from rockbatch.reporting.templates import render
+from rockbatch.results.labels import plain
+from rockbatch.study import PIER_KEYS
+
+GIVEN = {
+    "width_m": ("between the pivots", "m"),
+    "height_m": ("height", "m"),
+    "mass_t": ("mass", "t"),
+    "columns": ("columns", ""),
+    "deck_mass_t": ("deck", "t"),
+    "deck_height_m": ("centre of the deck at", "m"),
+    "deck_inertia_t_m2": ("its rotary inertia", "t m²"),
+    "top_m": ("drift read at", "m"),
+}
+"""Keys of [pier] that are quoted, with their words and units."""
+
+Case = Mapping[str, Any]
+
+
+def section(finished: Finished, level: str = "h3") -> Markup:
+    """Describe the pier, the foundations and the records; ``level`` is that of the headings within."""
+    cases, records = finished.info["cases"], finished.info["records"]
+    factors = [float(record.get("factor", 1.0)) for record in records]
+    ends = dict.fromkeys(f"{factor:.4g}" for factor in (min(factors, default=1.0), max(factors, default=1.0)))
+    as_recorded = all(factor == 1.0 for factor in factors)
+
+    def span(key: str, form: str, unit: str) -> str:
+        values = [record[key] for record in records if record[key] is not None]
+        written = dict.fromkeys(format(value, form) for value in (min(values), max(values))) if values else ()
+        return f"{' to '.join(written)} {unit}" if written else "unknown"
+
+    piers: dict[tuple[float, ...], Case] = {}
+    for case in cases:
+        piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
+    return render(
+        "reporting/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
+        degrees=math.degrees, piers=list(piers.values()), given=_numbers_of(finished.pier_as_given),
+        drawn=_drawn(finished), vertical=_vertical(finished),
+        scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
+        scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
+        foundations=_foundations(finished),
+        springs=any(case["base"] != "rigid" for case in cases),
+    )  # fmt: skip
+
+
+def _drawn(finished: Finished) -> list[Markup]:
+    """Draw each pier with its devices."""
+    has_deck = "deck_mass_t" in finished.pier_as_given
+    shown: dict[tuple[object, ...], tuple[dict[str, Any], list[str]]] = {}
+    for case in finished.info["cases"]:
+        pier = pier_of(case)
+        places = devices(pier, restraints_of(case)) if pier else ()
+        deck = {"deck_m": pier.deck} if has_deck and pier else {}
+        key = case["pier"]["alpha"], case["pier"]["p"], places
+        names = shown.setdefault(key, (case["pier"] | deck | {"devices": places}, []))[1]
+        if case["case"] not in names:
+            names.append(str(case["case"]))
+    piers = [pier | {"name": ", ".join(names) if len(shown) > 1 else ""} for pier, names in shown.values()]
+    return [sketch(figure) for figure in sketches(piers, {case["base"] for case in finished.info["cases"]})]
+
+
+def _numbers_of(pier: Mapping[str, Any]) -> list[str]:
+    """Return the numbers of the pier in the units of the study file; those that vary are in the tables."""
+    parts = pier.get("part", ())
+    words = GIVEN | ({"mass_t": ("shaft", "t")} if "deck_mass_t" in pier else {})
+    numbers = [
+        f"{words[key][0]} {plain(value, 6)} {words[key][1]}".strip()
+        for key, value in pier.items()
+        if key in words and isinstance(value, int | float)
+    ]
+    return numbers + [
+        f"a part of {part['mass_t']:g} t at {part['height_m']:g} m"
+        for part in (parts if isinstance(parts, list) else ())
+        if isinstance(part, dict) and all(isinstance(part.get(key), int | float) for key in ("mass_t", "height_m"))
+    ]
+
+
+def _vertical(finished: Finished) -> str:
+    records = finished.info["records"]
+    if finished.runs["with_vertical"].nunique() > 1:
+        return "with and without the vertical component"
+    vertical = sum(record["pga_v_g"] is not None for record in records)
+    if vertical in (0, len(records)):
+        return "with the vertical component" if vertical else "horizontal component only"
+    return f"{vertical} with the vertical component"
+
+
+def _foundations(finished: Finished) -> Markup:
+    """Describe the bases of the piers: parameters, and the deflections that follow from them."""
+    varied_pier = [key for key in finished.info["varied"] if key in PIER_KEYS]
+    heads = [Head("case"), *(Head(symbol(key)) for key in varied_pier), Head("base")]
+    weighed = {"stiffness_kN_m": "stiffness of a support", "yield_kN": "force at which a support yields"}
+    in_kilonewtons = {
+        key: note for key, note in weighed.items() if any(key in case["parameters"] for case in finished.info["cases"])
+    }
+    heads += [
+        Head("β", ".5g", note="vertical over rocking frequency parameter"),
+        Head("η", ".5g", note="yield over static deflection: capacity of a support over its static load"),
+        *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
+        Head("ε", note="restitution of the landing pivot's velocity"),
+        Head("ζ", note="damping of the supports, as a share of critical damping of the vertical vibration"),
+        Head("spring"),
+        Head("n", note="Bouc–Wen exponent"),
+        Head("kinematics"),
+        Head("in flight"),
+        Head("e", note="factor on the angular velocity at impact; empty: Housner's"),
+        Head(join(sub("ω", "v"), " [rad/s]"), ".2f", "vertical frequency"),
+        Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
+        Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
+    ]
+    keys = ("epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    names = ("beta", "eta", *in_kilonewtons, *keys)
+    rows = []
+    for case in finished.info["cases"]:
+        values = case["parameters"]
+        deflections = [values.get(key) for key in ("delta_s_m", "delta_y_m")]
+        millimetres = [None if metres is None else 1000 * metres for metres in deflections]
+        pier = [case["columns"].get(key) for key in varied_pier]
+        rows.append([case["case"], *pier, case["base"], *(values.get(key) for key in names), *millimetres])
+    return table(heads, rows, name="Foundations")

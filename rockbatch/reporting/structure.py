@@ -1,0 +1,116 @@
+"""The structure of a case: its pier and devices from run.json, and their numbers in words."""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from rockbatch.common.errors import InputError
+from rockbatch.pier import (
+    Base,
+    Damper,
+    DeckSpring,
+    ElasticBase,
+    Pier,
+    Restraint,
+    RigidBase,
+    YieldingBase,
+    fields_of,
+    problems,
+    restraint_of,
+)
+from rockbatch.pier.plausibility import wrong_restraints
+from rockbatch.results.labels import plain
+from rockbatch.study.restraint_keys import KEYS_OF
+
+_PIER = (
+    "alpha", "p", "mu", "gravity", "mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s",
+    "initial_rotation_rad",
+)  # fmt: skip
+_PREFERRED = {
+    "brace": "brace_kN_m",
+    "f": "force_kN",
+    "nu": "coefficient_kN_s_m",
+    "psi": "prestress_kN",
+    "lambda": "stiffness_kN_m",
+}
+"""Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
+_WORDS = {
+    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
+    "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
+    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
+    "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
+}  # fmt: skip
+
+_NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
+_OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
+
+
+def pier_of(case: Mapping[str, Any]) -> Pier | None:
+    """Return the pier of a case; None if its values are impossible, since run.json may come from anybody."""
+    try:
+        return Pier(**{name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None})
+    except (InputError, TypeError, ValueError):
+        return None
+
+
+def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
+    """Return the devices of a case; empty if their values are impossible."""
+    described, pier = case["parameters"].get("restraints"), pier_of(case)
+    if not isinstance(described, list) or pier is None:
+        return ()
+    try:
+        restraints = tuple(map(restraint_of, described))
+        return () if wrong_restraints(pier, restraints) else restraints
+    except (TypeError, ValueError):
+        return ()
+
+
+def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
+    """Return the base of a case with its devices; None if its values are impossible under ``pier``."""
+    kind: type[Base] = {kind.name: kind for kind in (RigidBase, ElasticBase, YieldingBase)}[case["base"]]
+    values, names = case["parameters"], [field.name for field in fields(kind) if field.name != "restraints"]
+    try:
+        base = kind(**{name: values[name] for name in names if values.get(name) is not None})
+        base = replace(base, restraints=restraints_of(case))
+    except (InputError, TypeError, ValueError):
+        return None
+    return None if problems(pier, base) else base
+
+
+def in_words(pier: Pier, restraint: Restraint) -> str:
+    """Describe a device, in kN if the mass is known: "friction damper at each pivot, F = 450 kN"."""
+    kind = restraint.kind if isinstance(restraint, Damper) else restraint.what
+    fields = fields_of(pier)
+    values = {}
+    for key in KEYS_OF[kind]:
+        if key in fields and _PREFERRED.get(key) not in fields:
+            field, divisor = fields[key]
+            values[key] = getattr(restraint, field) * divisor
+    power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
+    words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
+    names = _WORDS | _OF_STOP if restraint.what in _NAMED else _WORDS
+    numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
+    return ", ".join([f"{words} {_place(restraint)}", *numbers])
+
+
+def _number(symbol: str, unit: str, value: float, power: float) -> str:
+    if symbol == "C":
+        unit = "kN s/m" if power == 1.0 else f"kN (s/m)^{power:g}"
+    return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def _place(restraint: Restraint) -> str:
+    if isinstance(restraint, DeckSpring):
+        height = "" if restraint.height_m is None else f", {restraint.height_m:g} m high"
+        return ("on both sides" if restraint.side == "both" else f"on the {restraint.side}") + height
+    if restraint.at is None:
+        return "at each pivot"
+    if restraint.at == "deck":
+        return "at the deck"
+    if isinstance(restraint.at, str):
+        return f"at the {restraint.at} pivot"
+    return (
+        "on the axis"
+        if restraint.at == 0
+        else f"{abs(restraint.at):g} m {'right' if restraint.at > 0 else 'left'} of the axis"
+    )

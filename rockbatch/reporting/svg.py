@@ -1,0 +1,368 @@
+"""Figures drawn as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import singledispatch
+from itertools import repeat
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.common.figures.description import (
+    Area,
+    Array,
+    Figure,
+    Look,
+    Mark,
+    Panel,
+    Points,
+    Polyline,
+    Rule,
+    Span,
+    Words,
+    subscripts,
+)
+from rockbatch.reporting.markup import Markup, join, tag
+
+FINE = 10  # steps per pixel of a curve's coordinates
+_FAR = 1e6
+"""Pixels: what lies beyond, as numbers in a table that somebody changed may, is not there."""
+
+_OUTLINES = {
+    "disc": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
+    "dot": "M-2.2 0a2.2 2.2 0 1 0 4.4 0a2.2 2.2 0 1 0-4.4 0z",
+    "cross": "M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3z",
+    "overturned": "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2L2 0l2.5 2.5-2 2L0 2l-2.5 2.5-2-2L-2 0z",
+    "flight": "M-1.7 5v-5h-3.3l5-5 5 5h-3.3v5z",
+    "square": "M3.3 -3.3L-3.3 -3.3L-3.3 3.3L3.3 3.3z",
+    "up": "M0.0 -5.4L-4.7 2.7L4.7 2.7z",
+    "diamond": "M5.0 -0.0L0.0 -5.0L-5.0 -0.0L-0.0 5.0z",
+    "down": "M0.0 5.4L4.7 -2.7L-4.7 -2.7z",
+    "star": "M0.0 -5.8L-1.4 -2.0L-5.5 -1.8L-2.3 0.8L-3.4 4.7L-0.0 2.4L3.4 4.7L2.3 0.8L5.5 -1.8L1.4 -2.0z",
+    "left": "M-5.4 -0.0L2.7 4.7L2.7 -4.7z",
+    "right": "M5.4 -0.0L-2.7 -4.7L-2.7 4.7z",
+    "hexagon": "M4.6 -0.0L2.3 -4.0L-2.3 -4.0L-4.6 -0.0L-2.3 4.0L2.3 4.0z",
+}
+"""Outlines of the markers around (0, 0) [px]."""
+
+
+class Box(NamedTuple):
+    """A panel at its place in a picture: the rectangle between its axes [px]."""
+
+    panel: Panel
+    left: float
+    top: float
+    width: float
+    height: float
+
+    @property
+    def right(self) -> float:
+        return self.left + self.width
+
+    @property
+    def foot(self) -> float:
+        return self.top + self.height
+
+    def across(self, values: float | Array) -> Array:
+        """Return abscissae [px]."""
+        return self.left + self.width * self.panel.x.fraction(values)
+
+    def down(self, values: float | Array) -> Array:
+        """Return ordinates [px], from the top of the picture."""
+        return self.foot - self.height * self.panel.y.fraction(values)
+
+
+def markers() -> Markup:
+    """Return the definitions of all markers, once for the page."""
+    paths = [tag("path", id=f"m-{name}", d=d) for name, d in _OUTLINES.items()]
+    return tag("svg", tag("defs", *paths), width=0, height=0, class_="markers", aria_hidden="true")
+
+
+def drawn(figure: Figure) -> Markup:
+    """Draw a figure: its panels beside each other as room permits, or one picture if it is stacked or a single panel."""
+    if figure.stacked or (len(figure.panels) == 1 and not figure.panels[0].caption):
+        picture = _picture(figure.rows, figure.description, " alone")
+        return join(picture, key(figure.legend))
+    width = max((panel.width for panel in figure.panels), default=0.0)
+    shown = [tag("figure", _caption(panel), _picture([[panel]], _described(figure, panel))) for panel in figure.panels]
+    grid = tag(
+        "div", *shown, class_="panels", style=f"--w:{width:.0f}px", tabindex="0", role="group",
+        aria_label=f"{figure.description}; arrow keys go through the values",
+    )  # fmt: skip
+    return join(grid, key(figure.legend))
+
+
+def sketch(figure: Figure) -> Markup:
+    """Draw a figure in its own size, with its caption if it has one."""
+    (panel,) = figure.panels
+    caption = tag("figcaption", panel.caption) if panel.caption else ""
+    return tag("figure", caption, _picture([[panel]], figure.description), style=f"width:{panel.width:.0f}px")
+
+
+def _caption(panel: Panel) -> Markup:
+    note = join(" ", tag("span", panel.note, class_="muted")) if panel.note else ""
+    return tag("figcaption", tag("span", panel.caption), note)
+
+
+def _described(figure: Figure, panel: Panel) -> str:
+    return ", ".join(filter(None, (figure.description, panel.caption)))
+
+
+def key(legend: Mapping[str, Sequence[Mark]]) -> Markup:
+    """Return the legend of what each entry stands for; empty without entries."""
+    entries = [tag("li", _sample(marks), tag("span", label)) for label, marks in legend.items()]
+    return tag("ul", *entries, class_="key") if entries else Markup("")
+
+
+def _sample(marks: Sequence[Mark]) -> Markup:
+    shown = [_in_key(mark) for mark in sorted(marks, key=lambda mark: isinstance(mark, Points))]
+    return tag("svg", *shown, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
+
+
+def _in_key(mark: Mark) -> Markup:
+    """Draw a mark in a legend, 22 × 14 px."""
+    if isinstance(mark, Points):
+        return marker(mark.look, 11, 7)
+    if isinstance(mark, Area | Span):
+        return tag("rect", x=1, y=1, width=20, height=12, class_=classes(mark.look))
+    if mark.look.kind == "limit":  # with serifs, since a rigid base is a stroke, too
+        return tag("path", d="M11 0v14M7 0h8M7 14h8", class_=classes(mark.look))
+    if isinstance(mark, Rule) and mark.axis == "x":
+        return tag("line", x1=11, x2=11, y1=0, y2=14, class_=classes(mark.look))
+    return tag("line", x1=0, x2=22, y1=7, y2=7, class_=classes(mark.look))
+
+
+def alike(figures: Sequence[Figure]) -> list[Markup]:
+    """Draw stacked figures that stand beside each other, all of one height, and without legends."""
+    heights = [_boxes(figure.rows)[1] for figure in figures]
+    return [_picture(figure.rows, figure.description, "", max(heights)) for figure in figures]
+
+
+def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
+    """Return the panels at their places in a picture, and its height."""
+    boxes, height, width = [], 0.0, max(sum(panel.width for panel in row) for row in rows)
+    left = max(_room_left(row[0]) for row in rows)
+    if not rows[0][0].framed:
+        return [Box(rows[0][0], 0.0, 0.0, width, rows[0][0].height)], rows[0][0].height
+    for row in rows:
+        top = height + (22.0 if any(panel.y.label or (panel.caption and len(rows) > 1) for panel in row) else 6.0)
+        height = top + max(panel.height + 14.0 * panel.x.numbered + 18.0 * bool(panel.x.label) for panel in row) + 3.0
+        inner = (width - left - 8.0 - 10.0 * (len(row) - 1)) / len(row)
+        boxes += [Box(panel, left + i * (inner + 10.0), top, inner, panel.height) for i, panel in enumerate(row)]
+    return boxes, height
+
+
+def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "", least: float = 0.0) -> Markup:
+    """Draw rows of panels as one picture, at ``least`` so high [px]."""
+    boxes, height = _boxes(rows)
+    content = [part for box in boxes for part in _panel(box, len(rows) > 1)]
+    marks = [mark for box in boxes for mark in box.panel.marks]
+    said = any(mark.title or (isinstance(mark, Points) and mark.titles) for mark in marks)
+    kinds = " marks" * said + " readings" * any(box.panel.reads for box in boxes) + more
+    width = max(sum(panel.width for panel in row) for row in rows)
+    return svg(width, max(height, least), *content, description=description, class_=f"plot{kinds}")
+
+
+def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
+    """Return a picture of that size [px]; ``description`` is for those who cannot see it."""
+    return tag("svg", *content, class_=class_, role="img", aria_label=description, viewBox=f"0 0 {width:g} {height:g}")
+
+
+def _room_left(panel: Panel) -> float:
+    """Return the room for the numbers of the ordinate."""
+    longest = max(map(len, panel.y.ticks().values()), default=0) if panel.y.numbered else 0
+    return 10.0 + 6.6 * max(longest, 2)
+
+
+def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
+    panel = box.panel
+    behind = [mark for mark in panel.marks if isinstance(mark, Span | Area)]
+    named = [mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name and panel.reads]
+    yield from (_draw(mark, box) for mark in behind)
+    if panel.framed:
+        yield _frame(box)
+    if named:
+        yield _readable(box, [_draw(line, box) for line in named])
+    yield from (_draw(mark, box) for mark in panel.marks if mark not in behind and mark not in named)
+    if panel.y.label:
+        yield text(max(box.left - 34.0 * panel.y.numbered, 2.0), box.top - 9.0, *_lettered(panel.y.label), class_="q")
+    if panel.x.label:
+        yield text(
+            box.left + box.width / 2, box.foot + 14.0 * panel.x.numbered + 15.0, *_lettered(panel.x.label), class_="m q"
+        )
+    if captioned and panel.caption:
+        yield text(box.right, box.top - 9.0, panel.caption, class_="e")
+
+
+def _frame(box: Box) -> Markup:
+    """Draw the grid and the numbers beside it; no vertical lines at names."""
+    x, y = box.panel.x, box.panel.y
+    columns, rows = x.ticks(), y.ticks()
+    lines = "".join(
+        f"M{box.left:.1f} {at:.1f}H{box.right:.1f}" for at in box.down(np.array([*rows])) if y.names is None
+    )
+    lines += "".join(
+        f"M{at:.1f} {box.top:.1f}V{box.foot:.1f}" for at in box.across(np.array([*columns])) if x.names is None
+    )
+    parts = [tag("path", d=lines, class_="grid")] if lines else []
+    parts.append(tag("path", d=f"M{box.left:.1f} {box.top:.1f}V{box.foot:.1f}H{box.right:.1f}", class_="edge"))
+    if y.numbered:
+        parts += [text(box.left - 4, float(box.down(at)) + 4, words, class_="e") for at, words in rows.items()]
+    if x.numbered:
+        every = math.ceil(7.0 * max(map(len, columns.values()), default=1) * len(columns) / box.width) if x.names else 1
+        shown = list(columns.items())[::every]  # or names would overlap
+        parts += [text(float(box.across(at)), box.foot + 13, words, class_="m") for at, words in shown]
+    return join(*parts)
+
+
+def _readable(box: Box, lines: Sequence[Markup]) -> Markup:
+    """Group lines so that the script can read values back."""
+    x, y = box.panel.x, box.panel.y
+    return tag(
+        "g", *lines, class_="axes", data_kind=box.panel.reads,
+        data_box=f"{box.left:g} {box.top:g} {box.width:g} {box.height:g}",
+        data_x=f"{x.low:.6g} {x.high:.6g}", data_y=f"{y.low:.6g} {y.high:.6g}",
+        data_names=f"{x.plain}|{y.plain}" if box.panel.reads == "plane" else None,
+    )  # fmt: skip
+
+
+def _lettered(label: str) -> Iterator[Markup]:
+    """Yield the parts of a label, with its subscripts lowered."""
+    raise_back = False
+    for words, low in subscripts(label):
+        if low:
+            yield tag("tspan", words, dy="2", class_="sub")
+        else:
+            yield tag("tspan", words, dy="-2") if raise_back else join(words)
+        raise_back = low
+
+
+def classes(look: Look) -> str:
+    """Return the classes of the style sheet that draw a look."""
+    colour = f"s{look.colour}" if look.colour else "ink" if look.kind in ("", "level", "filled") else ""
+    return " ".join(filter(None, (look.kind, colour, f"d{look.dash}" * bool(look.dash), "open" * look.open)))
+
+
+def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup:
+    """Draw text at (x, y); ``x`` in pixels, or a share of the width: "50%"."""
+    return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
+
+
+def marker(look: Look, x: float | str, y: float, title: str = "", shade: float | None = None) -> Markup:
+    """Draw a marker at (x, y), with a tooltip."""
+    tooltip = tag("title", title) if title else Markup("")
+    if look.shape == "failed":
+        return text(x, y + 4, "?", tooltip, class_="m none")
+    opacity = None if shade is None else f"{0.15 + 0.85 * shade:.2f}"
+    return tag(
+        "use", tooltip, href=f"#m-{look.shape}", x=_short(x), y=_short(y), class_=classes(look), fill_opacity=opacity
+    )
+
+
+@singledispatch
+def _draw(mark: Any, box: Box) -> Markup:
+    """Draw a mark."""
+    raise NotImplementedError(type(mark))
+
+
+@_draw.register
+def _(mark: Polyline, box: Box) -> Markup:
+    x, y = mark.x, mark.y
+    within = (box.panel.x.low <= x) & (x <= box.panel.x.high) & (box.panel.y.low <= y) & (y <= box.panel.y.high)
+    inside = np.where(within, y, np.nan)  # a pier that fell leaves the picture
+    return curve(box.across(x), box.down(inside), classes(mark.look), mark.name or None, mark.title)
+
+
+@_draw.register
+def _(mark: Area, box: Box) -> Markup:
+    return curve(box.across(mark.x), box.down(mark.y), classes(mark.look), None, mark.title)
+
+
+@_draw.register
+def _(mark: Points, box: Box) -> Markup:
+    across, down = box.across(mark.x), box.down(mark.y)
+    shades = repeat(None) if mark.shade is None else mark.shade[0].fraction(mark.shade[1])
+    points = zip(across.tolist(), down.tolist(), mark.titles or repeat(mark.title), shades, strict=False)
+    shown = [marker(mark.look, x, y, title, shade) for x, y, title, shade in points if math.isfinite(x + y)]
+    return join(*_error_bars(mark, box), *shown)
+
+
+def _error_bars(mark: Points, box: Box) -> Iterator[Markup]:
+    axis, errors = box.panel.y, np.zeros(len(mark.x)) if mark.error is None else mark.error
+    for x, y, error in zip(mark.x, mark.y, errors, strict=True):
+        if error > 0.0:
+            at, (top, foot) = float(box.across(x)), box.down(np.clip([y + error, y - error], axis.low, axis.high))
+            yield tag("path", d=f"M{at - 2.5:.1f} {top:.1f}h5m-2.5 0V{foot:.1f}m-2.5 0h5", class_="bar")
+
+
+@_draw.register
+def _(mark: Rule, box: Box) -> Markup:
+    if mark.axis == "x":
+        low, high = box.foot - mark.low * box.height, box.foot - mark.high * box.height
+        strokes = [f"M{x:.1f} {low:.1f}V{high:.1f}" for x in box.across(mark.at)]
+    else:
+        left, right = box.left + mark.low * box.width, box.left + mark.high * box.width
+        strokes = [f"M{left:.1f} {y:.1f}H{right:.1f}" for y in box.down(mark.at)]
+    if not strokes:
+        return Markup("")
+    return tag("path", tag("title", mark.title) if mark.title else "", d="".join(strokes), class_=classes(mark.look))
+
+
+@_draw.register
+def _(mark: Span, box: Box) -> Markup:
+    x, y, width, height = box.left, box.top, box.width, box.height
+    if mark.axis == "x":
+        x, end = box.across(np.clip([mark.low, mark.high], box.panel.x.low, box.panel.x.high)).tolist()
+        width = end - x
+    else:
+        end, y = box.down(np.clip([mark.low, mark.high], box.panel.y.low, box.panel.y.high)).tolist()
+        height = end - y
+    return tag("rect", x=_short(x), y=_short(y), width=_short(width), height=_short(height), class_=classes(mark.look))
+
+
+@_draw.register
+def _(mark: Words, box: Box) -> Markup:
+    anchor = {-1: "e", 0: "m", 1: ""}[mark.side]
+    x, y = float(box.across(mark.x)) + 5.0 * mark.side, float(box.down(mark.y)) + 3.5 - mark.lift
+    return text(x, y, mark.text, class_=" ".join(filter(None, (classes(mark.look), anchor))))
+
+
+def _short(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.1f}".removesuffix(".0")
+
+
+def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str = "") -> Markup:
+    """Draw a curve through points in pixels, interrupted at NaN; ``name`` is its name in the script."""
+    tooltip = tag("title", title) if title else ""
+    return tag("path", tooltip, d=_relative(x, y), transform=f"scale({1 / FINE:g})", class_=class_, data_name=name)
+
+
+def _relative(x: Array, y: Array) -> str:
+    """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
+    in_range = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
+    parts = []
+    for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(in_range.astype(np.int8))) + 1):
+        if len(piece) == 0 or not in_range[piece[0]]:
+            continue
+        points = np.rint(FINE * np.column_stack([x[piece], y[piece]])).astype(np.int64)
+        points = points[_bends(points)]
+        steps = np.diff(points, axis=0)
+        parts.append(f"M{points[0, 0]} {points[0, 1]}" + (f"l{_compact(steps.ravel())}" if len(steps) else "h0"))
+    return "".join(parts)
+
+
+def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Return the places of the points without which the drawing would change."""
+    moved = np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1
+    kept = np.concatenate(([0], moved))
+    if len(kept) < 3:
+        return kept
+    steps = np.diff(points[kept], axis=0)
+    across = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    along = (steps[:-1] * steps[1:]).sum(axis=1)
+    return kept[np.concatenate(([True], (across != 0) | (along < 0), [True]))]
+
+
+def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
+    return " ".join(map(str, numbers)).replace(" -", "-")

@@ -1,0 +1,95 @@
+"""Templates of the pages and their sections: HTML with values in it, all of which are escaped but :class:`Markup`."""
+
+import base64
+import hashlib
+import shlex
+import sys
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
+from importlib.util import cache_from_source
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from rockbatch.common.files import legible
+from rockbatch.common.version import __version__
+from rockbatch.reporting.labels import counted
+from rockbatch.reporting.markup import Markup, escape, number
+from rockbatch.reporting.svg import markers
+from rockbatch.reporting.table import THETA
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from jinja2.bccache import Bucket
+
+HERE = Path(__file__).parent
+
+TOP = HERE.parent
+
+
+class Section(NamedTuple):
+    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading."""
+
+    heading: str
+    anchor: str
+    content: Markup
+
+
+def document(kind: str, title: str, sections: Iterable[Section], version: str = __version__) -> str:
+    """Return a whole page as HTML; sections without content are left out.
+
+    On paper each page has the title and ``version``, that of the rockbatch that made the results.
+    """
+    style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
+    return render(
+        "reporting/page.html", kind=kind, title=title, sections=[section for section in sections if section.content],
+        version=f"rockbatch {version}", digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        markers=markers(), style=Markup(style), script=Markup(script),
+    )  # fmt: skip
+
+
+def render(template: str, **values: object) -> Markup:
+    """Return a template of this package as HTML; ``template`` is its path in rockbatch.
+
+    Raises ``KeyError`` if a value lacks what the template shows.
+    """
+    from jinja2 import UndefinedError
+
+    try:
+        return Markup(_environment().get_template(template).render(values))
+    except UndefinedError as error:
+        raise KeyError(str(error)) from error
+
+
+@cache
+def _environment() -> "Environment":
+    import jinja2
+    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+
+    class Compiled(FileSystemBytecodeCache):
+        """Compiled templates beside Python's compiled modules; where these cannot be written, nor can they."""
+
+        def dump_bytecode(self, bucket: "Bucket") -> None:
+            if not sys.dont_write_bytecode:
+                with suppress(OSError):
+                    super().dump_bytecode(bucket)
+
+    # Jinja looks at a template's text and at Python's version only, but its own sources and the options below count, too
+    sources = (*sorted(Path(jinja2.__file__).parent.glob("*.py")), Path(__file__))
+    compiler = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:8]
+    pattern = f"%s.{sys.implementation.cache_tag}-{compiler}.jinja"
+    made = Environment(
+        bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), pattern),
+        loader=FileSystemLoader(TOP), autoescape=True, undefined=StrictUndefined,
+        finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    made.filters |= {"f": number, "css": css_string, "shell": shlex.join}
+    made.globals |= {"counted": counted, "THETA": THETA}
+    return made
+
+
+def css_string(text: str) -> Markup:
+    """Return ``text`` as a string of a style sheet, which nothing in it can end."""
+    written = (char if char.isalnum() or char in " .,()–" else f"\\{ord(char):x} " for char in legible(text))
+    return Markup(f'"{"".join(written)}"')
