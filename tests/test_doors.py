@@ -28,7 +28,7 @@ def lines_of(*packages):
 def test_files_of_a_results_folder_are_opened_by_one_door():
     """`rockbatch.common.files`, or h5py given what that has opened; the program reads its own sources and style otherwise."""
     found = [place for place, line in lines_of(*OF_FOLDERS) if ROUND.search(line)]
-    assert [place for place in found if not place.startswith(("batch/digests.py", "report/templates.py"))] == []
+    assert [place for place in found if not place.startswith(("batch/digests.py", "reporting/templates.py"))] == []
 
 
 def test_commands_print_by_one_door():

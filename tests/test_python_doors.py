@@ -247,13 +247,6 @@ def test_the_accuracy_is_saved_as_the_command_writes_it(study, nowhere, monkeypa
         rb.accuracy(study, seconds=0)
 
 
-def test_the_command_measures_as_many_runs_as_the_function():
-    from rockbatch.analyses.accuracy import analysis as accuracy
-    from rockbatch.commands.arguments import RUNS, SECONDS
-
-    assert (accuracy.RUNS, accuracy.SECONDS) == (RUNS, SECONDS)
-
-
 def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
     page = commanded / "run/report.html"
     earlier = page.read_bytes()

@@ -9,7 +9,7 @@ from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
-SHOW = ("commands", "reporting", "__init__.py", "__main__.py")
+SHOW = ("commands", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
 OF_ANALYSES = ("command.py", "section.py", "risk_section.py")
@@ -45,8 +45,9 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
 def sources() -> Iterator[Path]:
     """Yield the modules that take part in what a row says, in a fixed order."""
     for path in sorted(_TOP.rglob("*.py")):
-        parts = path.relative_to(_TOP).parts
-        if parts[0] not in SHOW and not (parts[0] == "analyses" and parts[-1] in OF_ANALYSES):
+        module = path.relative_to(_TOP)
+        shows = module.parts[0] in SHOW or module.as_posix() in SHOW
+        if not shows and not (module.parts[0] == "analyses" and module.name in OF_ANALYSES):
             yield path
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockbatch.commands.example_studies import FIRST
-from rockbatch.commands.values import address, flag, shard, value, whole
 from rockbatch.common.analyses import Door, doors
+from rockbatch.common.argument_values import address, flag, shard, value, whole
 
 if TYPE_CHECKING:
     from rockbatch.study import Study

@@ -2,8 +2,8 @@
 
 from argparse import SUPPRESS
 
-from rockbatch.commands.values import flag, seconds, value, whole
 from rockbatch.common.analyses import Door, ReportPart
+from rockbatch.common.argument_values import flag, seconds, value, whole
 
 RUNS, SECONDS = 24, 60.0
 """Default number of runs that are measured, and default time limit [s]."""
