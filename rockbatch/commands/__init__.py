@@ -1,1 +1,1 @@
-"""One module per subcommand: ``add_arguments(parser)`` and ``main(arguments) -> exit code``."""
+"""What the terminal takes and prints: a module for each command, loaded when it is called."""

@@ -32,9 +32,7 @@ def test_a_copy_of_the_package_alone_reads_records(tmp_path):
     (tmp_path / "rockbatch").mkdir()
     (tmp_path / "rockbatch" / "__init__.py").touch()
     for name in USED:
-        source = ROOT / "rockbatch" / name
-        copy = shutil.copytree if source.is_dir() else shutil.copyfile
-        copy(source, tmp_path / "rockbatch" / name)
+        shutil.copytree(ROOT / "rockbatch" / name, tmp_path / "rockbatch" / name)
     shutil.copytree(ROOT / "motions" / "near_fault", tmp_path / "records")
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     command = [sys.executable, "-W", "ignore", "-c", SCRIPT, str(tmp_path / "records")]
