@@ -1,1 +1,1 @@
-"""What the terminal takes and prints: a module for each command, loaded when it is called."""
+"""The command line: its arguments, and a module for each command, loaded when it is called."""

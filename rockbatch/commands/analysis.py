@@ -1,4 +1,4 @@
-"""What the commands of analyses share: their arguments, and the paths that they print."""
+"""Arguments and printing that the commands of analyses share."""
 
 import argparse
 from collections.abc import Iterable, Mapping, Sequence

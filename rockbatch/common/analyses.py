@@ -20,7 +20,9 @@ class ReportPart(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Door:
-    """What an analysis brings, in ``__init__.py`` of its folder; functions are named, and loaded when they are used.
+    """Command, tables and report parts of an analysis, in ``__init__.py`` of its folder.
+
+    Functions are named, and loaded when they are used.
 
     Its command is ``command.main``, its function in Python ``analysis.NAME``, and its sections of the study file, if it has
     ``tables`` there, are ``study.SECTIONS``.

@@ -44,7 +44,7 @@ MOST_PIERS = 4
 
 
 class Sheet(NamedTuple):
-    """What is drawn of a statics sheet."""
+    """Curves and marks of a statics sheet."""
 
     name: str
     pier: Pier

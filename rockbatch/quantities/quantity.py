@@ -31,7 +31,7 @@ SHARES = ("forces_error", "devices_error")
 
 
 class Run(Protocol):
-    """What a quantity takes from a finished run."""
+    """The parts of a finished run that a quantity takes."""
 
     @property
     def outcome(self) -> Any:

@@ -263,7 +263,7 @@ def marker(look: Look, x: float | str, y: float, title: str = "", shade: float |
 @singledispatch
 def _draw(mark: Any, box: Box) -> Markup:
     """Draw a mark."""
-    raise NotImplementedError(type(mark))
+    raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 
 @_draw.register

@@ -1,4 +1,4 @@
-"""What a figure shows, as data: panels with axes and marks. The report draws it as SVG, ``paper`` with matplotlib.
+"""A figure as data: panels with axes and marks. The report draws it as SVG, ``paper`` with matplotlib.
 
 Subscripts are written "θ_max/α" in the labels of axes; all other text is shown as it is.
 """

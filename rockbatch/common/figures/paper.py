@@ -60,7 +60,7 @@ _KINDS: dict[str, dict[str, Any]] = {
     "flown": {"color": MUTED, "linewidth": 0.6, "linestyle": "--"}, "band": {"color": PALE}, "filled": {"alpha": 0.45},
     "area": {"alpha": 0.15}, "unsure": {"alpha": 0.07}, "deck": {"color": MUTED},
 }  # fmt: skip
-"""What differs from a line or an area in the colour of its series, by the role of a mark."""
+"""Differences from a line or an area in the colour of its series, by the role of a mark."""
 _STYLE: Any = {
     "font.size": 8.0, "axes.titlesize": 7.0, "axes.labelsize": 8.0, "figure.titlesize": 9.0, "figure.labelsize": 8.0,
     "legend.fontsize": 7.0, "xtick.labelsize": 7.0, "ytick.labelsize": 7.0, "legend.frameon": False,
@@ -199,7 +199,7 @@ def _area(look: Look) -> dict[str, Any]:
 @singledispatch
 def _draw(mark: Any, axes: Axes) -> Artist:
     """Draw a mark; return what stands for it in the legend."""
-    raise NotImplementedError(type(mark))
+    raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
 
 @_draw.register
