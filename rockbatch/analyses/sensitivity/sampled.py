@@ -13,15 +13,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.analyses.sensitivity.quantities import SOBOL
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, applying, own_values, varied
 from rockbatch.batch.plan import Made, PlannedRun, scaled
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Study
-
-SOBOL = ("parameter", "first", "first_error", "total", "total_error")
-"""Columns of sobol.csv after those of the case."""
 
 RUNS = "sensitivity_runs.csv"
 COLUMNS = ("record", "polarity", "scale", "status", "theta_max_over_alpha", "reason")

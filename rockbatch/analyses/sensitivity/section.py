@@ -1,8 +1,7 @@
 """Pictures of ``rockbatch sensitivity``: the effect of each input alone, and Sobol's indices."""
 
 from rockbatch.analyses.sensitivity.figures import bars, symbol
-from rockbatch.analyses.sensitivity.quantities import QUANTITIES, TORNADO
-from rockbatch.analyses.sensitivity.sampled import SOBOL
+from rockbatch.analyses.sensitivity.quantities import QUANTITIES, SOBOL, TORNADO
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import Contents, of_files
 from rockbatch.reporting.markup import Markup, join, tag
