@@ -138,8 +138,10 @@ class AnalysisFolder:
         """Return the ground motions of ``study``; announce them, and note them for the report to name."""
         self.suite = ground_motions(study)
         self.listener.motions(self.suite)
+        labels = self.suite.labels
         self.info["under"] = [
-            {"record": m.name, "label": m.label, "vertical": m.pga_vertical is not None} for m in self.suite.motions
+            {"record": m.name, "label": labels[m.name], "vertical": m.pga_vertical is not None}
+            for m in self.suite.motions
         ]
         return self.suite
 

@@ -67,7 +67,8 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
         say(str(finished.without))
         code = 1
     peaks = simulated(saved.peaks)
-    names = {motion.name: motion.short for motion in sorted(finished.motions.motions, key=lambda motion: motion.pga)}
+    labels = finished.motions.labels
+    names = {m.name: labels[m.name] for m in sorted(finished.motions.motions, key=lambda m: m.pga)}
     show(summary(peaks, study.varied, names))
     for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
         say(warning)

@@ -317,12 +317,6 @@ class Motion(Shown):
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
 
     @property
-    def short(self) -> str:
-        """Likewise, of a label that fits into a line of a terminal beside numbers."""
-        short = self.origin.short.label
-        return f"{short} ({self.name})" if short else self.named
-
-    @property
     def files(self) -> str:
         """Return where its components came from."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)

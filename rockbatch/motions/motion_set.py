@@ -1,5 +1,6 @@
 """Everything that was read in files and folders: motions in order, and files that could not be used."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -85,6 +86,18 @@ class MotionSet(Shown):
     def without_vertical(self) -> list[str]:
         """Names of the motions whose vertical component was asked for, and is not there."""
         return [motion.name for motion in self.motions if motion.lacks_vertical]
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Names for people by those in tables: short ones, and longer ones of motions that would share theirs."""
+        labels = [motion.label for motion in self.motions]
+        for longer in (lambda motion: motion.origin.whole or motion.label, lambda motion: motion.named):
+            times = Counter(labels)
+            labels = [
+                longer(motion) if times[label] > 1 else label
+                for motion, label in zip(self.motions, labels, strict=True)
+            ]
+        return {motion.name: label for motion, label in zip(self.motions, labels, strict=True)}
 
     def stations(self) -> dict[str, list[Motion]]:
         """Return the motions that count as one record, mostly the two horizontal components of a station, by its name."""

@@ -15,7 +15,19 @@ _YEAR = re.compile(r"(?<!\d)(?:19|20)\d\d(?!\d)")
 _SHORT_YEAR = re.compile(r"(?<!\d)\d{1,2}/\d{1,2}/(\d\d)(?!\d)")
 _STAMP = re.compile(r"((?:19|20)\d\d)(0[1-9]|1[0-2])([0-3]\d)[ _T-]?(?:([0-2]\d)([0-5]\d)(?:\d\d)?)?")
 _CENTURY = 30  # 29 is 2029, 30 is 1930: strong-motion records begin in 1933
-_EVENT, _STATION = 34, 18  # characters in a line of a terminal
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+_DAY = re.compile(rf"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)[a-z]*,? +({'|'.join(_MONTHS)}) +(\d{{1,2}}), *(\d{{4}})")
+_DISTANCE = re.compile(
+    r"^\d+(?:\.\d+)? ?km (?:[NSEW]{1,3}|(?:(?:north|south|east|west)-?)+) (?:of|from) ", re.IGNORECASE
+)
+_KINDS = re.compile(
+    r"(?: (?:emergency|civil|community|fire|police|pumping|power|receiving|recording|centre|center|hospital|library|school"
+    r"|station|sta|building|bldg|bld|site)\.?)+$",
+    re.IGNORECASE,
+)
+"""Words at the end of a station's name that say what stands there."""
+_EVENT, _STATION = 34, 20  # characters that fit beside numbers
+_PART = 6  # characters of a part of a station's name that can stand for it
 _CODE = 5  # letters that a word in capitals may have and be a code
 
 
@@ -29,23 +41,33 @@ class Origin:
 
     @property
     def label(self) -> str:
-        """Event, station and direction; empty where the header tells neither event nor station."""
+        """Event, station and direction, short enough to stand beside numbers; empty if the header has neither of the first."""
+        return Origin(self._short_event(), self._short_station(), self.direction).whole
+
+    @property
+    def whole(self) -> str:
+        """Event, station and direction as they are; empty if the header has neither of the first."""
         if not self.event and not self.station:
             return ""
         return ", ".join(filter(None, (self.event, self.station, self.direction)))
 
-    @property
-    def short(self) -> "Origin":
-        """With a station, and an event before its year, that fit into a line of a terminal beside numbers."""
-        event = self.event
-        if len(event) > _EVENT:
-            event = (
-                f"{event[: _EVENT - 6].rstrip()}… {event[-4:]}"
-                if _YEAR.match(event[-4:])
-                else f"{event[: _EVENT - 1]}…"
-            )
-        station = self.station if len(self.station) <= _STATION else f"{self.station[: _STATION - 1].rstrip(' -,')}…"
-        return Origin(event, station, self.direction)
+    def _short_event(self) -> str:
+        if len(self.event) <= _EVENT:
+            return self.event
+        if _YEAR.match(self.event[-4:]):
+            return f"{self.event[: _EVENT - 6].rstrip()}… {self.event[-4:]}"
+        return f"{self.event[: _EVENT - 1]}…"
+
+    def _short_station(self) -> str:
+        """Return the station without the place of the event, and a long name without its first parts and what stands there."""
+        place = self.event.partition(" ")[0]
+        station = self.station.removesuffix(f" {place}") if place else self.station
+        if len(station) > _STATION:
+            parts = [part for part in re.split(r" - |[/;]", station) if len(part.strip()) >= _PART]
+            station = _KINDS.sub("", (parts or [station])[-1].strip())
+        if len(station) <= _STATION:
+            return station
+        return f"{station[:_STATION].rpartition(' ')[0] or station[: _STATION - 1]}…"
 
 
 UNKNOWN_ORIGIN = Origin()
@@ -71,7 +93,9 @@ def _event(text: str, date: str) -> str:
     """Return the name of an event with its year, without words that every header has; its date if it has no name."""
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
-    name = _in_words(_STATE.sub("", name))
+    if day := _DAY.fullmatch(name):
+        return f"{day[3]}-{_MONTHS.index(day[1]) + 1:02d}-{int(day[2]):02d}"
+    name = _in_words(_DISTANCE.sub("", _STATE.sub("", name)))
     if stamp := _STAMP.fullmatch(name):
         return f"{stamp[1]}-{stamp[2]}-{stamp[3]}" + (f" {stamp[4]}:{stamp[5]}" if stamp[4] else "")
     if not name:

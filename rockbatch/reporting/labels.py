@@ -5,7 +5,7 @@ import re
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.markup import Markup, escape, tag
 from rockbatch.reporting.table import Head
-from rockbatch.results.labels import SYMBOLS
+from rockbatch.results.labels import symbol_of
 
 
 def counted(count: int, word: str) -> str:
@@ -15,8 +15,8 @@ def counted(count: int, word: str) -> str:
 
 def symbol(key: str) -> str:
     """Return the head of a column that holds values of a study key: "p [rad/s]"."""
-    letter, unit = SYMBOLS.get(key, ("", ""))
-    return (letter or key) + (f" [{unit}]" if unit else "")
+    letter, unit = symbol_of(key)
+    return letter + (f" [{unit}]" if unit else "")
 
 
 def heading(words: str) -> Markup:

@@ -1,5 +1,6 @@
 """Names of foundations and piers, by what distinguishes them."""
 
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -33,6 +34,25 @@ SYMBOLS = {
     "flexural_period_s": ("flexural period", "s"),
     "area_m2": ("area", "m²"),
 }
+DEVICE_SYMBOLS = {
+    "force_kN": ("F", "kN"),
+    "f": ("f", ""),
+    "coefficient_kN_s_m": ("C", "kN s/m"),
+    "nu": ("ν", ""),
+    "exponent": ("exponent", ""),
+    "yield_mm": ("uy", "mm"),
+    "brace_kN_m": ("kb", "kN/m"),
+    "brace": ("λ", ""),
+    "prestress_kN": ("P0", "kN"),
+    "psi": ("ψ", ""),
+    "stiffness_kN_m": ("k", "kN/m"),
+    "lambda": ("λ", ""),
+    "yield_kN": ("Py", "kN"),
+    "gap_mm": ("gap", "mm"),
+}
+"""Symbols and units of the keys of devices, whose varied values have names such as damper_1_force_kN."""
+_OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
+
 BASE_KEYS = (
     "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
     "flight_limit_mm", "friction", "area_m2",
@@ -63,10 +83,19 @@ class Series:
 
 def quantity(key: str, value: object, digits: int = 10) -> str:
     """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
-    symbol, unit = SYMBOLS.get(key, (key, ""))
+    symbol, unit = symbol_of(key)
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
+
+
+def symbol_of(key: str) -> tuple[str, str]:
+    """Return symbol and unit of a key of a study, those of further devices with their number: "C", "damper 2: C"."""
+    if key in SYMBOLS or not (device := _OF_DEVICE.fullmatch(key)):
+        return SYMBOLS.get(key, (key, ""))
+    kind, number, of_device = device.groups()
+    symbol, unit = DEVICE_SYMBOLS.get(of_device, (of_device, ""))
+    return (symbol if number == "1" else f"{kind.replace('_', ' ')} {number}: {symbol}"), unit
 
 
 def plain(value: float, digits: int) -> str:

@@ -128,6 +128,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     compared = target is not None and target.factors == "none"
     fitted = [motion for motion in motions.motions if compared or not _is_pulse(motion, study)]
     with_pulses = target is not None or study.output.intensity
+    labels = motions.labels
     return {
         "study": {
             "path": str(study.path),
@@ -143,7 +144,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
-        "records": [_describe_motion(motion, gravity, with_pulses) for motion in motions.motions],
+        "records": [_describe_motion(motion, labels[motion.name], gravity, with_pulses) for motion in motions.motions],
         "spectra": _spectra(motions.motions, fitted, gravity, target),
         **({} if target is None else {"target": target.described(fitted, gravity)}),
         **_vertical_target(study, motions, gravity),
@@ -200,12 +201,12 @@ def describe_case(case: Case) -> dict[str, Any]:
     }
 
 
-def _describe_motion(motion: Motion, gravity: float, with_pulse: bool) -> dict[str, Any]:
+def _describe_motion(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[str, Any]:
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
         "station": motion.of_station,
-        "label": motion.label,
+        "label": label,
         "event": motion.origin.event,
         "station_name": motion.origin.station,
         "direction": motion.origin.direction,

@@ -198,7 +198,9 @@ def test_an_untouched_draft_changes_no_name_and_what_joins_components_is_no_name
     text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert state_of(read_motions(tmp_path)) == before
     (tmp_path / "motions.toml").write_text(text.replace("# station =", "station ="), encoding="utf-8")
-    assert all("New Brighton Library" in m.named for m in read_motions(tmp_path).motions if m.name.startswith("RSN"))
+    assert all(
+        m.origin.station == "New Brighton Library" for m in read_motions(tmp_path).motions if m.name.startswith("RSN")
+    )
 
 
 def test_the_draft_of_counts_does_not_state_a_unit_without_its_sensitivity(tmp_path):

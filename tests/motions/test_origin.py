@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
 from studies import FOLDER_STUDY, write_study
 
 from rockbatch.commands.cli import main
-from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import Origin, directed, origin_of
 
@@ -29,10 +30,12 @@ ROOT = Path(__file__).parents[2]
         ("CAPE MENDOCINO", "04/25/92 1806", "Cape Mendocino 1992"),
         ("X", "1/17/29", "X 2029"),
         ("Record of Point MacKenzie Earthquake of Fri Nov 30, 2018 17:29 UTC", "", "Point MacKenzie 2018"),
-        ("Rcrd of Fri Jul  5, 2019 20:19:37.0 PDT", "", "Fri Jul 5, 2019"),
+        ("Rcrd of Fri Jul  5, 2019 20:19:37.0 PDT", "", "2019-07-05"),
         ("MAULE 2010", "01/01/1980 0:00:00 (GMT)", "Maule 2010"),
         ("MAULE 2010", "", "Maule 2010"),
-        ("5 km south-west of Waiau", "2016 November 13         11:02:56 UT", "5 km south-west of Waiau 2016"),
+        ("5 km south-west of Waiau", "2016 November 13         11:02:56 UT", "Waiau 2016"),
+        ("11 km east of CHRISTCHURCH", "2016 February 14", "Christchurch 2016"),
+        ("12km NNE of Ridgecrest, CA", "2019", "Ridgecrest 2019"),
         ("", "2018-01-24 19:51", "2018-01-24"),
         ("", "", ""),
         ("   ,", "", ""),
@@ -93,7 +96,7 @@ def test_every_agency_s_header_gives_its_record_a_name_of_words(tmp_path, name):
     for motion in found.motions:
         assert motion.origin.event
         assert motion.origin.station
-        assert motion.label == ", ".join((motion.origin.event, motion.origin.station, motion.origin.direction))
+        assert motion.origin.whole == ", ".join((motion.origin.event, motion.origin.station, motion.origin.direction))
         assert motion.label.isprintable()
         assert motion.named == f"{motion.label} ({motion.name})"
 
@@ -135,15 +138,42 @@ def test_a_manifest_s_station_stands_in_the_name_and_a_turned_pair_has_its_azimu
 def test_the_records_that_come_with_it_are_called_by_event_station_and_direction():
     found = read_motions(ROOT / "motions" / "near_fault", confirmed=["*"])
     labels = {motion.name: motion.label for motion in found.motions}
-    assert labels["CHAN24"] == "Imperial Valley 1979, El Centro - Hwy 8/Meloland Overpass, 270"
-    assert labels["20161113_110259_WTMC_20.S62W"] == "5 km south-west of Waiau 2016, Te Mara Farm Waiau, S62W"
+    assert labels["CHAN24"] == "Imperial Valley 1979, Meloland Overpass, 270"
+    assert labels["20161113_110259_WTMC_20.S62W"] == "Waiau 2016, Te Mara Farm, S62W"
 
 
-def test_in_a_terminal_s_table_a_long_label_keeps_its_year_and_direction():
-    long = Origin("A very long name of an event somewhere else 1994", "A station of many words, indeed", "000")
-    assert long.short.label == "A very long name of an event… 1994, A station of many…, 000"
-    for fits in (Origin("Imperial Valley 1979", "Meloland", "270"), Origin(), Origin("", "Meloland", "")):
-        assert fits.short == fits
+@pytest.mark.parametrize(
+    ("event", "station", "called"),
+    [
+        ("A very long name of an event somewhere else 1994", "A station of many words, indeed",
+         "A very long name of an event… 1994, A station of many…, 000"),
+        ("Waiau 2016", "Te Mara Farm Waiau", "Waiau 2016, Te Mara Farm, 000"),
+        ("X 1994", "Hanmer Springs Emergency Centre", "X 1994, Hanmer Springs, 000"),
+        ("X 1994", "El Centro - Hwy 8/Meloland Overpass", "X 1994, Meloland Overpass, 000"),
+        ("X 1994", "San Antonio Dam - Toe", "X 1994, San Antonio Dam, 000"),
+        ("X 1994", "Fire Station", "X 1994, Fire Station, 000"),
+        ("", "Meloland", "Meloland, 000"),
+    ],
+)  # fmt: skip
+def test_a_label_keeps_year_place_and_direction_of_long_names(event, station, called):
+    origin = Origin(event, station, "000")
+    assert origin.label == called
+    assert origin.whole == ", ".join(filter(None, (event, station, "000")))
+    assert Origin().label == Origin().whole == ""
+
+
+def test_motions_that_would_share_a_label_have_longer_ones():
+    def motion(name, station):
+        made = Motion.from_array(wiggle(), 0.01, "m/s2", name=name)
+        return replace(made, origin=Origin("Christchurch 2011", station, "N"))
+
+    names = {"a": "Christchurch Central Hospital", "b": "Christchurch Central Library", "c": "Papanui", "d": "Papanui"}
+    assert MotionSet([motion(*of_one) for of_one in names.items()]).labels == {
+        "a": "Christchurch 2011, Christchurch Central Hospital, N",
+        "b": "Christchurch 2011, Christchurch Central Library, N",
+        "c": "Christchurch 2011, Papanui, N (c)",
+        "d": "Christchurch 2011, Papanui, N (d)",
+    }
 
 
 @needs_records
@@ -151,7 +181,7 @@ def test_real_records_have_names_of_words_where_their_headers_have_them():
     from motion_files import RECORDS
 
     named = {m.name: m.label for m in read_motions(RECORDS / "table1", confirmed=["*"]).motions}
-    assert named["RSN1063_NORTHR_RRS228"].startswith("Northridge-01 1994, Rinaldi Receiving Sta")
+    assert named["RSN1063_NORTHR_RRS228"] == "Northridge-01 1994, Rinaldi, 228"
     assert named["RSN825_CAPEMEND_CPM000"] == "Cape Mendocino 1992, Cape Mendocino, 000"
 
 
@@ -161,7 +191,7 @@ def test_tables_keep_the_name_and_report_terminal_and_run_json_say_the_words(tmp
     label = "Imperial Valley 1979, Meloland, 270"
     path = write_study(tmp_path, FOLDER_STUDY + '[output]\nhistories = "none"\n')
     assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 0
-    assert f"{label} (CHAN24)" in capsys.readouterr().out
+    assert label in capsys.readouterr().out
     rows = list(csv.DictReader((tmp_path / "out" / "peaks.csv").read_text(encoding="utf-8").splitlines()))
     assert {row["record"] for row in rows} == {"CHAN24"}
     (record,) = json.loads((tmp_path / "out" / "run.json").read_text(encoding="utf-8"))["records"]
