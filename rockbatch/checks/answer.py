@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.scorecard import percent
+from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.toml.kinds import shown
 
 MOST_NAMES, MOST_ENDS = 6, 3
@@ -168,10 +168,10 @@ class _Cases:
             return None
         ratios = [judged for judged in self._of(names) if math.isfinite(judged.ratio) and not judged.is_ban]
         closest = max(ratios, key=lambda verdict: verdict.ratio, default=None)
-        details = self._exempt(names)
+        details: tuple[str, ...] = ()
         if closest is not None:
-            place = f", in {self.case_of(closest)}" if len(names) > 1 else ""
-            details = (f"Closest to its limit: {closest.check}, {wording.against(closest)}{place}.", *details)
+            place = f"{self.case_of(closest)}, {closest.check}" if len(self.every) > 1 else closest.check
+            details = (f"Closest to its limit: {place} at {percent(closest.ratio)}.",)
         details = (*details, *self._cut_short(names), *self._left_out())
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
@@ -222,35 +222,19 @@ class _Cases:
         return Line(NOT_DECIDED, _capital(text), _listed(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
-        """Return the line on checks that fail, each with its worst demand, and the case nearest to passing."""
+        """Return the line on cases that fail a check, with the one that is nearest to passing."""
         if not names:
             return None
-        checks = grouped(self._of(names, FAIL), lambda verdict: verdict.check)
-        worst = sorted((max(group, key=_excess) for group in checks.values()), key=_excess, reverse=True)
-        details = [self._failure(verdict, len(checks[verdict.check]) - 1) for verdict in worst[:MOST_CHECKS]]
-        if others := [verdict.check for verdict in worst[MOST_CHECKS:]]:
-            details.append(f"{', '.join(others[:MOST_NAMES])}: fail, too; see every check.")
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
-        if len(names) > 1 and math.isfinite(_excess(near)):
-            case = self.case_of(near)
-            details.append(f"Nearest to passing: {case}, {near.check} at {wording.ratio(near)} × its limit.")
-            details += self._exempt([case])
+        place = f"{self.case_of(near)}, {near.check}" if len(self.every) > 1 else near.check
+        details = f"Nearest to passing: {place} at {percent(near.ratio)} of its limit."
         text = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
-        return Line(FAIL, _capital(text), _listed(names), tuple(details))
-
-    def _failure(self, verdict: Verdict, more: int) -> str:
-        """Return a check with its demand, its limit and the record that governs it; ``more`` cases fail it, too."""
-        other_cases = f" and {more} more case{'s' * (more > 1)}" if more else ""
-        place = f"in {self.case_of(verdict)}{other_cases}" if len(self.every) > 1 else ""
-        record = self.record_of(verdict) if verdict.record else ""
-        if verdict.is_ban:
-            verb = DEMANDS[verdict.demand].verb if verdict.demand in DEMANDS else "is not so"
-            return " ".join(filter(None, (f"{verdict.check}: {record or 'some record'} {verb}", place))) + "."
-        if (
-            record and math.isfinite(verdict.governing) and verdict.governing != verdict.value
-        ):  # a mean, say, of several
-            record = f"at most {wording.number(verdict.governing)} {verdict.unit}".rstrip() + f" in {record}"
-        return ", ".join(filter(None, (f"{verdict.check}: {wording.against(verdict)}", record, place))) + "."
+        return Line(
+            FAIL,
+            _capital(text),
+            "" if len(names) == len(self.every) else _listed(names),
+            (details,) * math.isfinite(_excess(near)),
+        )
 
     def undecided(self, names: Sequence[str], failing: Sequence[str]) -> Line | None:
         """Return the line on cases that are not decided, and why; in cases that fail anyway it does not matter."""
@@ -270,15 +254,6 @@ class _Cases:
         limit = "" if verdict.is_ban else f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip()
         cause = f"left open by {self.record_of(verdict)}" if verdict.record else ""
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
-
-    def _exempt(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Return which checks do not apply to which cases, a sentence for each set of checks."""
-        exempt = grouped(names, lambda name: tuple(verdict.check for verdict in self._of([name], DOES_NOT_APPLY)))
-        return tuple(
-            f"Not asked of {_listed(cases)}: {', '.join(checks)}, which do{'es' * (len(checks) == 1)} not apply there."
-            for checks, cases in exempt.items()
-            if checks
-        )
 
     def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:
         """Return the verdicts of these cases, all or those of some kinds."""

@@ -181,6 +181,7 @@ COMMANDS = {
             "directory": _FOLDER,
             "other": value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
             "--out": value(Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html)"),
+            "--all": flag("unfold every section, so that all of them are printed"),
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items()},

@@ -47,7 +47,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 def report(arguments: argparse.Namespace) -> int:
     """Make the report of finished results again, or of two studies side by side."""
-    say(str(make_report(arguments.directory, arguments.other, out=arguments.out).path))
+    say(str(make_report(arguments.directory, arguments.other, out=arguments.out, whole=arguments.all).path))
     return 0
 
 

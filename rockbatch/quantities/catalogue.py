@@ -222,7 +222,7 @@ FIXED = (
         "theta_max_error",
         "estimated error of the greatest rotation over α: what halving the step, or a motion 10⁻⁸ stronger or weaker, still "
         "changed; empty where it is chaotic, and with a fixed step",
-        "theta_max_error", page=ReportFormat("±", ".0e"), over_alpha=True, stood=True,
+        "theta_max_error", page=ReportFormat("±", ".5f"), over_alpha=True, stood=True,
     ),
     Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t [s]", ".2f")),
     Quantity(
@@ -239,15 +239,13 @@ FIXED = (
         ReportFormat("settlement [mm]", ".2f", 1000), " since the start", bases=SPRINGS, stood=True,
         suite=OfSuite("Settlement [mm]", ".2f"), error="settlement_error_m", limits=_SETTLEMENTS,
     ),
-    Quantity("impacts", "number of impacts", "impacts", kind="count", page=ReportFormat("impacts", ".0f"), limits=(Limit(),)),
-    Quantity("separations", "number of separations", "separations", kind="count", page=ReportFormat("separations", ".0f"),
-        limits=(Limit(),),
-    ),
+    Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
+    Quantity("separations", "number of separations", "separations", kind="count", limits=(Limit(),)),
     Quantity(
         "flight_s", "first time with both pivots off the ground, also where the run went on", "t_flight",
-        "s", ReportFormat("flight [s]", ".3f"), sometimes=True,
+        "s", sometimes=True,
     ),
-    Quantity("substeps", "integration steps per sample", "substeps", kind="count", page=ReportFormat("substeps", ".0f")),
+    Quantity("substeps", "integration steps per sample", "substeps", kind="count"),
 )  # fmt: skip
 """Quantities that every table has, in its order; then come those of the keys that the study varies."""
 
@@ -259,17 +257,18 @@ TRAILING = (
         "theta_res_error",
         "estimated error of the residual rotation over α, including its drift while it was read; empty where it is chaotic, "
         "and with a fixed step",
-        "theta_res_error", page=ReportFormat("±", ".0e", behind="theta_res_over_alpha"), over_alpha=True, bases=TILTS,
+        "theta_res_error", over_alpha=True, bases=TILTS,
         stood=True,
     ),
-    Quantity("t_end_s", "when the analysis ended", "t_end", "s", ReportFormat("end [s]", ".2f", behind="flight_s")),
+    Quantity("t_end_s", "when the analysis ended", "t_end", "s"),
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
-        ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_error"), bases=SPRINGS, stood=True,
+        ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
         limits=_TILTS,
     ),
     Quantity(
-        "ductility_left", _DUCTILITY.format("each"), "ductility_left", page=ReportFormat("demand L", ".2f", behind="flight_s"),
+        "ductility_left", _DUCTILITY.format("each"), "ductility_left",
+        page=ReportFormat("demand L", ".2f", behind="settlement_m"),
         bases=YIELDING,
     ),
     Quantity(
@@ -278,27 +277,25 @@ TRAILING = (
         bases=YIELDING, limits=_greater("ductility", _DUCTILITY, Limit(ceiling=_SPENT)),
     ),
     Quantity(
-        "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg",
-        ReportFormat("dissipated L [J/kg]", ".4f", behind="ductility_right"), bases=YIELDING,
+        "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg", bases=YIELDING,
     ),
     Quantity(
-        "dissipated_right_J_kg", _DISSIPATED, "dissipated_right", "J/kg",
-        ReportFormat("dissipated R [J/kg]", ".4f", behind="dissipated_left_J_kg"), bases=YIELDING,
+        "dissipated_right_J_kg", _DISSIPATED, "dissipated_right", "J/kg", bases=YIELDING,
     ),
     Quantity(
         "residual_s",
         "when residual rotation, tilt and settlement were read: the pier had stopped stepping, or 40/p were over",
-        "t_read", "s", ReportFormat("read at [s]", ".2f", behind="settlement_m"), bases=YIELDING, stood=True,
+        "t_read", "s", bases=YIELDING, stood=True,
     ),
     Quantity(
         "theta_res_drift_per_s",
         "how fast the residual rotation over α went on changing when it was read: undamped vibration goes on",
-        "theta_res_drift", "1/s", ReportFormat("drift [1/s]", ".1e", behind="settlement_m"), over_alpha=True, bases=YIELDING,
+        "theta_res_drift", "1/s", over_alpha=True, bases=YIELDING,
         stood=True,
     ),
     Quantity(
-        "settlement_drift_m_s", "how fast the settlement went on changing when it was read", "settlement_drift", "m/s",
-        ReportFormat("drift [mm/s]", ".3f", 1000, "settlement_m"), bases=YIELDING, stood=True,
+        "settlement_drift_m_s", "how fast the settlement went on changing when it was read",
+        "settlement_drift", "m/s", bases=YIELDING, stood=True,
     ),
     Quantity(
         "reason", "why a run failed, or what made the pier fly", "reason", kind="text", page=ReportFormat("reason"),
@@ -311,7 +308,7 @@ TRAILING = (
     Quantity(
         "station",
         "what the components of one station in one earthquake share, which checks count as one record; a pulse is its own",
-        kind="text", page=ReportFormat("station"),
+        kind="text",
     ),
     Quantity(
         "top_drift_m", "greatest drift of the top",
@@ -326,22 +323,23 @@ TRAILING = (
     ),
     Quantity(
         "pga_g", "peak horizontal ground acceleration of the motion as it was run, over g",
-        lambda run: run.motion.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="heel_uplift_m"),
+        lambda run: run.motion.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="scale"),
     ),
     Quantity(
         "flights", "how often both pivots left the ground at one time", "flights",
-        kind="count", page=ReportFormat("flights", ".0f", behind="flight_s"), more="; a flight that ended the run counts",
+        kind="count", more="; a flight that ended the run counts",
         limits=(Limit(evaluate=in_flight("flights")),),
     ),
     Quantity(
         "flight_duration_s", "time with both pivots in the air",
-        lambda run: run.outcome.flight_duration or None, "s", ReportFormat("in flight [s]", ".3f", behind="flights"),
-        ", in all flights together that were followed", sometimes=True, limits=(Limit(evaluate=in_flight("flight_duration_s")),),
+        lambda run: run.outcome.flight_duration or None, "s",
+        more=", in all flights together that were followed", sometimes=True,
+        limits=(Limit(evaluate=in_flight("flight_duration_s")),),
     ),
     Quantity(
         "flight_height_m", "greatest height of the lower pivot above the ground",
         lambda run: run.outcome.flight_height or None, "m",
-        ReportFormat("flight height [mm]", ".2f", 1000, "flight_duration_s"),
+        ReportFormat("flight height [mm]", ".2f", 1000, "ductility_right"),
         ", or above its support, in these flights", sometimes=True,
         limits=(Limit(evaluate=in_flight("flight_height_m"), ceiling=_WIDER),),
     ),
@@ -364,7 +362,7 @@ TRAILING = (
         "settlement_error_m",
         "estimated error of the settlement, including its drift while it was read; empty where it is chaotic, and with a "
         "fixed step",
-        "settlement_error", "m", ReportFormat("± [mm]", ".0e", 1000, "settlement_m"), bases=YIELDING, stood=True, sometimes=True,
+        "settlement_error", "m", bases=YIELDING, stood=True, sometimes=True,
     ),
 )  # fmt: skip
 """Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
@@ -519,7 +517,7 @@ _FORCES = (
         "longest flight [s]", ".3f", sometimes=True, limits=(Limit(),),
     ),
     _force(
-        "forces_error", "largest relative error among the force columns", "error", "1", "±", ".0e", sometimes=True,
+        "forces_error", "largest relative error among the force columns", "error", "1", "±", ".1g", sometimes=True,
         more=": what halving the step still changed; empty with a fixed step",
     ),
     *_over_mass(
@@ -578,12 +576,12 @@ OPTIONAL = (
     Quantity(
         "theta_rocking_error",
         _ROCKING_ERROR,
-        "theta_rocking_error", page=ReportFormat("±", ".0e", behind=ROCKING), over_alpha=True, stood=True, needs="rocking",
+        "theta_rocking_error", page=ReportFormat("±", ".1g", behind=ROCKING), over_alpha=True, stood=True, needs="rocking",
     ),
     Quantity(
         "theta_lean_error",
         _ROCKING_ERROR,
-        "theta_lean_error", page=ReportFormat("±", ".0e", behind="theta_lean_over_alpha"), over_alpha=True, bases=YIELDING,
+        "theta_lean_error", page=ReportFormat("±", ".1g", behind="theta_lean_over_alpha"), over_alpha=True, bases=YIELDING,
         stood=True, needs="rocking",
     ),
     Quantity(

@@ -30,6 +30,7 @@ def write_report(
     *,
     out: Path | None = None,
     saved: Results | None = None,
+    whole: bool = False,
 ) -> Path:
     """Write ``report.html`` beside its results.
 
@@ -44,6 +45,8 @@ def write_report(
         File to write instead.
     saved : Results, optional
         The results, where they were read already.
+    whole : bool, optional
+        Whether sections that are folded are printed, too.
 
     Returns
     -------
@@ -53,11 +56,11 @@ def write_report(
     """
     directory = Path(directory)
     target = out or directory / REPORT
-    write_whole(target, page(read(directory, responses, saved)))
+    write_whole(target, page(read(directory, responses, saved), whole))
     return target
 
 
-def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> Path:
+def write_comparison(first: Path, second: Path, *, out: Path | None = None, whole: bool = False) -> Path:
     """Write one page that compares two studies run by run, and return its path.
 
     ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
@@ -65,7 +68,7 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None) -> P
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
-    write_whole(target, comparison(pair(read(first, ()), read(second, ()))))
+    write_whole(target, comparison(pair(read(first, ()), read(second, ())), whole))
     return target
 
 
@@ -125,6 +128,7 @@ def report(
     other: str | os.PathLike[str] | None = None,
     *,
     out: str | os.PathLike[str] | None = None,
+    whole: bool = False,
 ) -> Report:
     """Write the report of finished results again, or of two studies side by side.
 
@@ -136,6 +140,8 @@ def report(
         A second folder, to compare with the first.
     out : path, optional
         File to write; by default ``report.html`` in the folder, or ``compare-OTHER.html``.
+    whole : bool, optional
+        Whether sections that are folded on the screen are unfolded, and printed.
 
     Returns
     -------
@@ -160,16 +166,16 @@ def report(
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
     saved = [open_results(folder) for folder in folders]
-    path = _write(saved, None if out is None else Path(out))
+    path = _write(saved, None if out is None else Path(out), whole)
     tables = [(results.peaks, as_table(read_verdicts(results.directory))) for results in saved]
     peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
-def _write(saved: Sequence[Results], out: Path | None) -> Path:
+def _write(saved: Sequence[Results], out: Path | None, whole: bool = False) -> Path:
     if len(saved) > 1:
-        return write_comparison(*(results.directory for results in saved), out=out)
-    return write_report(saved[0].directory, out=out, saved=saved[0])
+        return write_comparison(*(results.directory for results in saved), out=out, whole=whole)
+    return write_report(saved[0].directory, out=out, saved=saved[0], whole=whole)
 
 
 def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":

@@ -6,14 +6,14 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, worst_of_all
-from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.overview import drawn_by_record
 from rockbatch.reporting.pair import SIDES, Pair
-from rockbatch.reporting.sections import peak_rotations, statics, statistics, studied, verdicts
-from rockbatch.reporting.sections.answer import worst
+from rockbatch.reporting.sections import statics, statistics, studied, verdicts
+from rockbatch.reporting.sections.answer import responses
 from rockbatch.reporting.sections.peaks import on_scale, outcome
 from rockbatch.reporting.table import MOST_ROWS, THETA, THETA_FORMAT, Head, shown_of, table
 from rockbatch.results.labelled import as_dicts
@@ -119,7 +119,7 @@ def checks(pair: Pair) -> Markup:
     for name, study in zip(SIDES, pair.studies, strict=True):
         parts += [tag("h3", name), tag("div", verdicts.answer(study))]
         if study.verdicts:
-            parts += [verdicts.LEGEND, verdicts.matrix(study.verdicts)]
+            parts.append(verdicts.scorecard(study))
     return join(*parts)
 
 
@@ -175,22 +175,15 @@ def _shown(values: Sequence[object], all_values: Iterable[object]) -> str:
 
 
 def figures(pair: Pair) -> Markup:
-    """Draw panels with the markers of both studies; of both directions, the worse one."""
+    """Draw the peaks of both studies beside each other; of both directions, the worse one."""
     named = pair.named
     if pair.runs[0].empty:
         return Markup("")
     worse = []
     for name, runs in zip(SIDES, pair.runs, strict=True):
         chosen = worst_first(runs, len(runs)).drop_duplicates(["record", "series", "pier", "scale", "with_vertical"])
-        worse.append(chosen.assign(side=name))
-    combined = replace(named, runs=pd.concat(worse, ignore_index=True))
-    lines = combined.runs["series"].map(lambda place: named.series[place].rigid).any()
-    caption = [
-        "Largest rotation over slenderness, ", THETA, ": filled markers A, open markers B",
-        "; lines: rigid base, B dashed" if lines else "",
-        "; the worse direction of each motion" if pair.runs[0]["polarity"].nunique() > 1 else "", ".",
-    ]  # fmt: skip
-    return peak_rotations.figures(combined, caption, side="side")
+        worse.append((name, chosen))
+    return drawn_by_record(named, worse)
 
 
 def pairs(pair: Pair) -> Markup:
@@ -259,7 +252,13 @@ def studies(pair: Pair) -> Markup:
     ]
     for name, study in zip(SIDES, pair.studies, strict=True):
         title = tag("h3", f"{name}: {study.study['title'] or ''} ", tag("code", study.directory))
-        parts += [title, worst(study), studied.section(study, level="h4"), tag("h4", "Statics"), statics.section(study)]
+        parts += [
+            title,
+            responses(study),
+            studied.section(study, level="h4"),
+            tag("h4", "Statics"),
+            statics.section(study),
+        ]
     return join(*parts, _other_motions(*pair.studies))
 
 

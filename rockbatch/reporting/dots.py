@@ -13,7 +13,7 @@ import numpy as np
 from rockbatch.common.figures.description import DASHES, ENDED, Axis, Look, Mark, Points, Rule, marks_of, sign_of
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.markup import Markup, escape, join, number, tag
-from rockbatch.reporting.svg import classes, key, marker, text
+from rockbatch.reporting.svg import Entry, classes, key, marker, text
 from rockbatch.reporting.table import THETA, THETA_FORMAT
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import Series
@@ -30,12 +30,16 @@ DOT = Look("dot", 1)
 
 
 class Row(NamedTuple):
-    """A row: its label, whose ``end`` is never cut off, its tooltip, and its runs in each column."""
+    """A row: its label, whose ``end`` is never cut off, its tooltip, its runs in each column, and its role in the list.
+
+    ``role`` is "rest" for the runs of all others together, and "folded" for one of these, shown in their place on request.
+    """
 
     words: str
     end: str
     more: str
     runs: "Sequence[pd.DataFrame]"
+    role: str = ""
 
 
 class Limit(NamedTuple):
@@ -78,10 +82,11 @@ def draw(
         cells += [tag("span", words, class_="column") for words in columns]
     for row in rows:
         end = tag("span", row.end, class_="end") if row.end else ""
-        cells.append(tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more))
+        of_row = [tag("span", tag("span", row.words, class_="words"), end, class_="of", title=row.more)]
         for words, runs, grid in zip(columns, row.runs, grids, strict=True):
             label = ", ".join(filter(None, (f"{row.words}{row.end}", words)))
-            cells += [_strip(runs, top, grid, marks, label), _without_peak(runs, marks)]
+            of_row += [_strip(runs, top, grid, marks, label), _without_peak(runs, marks)]
+        cells.append(tag("div", *of_row, class_=f"row {row.role}".rstrip(), data_pga=_pga(row.runs)))
     axis = [text(f"{_across(tick, top)}%", 14, words, class_="m") for tick, words in ticks.items()]
     cells.append(tag("span", tag("span", THETA), class_="of axis"))
     for _ in columns:
@@ -91,16 +96,22 @@ def draw(
         aria_label="Peaks, a row each; arrow keys go through the values",
     )  # fmt: skip
     entries = _legend([runs for row in rows for runs in row.runs], marks)
-    return join(key(entries | _of_limits(limits, top)), drawn)
+    return join(key([*entries, *_of_limits(limits, top)]), drawn)
 
 
-def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> dict[str, list[Mark]]:
+def _pga(runs: "Sequence[pd.DataFrame]") -> str | None:
+    """Return the peak ground acceleration of a row's motion [g], by which the script of the page sorts; None if unknown."""
+    values = [float(of_column["pga"].max()) for of_column in runs if len(of_column)]
+    return f"{max(values):.4g}" if values and not math.isnan(max(values)) else None
+
+
+def _of_limits(limits: Sequence[Sequence[Limit]], top: float) -> list[Entry]:
     """Return the legend's entry of each limit, once; with its value if it lies beyond the axis."""
-    entries: dict[str, list[Mark]] = {}
+    entries: dict[str, Entry] = {}
     for place, limit in (numbered for of_column in limits for numbered in enumerate(of_column)):
         words = limit.words if limit.theta <= top else f"{limit.words}: beyond the axis, at θ/α = {limit.theta:.3g}"
-        entries.setdefault(words, [_rule(Look("limit", dash=place % DASHES))])
-    return entries
+        entries.setdefault(words, Entry(words, [_rule(Look("limit", dash=place % DASHES))]))
+    return list(entries.values())
 
 
 def _rule(look: Look) -> Mark:
@@ -115,8 +126,10 @@ def _across(theta: float, top: float) -> float:
     return round(FIRST + (LAST - FIRST) * theta / top, 1)
 
 
-def _line(x: float | str, class_: str, *content: object, low: int = 20, high: int = 0) -> Markup:
-    return tag("line", *content, x1=f"{x}%", x2=f"{x}%", y1=high, y2=low, class_=class_)
+def _line(
+    x: float | str, class_: str, *content: object, low: int = 20, high: int = 0, case: str | None = None
+) -> Markup:
+    return tag("line", *content, x1=f"{x}%", x2=f"{x}%", y1=high, y2=low, class_=class_, data_case=case)
 
 
 def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Marks, words: str) -> Markup:
@@ -139,18 +152,20 @@ def _strip(runs: "pd.DataFrame", top: float, grid: Sequence[Markup], marks: Mark
 
 
 def _mark(run: dict[str, Any], x: float, marks: Marks) -> Markup:
+    place = None if marks.series is None else run["series"]
     series = None if marks.series is None else marks.series[run["series"]]
-    return Markup(_template(series).format(x=x, said=escape(marks.describe(run))))
+    return Markup(_template(series, place).format(x=x, said=escape(marks.describe(run))))
 
 
 @cache
-def _template(series: Series | None) -> Markup:
+def _template(series: Series | None, place: int | None) -> Markup:
     """Return a mark with {x} where its position [% of the width] stands, and {said} for its tooltip: thousands are alike."""
     if series is None:
         return marker(DOT, "{x}%", MIDDLE, "{said}")
     if series.rigid:
-        return _line("{x}", classes(_rigid(series)), tag("title", "{said}"), low=MIDDLE + 7, high=MIDDLE - 7)
-    return marker(marks_of(series.index), "{x}%", MIDDLE, "{said}")
+        title = tag("title", "{said}")
+        return _line("{x}", classes(_rigid(series)), title, low=MIDDLE + 7, high=MIDDLE - 7, case=str(place))
+    return marker(marks_of(series.index), "{x}%", MIDDLE, "{said}", case=str(place))
 
 
 def _rigid(series: Series) -> Look:
@@ -170,19 +185,26 @@ def _without_peak(runs: "pd.DataFrame", marks: Marks) -> Markup:
             sign = tag("svg", marker(sign_of(status), 11, 7), class_="plot", viewBox="4 0 14 14", width=14, height=14,
                        aria_hidden="true")  # fmt: skip
             class_ = "undecided" if status == "failed" else "alarm"
-            shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_))
+            shown.append(tag("span", sign, names, title=f"{len(ended)} × {words}", class_=class_, data_status=status))
     return tag("span", *shown, class_="ends")
 
 
-def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> dict[str, list[Mark]]:
+def _legend(drawn: "Sequence[pd.DataFrame]", marks: Marks) -> list[Entry]:
+    """Return the entries of cases and statuses; what each stands for is what the script of the page hides by it."""
     present = {place for runs in drawn for place in runs["series"].unique().tolist()}
     if marks.series is None:
-        entries = {f"a {marks.kind}": [_points(DOT)]}
+        entries = [Entry(f"a {marks.kind}", [_points(DOT)])]
     else:
-        shown = sorted((marks.series[place] for place in present), key=lambda series: (not series.rigid, series.index))
-        entries = {
-            series.keyed: [_rule(_rigid(series)) if series.rigid else _points(marks_of(series.index))]
-            for series in shown
-        }
+        series = marks.series
+        entries = [
+            Entry(one.keyed, [_rule(_rigid(one)) if one.rigid else _points(marks_of(one.index))], "case", str(place))
+            for place, one in sorted(
+                ((place, series[place]) for place in present), key=lambda of: (not of[1].rigid, of[1].index)
+            )
+        ]
     statuses = {status for runs in drawn for status in runs["status"].unique().tolist()}
-    return entries | {words: [_points(sign_of(status))] for status, words in ENDED.items() if status in statuses}
+    return entries + [
+        Entry(words, [_points(sign_of(status))], "status", status)
+        for status, words in ENDED.items()
+        if status in statuses
+    ]

@@ -56,13 +56,33 @@ def interval(low: str, high: str) -> Markup:
 
 
 def number(value: object, form: str = ".4g") -> str:
-    """Return a float in the given format, anything else as text; empty for None and NaN."""
+    """Return a float in the given format, anything else as text; empty for None and NaN.
+
+    Significant digits (".3g") are written without an exponent where that takes few zeros: "182,800", "0.00009".
+    """
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if not isinstance(value, float):
         return str(value)
-    shown = format(value, form)
-    return shown.removeprefix("-") if shown.startswith("-0") and float(shown) == 0 else shown
+    shown = _without_exponent(format(value, form))
+    return shown.removeprefix("-") if shown.startswith("-0") and float(shown.replace(",", "")) == 0 else shown
+
+
+def _without_exponent(written: str) -> str:
+    """Return a written number in decimals, thousands of five digits apart, and powers of ten beyond 10⁻⁶ and 10⁹."""
+    mantissa, _, exponent = written.partition("e")
+    power = int(exponent or 0)
+    if not -_FEWEST <= power <= _MOST:
+        return f"{mantissa} × 10{str(power).translate(_RAISED)}"
+    if not exponent and not mantissa.lstrip("-").partition(".")[0].isdigit():
+        return written  # with a sign, in groups already, or infinite
+    digits = max(len(mantissa.partition(".")[2]) - power, 0)
+    value = float(written)
+    return f"{value:,.{digits}f}" if abs(value) >= 1e4 else f"{value:.{digits}f}"
+
+
+_FEWEST, _MOST = 6, 9
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def paragraphs(*sentences: object) -> Markup:

@@ -1,6 +1,6 @@
 """All peaks in a picture of a few rows, by record or by foundation, for any number of runs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rockbatch.checks import wording
@@ -10,18 +10,23 @@ from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting import dots
 from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.table import THETA
 from rockbatch.results.figures import said_of
 from rockbatch.results.labelled import ceiling
+from rockbatch.simulation.outcome import LEANS
 
 MOST_ROWS = 14
 """Rows that fit on the first screen."""
 MOST_COLUMNS = 3
 MOST_NAMED = 12
 """Most foundations that each have a mark of their own."""
-MOST_FOUNDATIONS = 300
-SHOWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error"]
+MOST_SERIES, MOST_FOUNDATIONS = 24, 300
+"""Most foundations without a picture of their own, and most of those in it."""
+MOST_MARKS = 3_000
+"""Most runs of which every record has a row, behind those on the first screen."""
+SHOWN = ["record", "series", "polarity", "status", "theta_max_over_alpha", "theta_max_error", "pga"]
 """Columns that the dots and their words are made of."""
 CAPTION = join("Largest rotation over slenderness, ", THETA, ", a row for each ")
 MOST_STRETCH = 2.0
@@ -29,13 +34,21 @@ MOST_STRETCH = 2.0
 
 
 def by_record(finished: Finished) -> Markup:
-    """Draw a row for each record with the worst runs, and one for all others; with the limits of checks."""
-    runs = finished.runs
-    if runs.empty:
+    """Draw a row for each record with the worst runs, and one for all others, each of which has one on request; with limits."""
+    if finished.runs.empty:
         return Markup("")
     columns = _columns(finished)
+    return drawn_by_record(finished, columns, [_limits(finished, column) for _, column in columns])
+
+
+def drawn_by_record(
+    finished: Finished, columns: "Sequence[tuple[str, pd.DataFrame]]", limits: Sequence[Sequence[dots.Limit]] = ()
+) -> Markup:
+    """Draw the runs of each column, with its words, in rows by their records."""
+    runs = pd.concat([of_column for _, of_column in columns]) if len(columns) > 1 else columns[0][1]
     names = worst_first(runs, "record")
     single = names if len(names) <= MOST_ROWS else names[: MOST_ROWS - 1]
+    folded = names[len(single) :] if len(runs) <= MOST_MARKS else []
 
     def label(name: str) -> tuple[str, str, str]:
         words, comma, end = finished.label(name).rpartition(", ")  # the direction always stays
@@ -45,14 +58,25 @@ def by_record(finished: Finished) -> Markup:
         words = said_of(finished.series[run["series"]], run, finished.both_directions)
         return f"{finished.label(run['record'])}\n{words}"
 
-    rows = _rows(columns, "record", single, label, len(names))
+    rows = _rows(columns, "record", single, label, len(names), folded=folded)
     marks = dots.Marks(finished.series if len(finished.series) <= MOST_NAMED else None, description, "foundation")
-    caption = join(CAPTION, "record, the worst first", _all(finished))
-    limits = [_limits(finished, column) for _, column in columns]
+    caption = join(CAPTION, "record, the worst first", _all(finished), *_marks_in_words(finished))
     top = ceiling(runs)
     within = [limit.theta for column in limits for limit in column if limit.theta < MOST_STRETCH * top]
     top = max([top, *(1.03 * theta for theta in within)])
-    return figure(dots.draw(rows, [words for words, _ in columns], top, marks, limits), caption)
+    drawn = dots.draw(rows, [words for words, _ in columns], top, marks, limits)
+    return tag("figure", drawn, tag("figcaption", caption), class_="whole peaks")
+
+
+def _marks_in_words(finished: Finished) -> Iterator[str]:
+    """Yield sentences on peaks that are not the rocking of a pier that stands on one pivot at least."""
+    stood = finished.runs[finished.runs["status"] == "ok"]
+    if lifted := int(stood["flight_s"].notna().sum()):
+        height = stood["flight_height_m"].max()
+        most = f", the lower one by {1000 * height:.3g} mm at most" if height == height else ""
+        yield f" In {counted(lifted, 'run')} both pivots left the ground on the way{most}; the pier was guided down."
+    if leaning := int((stood["theta_max_is"] == LEANS).sum()):
+        yield f" In {counted(leaning, 'run')} the peak is mostly the lean of a base that has yielded, not rocking."
 
 
 def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
@@ -78,7 +102,9 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
 
 
 def by_foundation(finished: Finished) -> Markup:
-    """Draw a row for each of the best foundations and one for the others; below, folded, a row for every one."""
+    """Draw a row for each of the best of many foundations and one for the others; below, folded, a row for every one."""
+    if finished.runs.empty or finished.grouped["series"].nunique().max() <= MOST_SERIES:
+        return Markup("")
     runs, columns = finished.runs, _columns(finished)
     best = worst_first(runs, "series")[::-1]
     top, words = ceiling(runs), [words for words, _ in columns]
@@ -125,12 +151,20 @@ def _rows(
     label: Callable[[Any], tuple[str, str, str]],
     all_: int,
     always: bool = False,
+    folded: Sequence[Any] = (),
 ) -> list[dots.Row]:
-    """Return a row for each record or foundation in ``single``, and one for those of ``all_`` that have none of their own."""
+    """Return a row for each record or foundation in ``single``, and one for those of ``all_`` that have none of their own.
+
+    Of those, ``folded`` ones have theirs on request.
+    """
     places = [(runs[SHOWN], runs.groupby(by).indices) for _, runs in columns]
-    rows = [dots.Row(*label(group), [runs.iloc[index.get(group, [])] for runs, index in places]) for group in single]
+
+    def row(group: Any, role: str = "") -> dots.Row:
+        return dots.Row(*label(group), [runs.iloc[index.get(group, [])] for runs, index in places], role)
+
+    rows = list(map(row, single))
     if len(single) < all_ or always:
         plural = {"record": "records", "series": "foundations"}[by]
         remaining = [runs.loc[~runs[by].isin(single), SHOWN] for _, runs in columns]
-        rows.append(dots.Row(f"the other {all_ - len(single):,} {plural}", "", "", remaining))
-    return rows
+        rows.append(dots.Row(f"the other {all_ - len(single):,} {plural}", "", "", remaining, "rest"))
+    return rows + [row(group, "folded") for group in folded]

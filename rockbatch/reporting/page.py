@@ -5,23 +5,22 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from rockbatch.common.analyses import doors, from_analysis
-from rockbatch.common.version import __version__
 from rockbatch.reporting import compared
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.overview import by_foundation
 from rockbatch.reporting.pair import Pair
 from rockbatch.reporting.sections import (
     answer,
-    cost,
     distribution,
     forces,
     histories,
     intensity,
     motions,
-    peak_rotations,
     peaks,
     published,
+    reproduce,
     shocks,
     statics,
     statistics,
@@ -29,6 +28,7 @@ from rockbatch.reporting.sections import (
     target,
     verdicts,
 )  # fmt: skip
+from rockbatch.reporting.sections.studied import in_a_line
 from rockbatch.reporting.templates import Section, document, render
 
 
@@ -39,6 +39,7 @@ class Part(NamedTuple):
     anchor: str
     content: Callable[[Any], Markup]
     """Function that returns what stands under the heading; empty if the section does not apply, which is then left out."""
+    folded: bool = False
     kind: type = Finished
     """Argument of ``content``: the results of a run, or the contents of any folder."""
 
@@ -52,7 +53,7 @@ def _of_analyses() -> Iterator[Part]:
     """Yield the parts that the analyses bring, each loaded when it is drawn."""
     for name, door in doors().items():
         for part in door.parts:
-            yield Part(part.heading, part.anchor, partial(_of_analysis, name, part.function), Contents)
+            yield Part(part.heading, part.anchor, partial(_of_analysis, name, part.function), kind=Contents)
 
 
 def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
@@ -61,30 +62,30 @@ def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
 
 
 PARTS = (
-    Part("The answer", "answer", answer.section),
-    Part("Peak rotations", "figure", peak_rotations.section),
-    Part("Every check", "checks", verdicts.section),
-    Part("Compared with published values", "references", published.section),
+    Part("Scorecard", "answer", answer.section),
+    Part("Greatest responses", "responses", answer.responses_beside_checks, folded=True),
+    Part("Peaks by foundation", "figure", by_foundation),
+    *_of_analyses(),
     Part("Every run", "peaks", peaks.section),
+    Part("Checks", "checks", verdicts.section),
+    Part("Compared with published values", "references", published.section),
     Part("Shock by shock", "shocks", shocks.section),
     Part("Forces", "forces", forces.section),
-    Part("The suite in each case", "suite", statistics.section),
-    Part("One record and the suite", "distribution", distribution.section),
-    Part("Intensity measures", "intensity", intensity.section),
-    *_of_analyses(),
     Part("Histories", "histories", histories.section),
+    Part("Statistics of the suite", "suite", statistics.section, folded=True),
+    Part("One record and the suite", "distribution", distribution.section, folded=True),
+    Part("Intensity measures", "intensity", intensity.section, folded=True),
     Part("What was studied", "studied", studied.section),
-    Part("Statics", "statics", statics.section),
-    Part("The suite against its target spectrum", "target", target.section),
+    Part("Statics", "statics", statics.section, folded=True),
     Part("Ground motions", "records", motions.section),
+    Part("The suite against its target spectrum", "target", target.section),
     Part("Not used", "unusable", motions.unusable),
-    Part("Speed and error", "accuracy", cost.section),
-    Part("Notes", "notes", _template("notes"), Contents),
-    Part("How to reproduce", "reproduce", _template("reproduce")),
+    Part("Notes", "notes", _template("notes"), kind=Contents),
+    Part("How to reproduce", "reproduce", reproduce.section, folded=True),
 )
 """Sections of one folder, from ``sections/``, in the order of the page: the answer first, then results, then inputs."""
 
-ALONE = Part("The study file", "study", _template("study"), Contents)
+ALONE = Part("The study file", "study", _template("study"), kind=Contents)
 """The section that stands at the end if the folder has analyses only."""
 
 PARTS_OF_TWO = (
@@ -105,22 +106,25 @@ def sections(contents: Contents) -> list[Section]:
     """Return the sections of one folder that apply."""
     parts = PARTS if isinstance(contents, Finished) else (*PARTS, ALONE)
     drawn = [
-        Section(part.heading, part.anchor, part.content(contents)) for part in parts if isinstance(contents, part.kind)
+        Section(part.heading, part.anchor, part.content(contents), part.folded)
+        for part in parts
+        if isinstance(contents, part.kind)
     ]
     return [section for section in drawn if section.content]
 
 
-def page(contents: Contents) -> str:
-    """Return the report of one folder as HTML."""
-    version = contents.info["rockbatch"] if isinstance(contents, Finished) else __version__
+def page(contents: Contents, whole: bool = False) -> str:
+    """Return the report of one folder as HTML; ``whole`` to print sections that are folded, too."""
     title = contents.study["title"] or "Rocking piers"
-    return document("Rocking response of stepping piers", title, sections(contents), version)
+    if isinstance(contents, Finished):
+        return document(title, in_a_line(contents), sections(contents), contents.info["rockbatch"], whole)
+    return document(title, "", sections(contents), whole=whole)
 
 
-def comparison(pair: Pair) -> str:
+def comparison(pair: Pair, whole: bool = False) -> str:
     """Return the page that compares two studies as HTML."""
     a, b = (study.study["title"] or study.directory.name for study in pair.studies)
     versions = " and ".join(dict.fromkeys(study.info["rockbatch"] for study in pair.studies))
-    shown = [Section(part.heading, part.anchor, part.content(pair)) for part in PARTS_OF_TWO]
+    shown = [Section(part.heading, part.anchor, part.content(pair), part.folded) for part in PARTS_OF_TWO]
     title = f"{a} against {b}" if a != b else f"{a}: two studies"
-    return document("Rocking response of stepping piers, two studies", title, shown, versions)
+    return document(title, f"A: {pair.studies[0].directory}; B: {pair.studies[1].directory}", shown, versions, whole)

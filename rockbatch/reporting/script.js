@@ -9,7 +9,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
 
   // Numbers by value, ranges by their end, words by alphabet, nothing last; rows that tie stay in their order
   const number = (text) =>
-    Number(text.replace("∞", "Infinity").replace(/^[≥≤]\s*/, "").split(" of ")[0].split("\u00a0–\u00a0").pop());
+    Number(text.replaceAll(",", "").replace("∞", "Infinity").replace(/^[≥≤]\s*/, "").split(" of ")[0].split("\u00a0–\u00a0").pop());
   const compare = (a, b) => {
     if (a === b) return 0;
     if (a === "" || b === "") return a === "" ? 2 : -2;
@@ -38,7 +38,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
   // What is copied goes into a spreadsheet: the rows that are shown, in their order
   const copy = document.createElement("button");
   copy.type = "button";
-  copy.className = "copy scripted";
+  copy.className = "copy";
   copy.textContent = "Copy table";
   copy.addEventListener("click", () => {
     const lines = [heads, ...[...body.rows].filter((row) => !row.hidden).map((row) => [...row.cells])];
@@ -54,32 +54,140 @@ for (const table of document.querySelectorAll("table.sortable")) {
     };
     if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, byHand); else byHand();
   });
-  table.parentElement.before(copy);
-
-  if (rows.length < 8) continue;
-  const box = document.createElement("label");
-  const input = document.createElement("input");
+  const bar = document.createElement("div");
   const count = document.createElement("span");
-  box.className = "filter";
-  input.type = "search";
-  input.placeholder = "record, case, status …";
+  bar.className = "filter scripted";
+  bar.append(copy);
+  table.parentElement.before(bar);
+  if (rows.length < 8) continue;
   count.className = "muted";
   count.setAttribute("aria-live", "polite");
-  box.append("Search", input, count);
-  table.parentElement.before(box);
+  const labelled = (words, node) => {
+    const label = document.createElement("label");
+    label.append(words, node);
+    bar.append(label);
+    return node;
+  };
+  // By each column that has a few values, and by words
+  const chosen = heads.flatMap((head, column) => {
+    const values = [...new Set(rows.map((row) => row.cells[column].textContent.trim()))];
+    if (!("filter" in head.dataset) || values.length < 2 || values.length > 60) return [];
+    const select = labelled(head.textContent, document.createElement("select"));
+    select.append(...["all", ...values].map((value, place) => new Option(value || "none", place ? value : "*")));
+    return [[column, select]];
+  });
+  const input = labelled("Search", document.createElement("input"));
+  input.type = "search";
+  input.placeholder = "record, case, status …";
+  bar.append(count, copy);
   const filter = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
     let shown = 0;
     for (const row of rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = !words.every((word) => text.includes(word));
+      const titles = [...row.querySelectorAll("[title]")].map((node) => node.title);
+      const text = [row.textContent, ...titles].join(" ").toLowerCase();
+      row.hidden = !words.every((word) => text.includes(word))
+        || chosen.some(([column, { value }]) => value !== "*" && row.cells[column].textContent.trim() !== value);
       shown += row.hidden ? 0 : 1;
     }
     count.textContent = `${shown} of ${rows.length} rows`;
   };
-  input.addEventListener("input", filter);
+  bar.addEventListener("input", filter);
   filter();
 }
+
+// Scorecards of many cases
+for (const words of document.querySelectorAll(".legend.rest")) {
+  const card = words.previousElementSibling.querySelector(".card");
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "copy";
+  button.textContent = `All ${card.tBodies[0].rows.length} cases`;
+  button.addEventListener("click", () => { card.classList.add("every"); words.remove(); });
+  words.append(" ", button);
+}
+
+// Figures of peaks: entries of the legend hide what they stand for, rows are sorted and searched
+for (const figure of document.querySelectorAll("figure.peaks")) {
+  const grid = figure.querySelector(".dots");
+  const rows = [...grid.querySelectorAll(".row")];
+  const own = rows.filter((row) => !row.classList.contains("rest"));
+  const words = (row) => row.querySelector(".of").textContent;
+  const hide = () => own.forEach((row) => {
+    const marks = [...row.querySelectorAll("[data-case], [data-status]")];
+    const found = input.value.toLowerCase().split(/\s+/).every((word) => `${words(row)} ${row.firstChild.title}`.toLowerCase().includes(word));
+    row.hidden = !found || (marks.length > 0 && marks.every((mark) => mark.classList.contains("off")));
+  });
+  for (const entry of figure.querySelectorAll(".key li[data-of]")) {
+    entry.role = "button";
+    entry.tabIndex = 0;
+    entry.ariaPressed = "true";
+    entry.title = "Hide or show";
+    const toggle = () => {
+      entry.ariaPressed = String(entry.ariaPressed !== "true");
+      const marks = grid.querySelectorAll(`[data-${entry.dataset.of}="${CSS.escape(entry.dataset.value)}"]`);
+      marks.forEach((mark) => mark.classList.toggle("off", entry.ariaPressed !== "true"));
+      hide();
+    };
+    entry.addEventListener("click", toggle);
+    entry.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") { event.preventDefault(); toggle(); }
+    });
+  }
+  const input = document.createElement("input");
+  if (own.length < 8) continue;
+  const bar = document.createElement("div");
+  bar.className = "filter scripted";
+  const labelled = (text, node) => { const label = document.createElement("label"); label.append(text, node); bar.append(label); };
+  const order = document.createElement("select");
+  order.append(new Option("worst first", ""), new Option("peak ground acceleration", "pga"), new Option("name", "name"));
+  labelled("Sort by", order);
+  input.type = "search";
+  input.placeholder = "event, station …";
+  labelled("Search", input);
+  const all = () => { grid.classList.add("every"); more?.remove(); };
+  const rest = grid.querySelector(".row.rest");
+  let more = null;
+  if (rest && own.length > rows.indexOf(rest)) {
+    more = document.createElement("button");
+    more.type = "button";
+    more.className = "copy";
+    more.textContent = `All ${own.length} records`;
+    more.addEventListener("click", all);
+    bar.append(more);
+  }
+  grid.before(bar);
+  const last = rows[rows.length - 1].nextSibling;
+  order.addEventListener("change", () => {
+    all();
+    const key = { "": (row) => own.indexOf(row), pga: (row) => -Number(row.dataset.pga ?? 0), name: words }[order.value];
+    const sorted = own.map((row) => [key(row), row]).sort(([a], [b]) => (typeof a === "string" ? a.localeCompare(b, undefined, { numeric: true }) : a - b));
+    sorted.forEach(([, row]) => grid.insertBefore(row, last));
+  });
+  input.addEventListener("input", () => { all(); hide(); });
+}
+
+// What is folded is unfolded by a link to it
+const unfold = () => {
+  const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  if (!target) return;
+  for (let fold = target.querySelector(":scope > details") ?? target.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  target.scrollIntoView();
+};
+addEventListener("hashchange", unfold);
+unfold();
+for (const link of document.querySelectorAll('a[href^="#"]')) {
+  link.addEventListener("click", () => { if (link.hash === location.hash) unfold(); });
+}
+
+// The list of sections marks the one that is read
+const here = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) {
+    if (!isIntersecting) continue;
+    document.querySelectorAll("nav a").forEach((link) => link.classList.toggle("here", link.hash === `#${target.id}`));
+  }
+}, { rootMargin: "-10% 0px -80% 0px" });
+document.querySelectorAll("main > section").forEach((section) => here.observe(section));
 
 // The note that follows the pointer, or the arrow keys
 const tip = document.createElement("div");
@@ -132,9 +240,9 @@ for (const grid of document.querySelectorAll(".panels, .dots")) {
   let at = -1;
   grid.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (!step) return;
-    event.preventDefault();
     const marks = marksOf(grid);
+    if (!step || !marks.length) return;
+    event.preventDefault();
     at = (at + step + marks.length) % marks.length;
     marks[at].scrollIntoView({ block: "nearest" });
     const panel = marks[at].closest("[data-of]")?.dataset.of ?? marks[at].closest("figure").querySelector("figcaption").textContent;
@@ -174,15 +282,12 @@ for (const svg of document.querySelectorAll("svg.readings")) {
       curves: [...group.querySelectorAll("path")].map((path) => ({ name: path.dataset.name, points: pointsOf(path) })),
     };
   }));
-  const place = (group, x, y) => { // from the picture to the window
-    const to = new DOMPoint(x, y).matrixTransform(group.getScreenCTM());
-    return [to.x, to.y];
-  };
+  const dot = (x, y) => made("path", { class: "at", d: `M${x} ${y}h0` }); // as a stroke it is round where curves are stretched
   let cursor = null; // px in the picture
   const readTime = (px, clientY) => {
     const timed = axes().filter((one) => one.kind === "time");
-    const { left, width } = timed[0];
-    cursor = Math.max(left, Math.min(left + width, px));
+    const view = timed[0].group.ownerSVGElement.viewBox.baseVal;
+    cursor = Math.max(view.x, Math.min(view.x + view.width, px));
     hush();
     const words = [`t = ${shown(timed[0].x(cursor), timed[0].xRange)} s`];
     for (const one of timed) {
@@ -192,26 +297,27 @@ for (const svg of document.querySelectorAll("svg.readings")) {
         if (after < 0) continue;
         const [b, a] = [points[after], points[Math.max(0, after - 1)]];
         const y = b[0] === a[0] ? b[1] : a[1] + (cursor - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
-        one.group.append(made("circle", { class: "at", cx: cursor, cy: y, r: 2 }));
+        one.group.append(dot(cursor, y));
         words.push(`${name} = ${shown(one.y(y), one.yRange)}`);
       }
     }
-    const [x, y] = place(svg, cursor, timed[0].top);
-    say(words.join("\n"), x, clientY ?? y);
+    const at = new DOMPoint(cursor, timed[0].top).matrixTransform(timed[0].group.getScreenCTM()); // in the window
+    say(words.join("\n"), at.x, clientY ?? at.y);
   };
-  const readPlane = (one, px, py, clientX, clientY) => {
+  const readPlane = (one, [x, y]) => {
     hush();
-    const points = one.curves.flatMap((curve) => curve.points);
-    const [x, y] = points.reduce((best, p) => Math.hypot(p[0] - px, p[1] - py) < Math.hypot(best[0] - px, best[1] - py) ? p : best);
-    one.group.append(made("circle", { class: "at", cx: x, cy: y, r: 2 }));
+    one.group.append(dot(x, y));
     const [across, down] = one.names;
-    say(`${across} = ${shown(one.x(x), one.xRange)}\n${down} = ${shown(one.y(y), one.yRange)}`, clientX, clientY);
+    const at = new DOMPoint(x, y).matrixTransform(one.group.getScreenCTM());
+    say(`${across} = ${shown(one.x(x), one.xRange)}\n${down} = ${shown(one.y(y), one.yRange)}`, at.x, at.y);
   };
+  const nearest = (one, px, py) => one.curves.flatMap((curve) => curve.points)
+    .reduce((best, p) => Math.hypot(p[0] - px, p[1] - py) < Math.hypot(best[0] - px, best[1] - py) ? p : best);
   const read = (event) => {
     for (const one of axes()) {
       const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(one.group.getScreenCTM().inverse());
       if (x < one.left - 2 || x > one.left + one.width + 2 || y < one.top || y > one.top + one.height) continue;
-      if (one.kind === "time") readTime(x, event.clientY); else readPlane(one, x, y, event.clientX, event.clientY);
+      if (one.kind === "time") readTime(x, event.clientY); else readPlane(one, nearest(one, x, y));
       return;
     }
     hush();
@@ -225,52 +331,49 @@ for (const svg of document.querySelectorAll("svg.readings")) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     event.preventDefault();
-    readTime((cursor ?? axes()[0].left) + step * (event.shiftKey ? 10 : 1));
+    const stride = step * (event.shiftKey ? 10 : 1);
+    if (axes()[0].kind === "time") {
+      readTime((cursor ?? axes()[0].group.ownerSVGElement.viewBox.baseVal.x) + stride);
+    } else { // along the loops, one after the other
+      const points = axes().flatMap((one) => one.curves.flatMap((curve) => curve.points.map((p) => [one, p])));
+      cursor = ((cursor ?? -1) + stride + points.length) % points.length;
+      readPlane(...points[cursor]);
+    }
   });
 }
 
-// Paper: a table that is too wide would shrink every page, so that it goes on in tables below, each with the first column
-const ROOM = 700; // px of a table on the screen, whose words are smaller on paper
-const slices = (table) => {
-  const heads = [...table.tHead.rows[table.tHead.rows.length - 1].cells];
-  const found = [];
-  let width = Infinity;
-  heads.slice(1).forEach((head, i) => {
-    const own = Math.min(head.offsetWidth, 300);
-    if (width + own > ROOM) {
-      found.push([]);
-      width = Math.min(heads[0].offsetWidth, 300);
-    }
-    found[found.length - 1].push(i + 1);
-    width += own;
-  });
-  return found;
-};
-const cut = (table, kept) => {
-  const copy = table.cloneNode(true);
-  const over = copy.tHead.rows.length > 1 ? [...copy.tHead.rows[0].cells] : [];
-  let place = 0;
-  for (const cell of over) {
-    const own = Array.from({ length: cell.colSpan }, (_, i) => place + i).filter((column) => kept.includes(column));
-    place += cell.colSpan;
-    if (own.length) cell.colSpan = own.length; else cell.remove();
+// Histories: one motion at a time, the stretch in which the pier moves or the whole record
+for (const pictures of document.querySelectorAll(".histories")) {
+  const figures = [...pictures.children], timed = [...pictures.querySelectorAll("div.timed")];
+  const choice = document.createElement("div");
+  choice.className = "choice scripted";
+  const control = (node, ...words) => {
+    const label = document.createElement("label");
+    label.append(...words);
+    choice.append(label);
+    return node;
+  };
+  if (figures.length > 1) {
+    pictures.classList.add("several");
+    const select = document.createElement("select");
+    for (const figure of figures) select.add(new Option(figure.querySelector("strong").textContent));
+    control(select, "Motion ", select).addEventListener("change", () => {
+      hush();
+      figures.forEach((figure, i) => figure.classList.toggle("chosen", i === select.selectedIndex));
+    });
   }
-  const rows = [copy.tHead.rows[copy.tHead.rows.length - 1], ...copy.tBodies[0].rows];
-  for (const row of rows) [...row.cells].forEach((cell, i) => kept.includes(i) || cell.remove());
-  return copy;
-};
-addEventListener("beforeprint", () => {
-  for (const table of document.querySelectorAll(".wide > table")) {
-    const parts = table.offsetWidth > ROOM && !table.parentElement.classList.contains("prose") ? slices(table) : [];
-    if (parts.length < 2) continue;
-    const paper = document.createElement("div");
-    paper.className = "printed sliced";
-    paper.append(...parts.map((part) => cut(table, [0, ...part])));
-    table.parentElement.classList.add("whole-width");
-    table.parentElement.after(paper);
+  if (pictures.querySelector("[data-views]")) {
+    const box = document.createElement("input");
+    box.type = "checkbox";
+    control(box, box, " whole record").addEventListener("change", () => {
+      hush();
+      for (const picture of timed) {
+        picture.classList.toggle("whole", box.checked);
+        for (const panel of picture.querySelectorAll("[data-views]")) {
+          panel.setAttribute("viewBox", panel.dataset.views.split("|")[Number(box.checked)]);
+        }
+      }
+    });
   }
-});
-addEventListener("afterprint", () => {
-  document.querySelectorAll(".sliced").forEach((paper) => paper.remove());
-  document.querySelectorAll(".whole-width").forEach((wide) => wide.classList.remove("whole-width"));
-});
+  if (choice.firstChild) pictures.before(choice);
+}

@@ -1,9 +1,10 @@
 """Figures drawn as inline SVG: text stays text, colours come from the style sheet, and curves are in tenths of a pixel."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import singledispatch
-from itertools import repeat
+from itertools import repeat, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from rockbatch.common.figures.description import (
     Area,
     Array,
+    Axis,
     Figure,
     Look,
     Mark,
@@ -83,14 +85,16 @@ def drawn(figure: Figure) -> Markup:
     """Draw a figure: its panels beside each other as room permits, or one picture if it is stacked or a single panel."""
     if figure.stacked or (len(figure.panels) == 1 and not figure.panels[0].caption):
         picture = _picture(figure.rows, figure.description, " alone")
-        return join(picture, key(figure.legend))
+        return join(picture, key_of(figure))
     width = max((panel.width for panel in figure.panels), default=0.0)
     shown = [tag("figure", _caption(panel), _picture([[panel]], _described(figure, panel))) for panel in figure.panels]
+    # Pictures that the script reads values from take the keys themselves
+    keys = {} if any(panel.reads for panel in figure.panels) else {"tabindex": "0"}
     grid = tag(
-        "div", *shown, class_="panels", style=f"--w:{width:.0f}px", tabindex="0", role="group",
+        "div", *shown, class_="panels", style=f"--w:{width:.0f}px", role="group", **keys,
         aria_label=f"{figure.description}; arrow keys go through the values",
     )  # fmt: skip
-    return join(grid, key(figure.legend))
+    return join(grid, key_of(figure))
 
 
 def sketch(figure: Figure) -> Markup:
@@ -109,10 +113,27 @@ def _described(figure: Figure, panel: Panel) -> str:
     return ", ".join(filter(None, (figure.description, panel.caption)))
 
 
-def key(legend: Mapping[str, Sequence[Mark]]) -> Markup:
+class Entry(NamedTuple):
+    """An entry of a legend: its words, its marks, and the data by which the script of the page hides what it stands for."""
+
+    words: str
+    marks: Sequence[Mark]
+    kind: str = ""
+    value: str = ""
+
+
+def key(legend: Sequence[Entry]) -> Markup:
     """Return the legend of what each entry stands for; empty without entries."""
-    entries = [tag("li", _sample(marks), tag("span", label)) for label, marks in legend.items()]
+    entries = [
+        tag("li", _sample(one.marks), tag("span", one.words), data_of=one.kind or None, data_value=one.value or None)
+        for one in legend
+    ]
     return tag("ul", *entries, class_="key") if entries else Markup("")
+
+
+def key_of(figure: Figure) -> Markup:
+    """Return the legend of a figure; empty without entries."""
+    return key([*starmap(Entry, figure.legend.items())])
 
 
 def _sample(marks: Sequence[Mark]) -> Markup:
@@ -133,10 +154,64 @@ def _in_key(mark: Mark) -> Markup:
     return tag("line", x1=0, x2=22, y1=7, y2=7, class_=classes(mark.look))
 
 
-def alike(figures: Sequence[Figure]) -> list[Markup]:
-    """Draw stacked figures that stand beside each other, all of one height, and without legends."""
-    heights = [_boxes(figure.rows)[1] for figure in figures]
-    return [_picture(figure.rows, figure.description, "", max(heights)) for figure in figures]
+def timed(figure: Figure, whole: Axis) -> Markup:
+    """Draw panels against time below each other, as wide as there is room: curves are stretched, words keep their size.
+
+    Beside the stretch of time that the panels show is the ``whole`` of it, to which the script changes: what only one of the two
+    views has is of class ``v0`` or ``v1``.
+    """
+    boxes, height = _boxes([[panel] for panel in figure.panels])
+    views = list(dict.fromkeys([figure.panels[-1].x, whole]))
+    content = [part for box in boxes for part in _stretched(box, views)]
+    picture = tag("svg", *content, class_="plot readings", role="img", aria_label=figure.description)
+    return tag("div", picture, class_="timed", style=f"--h:{height:.0f}px")
+
+
+def _stretched(box: Box, views: Sequence[Axis]) -> Iterator[Markup]:
+    """Draw a panel as wide as the picture, in a picture of its own, and the words beside it."""
+    panel, rows = box.panel, box.panel.y.ticks()
+    shown = Box(panel, 0.0, 0.0, panel.width, panel.height)
+    ends = [shown.across(np.array([view.low, view.high])).tolist() for view in views]
+    low, high = ends[-1]
+    inner = Box(replace(panel, x=views[-1]), low, 0.0, high - low, panel.height)
+    grid = "".join(f"M{low:.1f} {at:.1f}H{high:.1f}" for at in inner.down(np.array([*rows])))
+    parts = [tag("path", d=grid, class_="grid")]
+    for place, view in enumerate(views):
+        grid = "".join(f"M{at:.1f} 0V{inner.foot:.1f}" for at in inner.across(np.array([*view.ticks()])))
+        parts.append(tag("path", d=grid, class_=f"grid v{place}"))
+    parts += [_draw(mark, inner) for mark in panel.marks if isinstance(mark, Span)]
+    parts.append(_readable(inner, [_draw(mark, inner) for mark in panel.marks if isinstance(mark, Polyline)]))
+    parts += [_draw(mark, inner) for mark in panel.marks if isinstance(mark, Rule)]
+    sizes = [f"{first:.1f} 0 {last - first:.1f} {panel.height:g}" for first, last in ends]
+    yield tag(
+        "svg", *parts, y=_short(box.top), height=_short(panel.height), viewBox=sizes[0], preserveAspectRatio="none",
+        data_views="|".join(sizes) if len(sizes) > 1 else None,
+    )  # fmt: skip
+    yield tag("path", d=f"M0 {box.top:.1f}V{box.foot:.1f}", class_="edge")
+    yield tag("line", x1="0", x2="100%", y1=_short(box.foot), y2=_short(box.foot), class_="edge")
+    yield text(-34.0, box.top - 9.0, *_lettered(panel.y.label), class_="q")
+    yield from (text(-4.0, float(box.down(at)) + 4.0, words, class_="e") for at, words in rows.items())
+    for place, view in enumerate(views):
+        words = [_beside(mark, view, box) for mark in panel.marks if isinstance(mark, Points | Words)]
+        if panel.x.numbered:
+            words += [text(_share(view, at), box.foot + 13.0, tick, class_="m") for at, tick in view.ticks().items()]
+        yield tag("g", *words, class_=f"v{place}")
+    if panel.x.label:
+        yield text("50%", box.foot + 29.0, *_lettered(panel.x.label), class_="m q")
+
+
+def _share(x: Axis, at: float) -> str:
+    return f"{100.0 * float(x.fraction(at)):.2f}%"
+
+
+def _beside(mark: Points | Words, view: Axis, box: Box) -> Markup:
+    """Draw a marker, or words, at its share of the width; nothing outside the view."""
+    x, y = (float(mark.x), float(mark.y)) if isinstance(mark, Words) else (float(mark.x[0]), float(mark.y[0]))
+    if not view.low <= x <= view.high:
+        return Markup("")
+    if isinstance(mark, Points):
+        return marker(mark.look, _share(view, x), float(box.down(y)))
+    return _words(mark, _share(view, x), float(box.down(y)))
 
 
 def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
@@ -153,15 +228,15 @@ def _boxes(rows: Sequence[Sequence[Panel]]) -> tuple[list[Box], float]:
     return boxes, height
 
 
-def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "", least: float = 0.0) -> Markup:
-    """Draw rows of panels as one picture, at ``least`` so high [px]."""
+def _picture(rows: Sequence[Sequence[Panel]], description: str, more: str = "") -> Markup:
+    """Draw rows of panels as one picture."""
     boxes, height = _boxes(rows)
     content = [part for box in boxes for part in _panel(box, len(rows) > 1)]
     marks = [mark for box in boxes for mark in box.panel.marks]
     said = any(mark.title or (isinstance(mark, Points) and mark.titles) for mark in marks)
     kinds = " marks" * said + " readings" * any(box.panel.reads for box in boxes) + more
     width = max(sum(panel.width for panel in row) for row in rows)
-    return svg(width, max(height, least), *content, description=description, class_=f"plot{kinds}")
+    return svg(width, height, *content, description=description, class_=f"plot{kinds}")
 
 
 def svg(width: float, height: float, *content: object, description: str, class_: str = "plot") -> Markup:
@@ -249,15 +324,18 @@ def text(x: float | str, y: float, *content: object, class_: str = "") -> Markup
     return tag("text", *content, x=_short(x), y=_short(y), class_=class_ or None)
 
 
-def marker(look: Look, x: float | str, y: float, title: str = "", shade: float | None = None) -> Markup:
+def marker(
+    look: Look, x: float | str, y: float, title: str = "", shade: float | None = None, case: str | None = None
+) -> Markup:
     """Draw a marker at (x, y), with a tooltip."""
     tooltip = tag("title", title) if title else Markup("")
     if look.shape == "failed":
         return text(x, y + 4, "?", tooltip, class_="m none")
     opacity = None if shade is None else f"{0.15 + 0.85 * shade:.2f}"
     return tag(
-        "use", tooltip, href=f"#m-{look.shape}", x=_short(x), y=_short(y), class_=classes(look), fill_opacity=opacity
-    )
+        "use", tooltip, href=f"#m-{look.shape}", x=_short(x), y=_short(y), class_=classes(look), fill_opacity=opacity,
+        data_case=case,
+    )  # fmt: skip
 
 
 @singledispatch
@@ -323,9 +401,14 @@ def _(mark: Span, box: Box) -> Markup:
 
 @_draw.register
 def _(mark: Words, box: Box) -> Markup:
+    return _words(mark, float(box.across(mark.x)), float(box.down(mark.y)))
+
+
+def _words(mark: Words, x: float | str, y: float) -> Markup:
     anchor = {-1: "e", 0: "m", 1: ""}[mark.side]
-    x, y = float(box.across(mark.x)) + 5.0 * mark.side, float(box.down(mark.y)) + 3.5 - mark.lift
-    return text(x, y, mark.text, class_=" ".join(filter(None, (classes(mark.look), anchor))))
+    class_ = " ".join(filter(None, (classes(mark.look), anchor)))
+    place = {"x": _short(x), "y": _short(y + 3.5 - mark.lift), "dx": 5 * mark.side or None}
+    return tag("text", mark.text, **place, class_=class_ or None)
 
 
 def _short(value: float | str) -> str:
@@ -353,15 +436,32 @@ def _relative(x: Array, y: Array) -> str:
 
 
 def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Return the places of the points without which the drawing would change."""
-    moved = np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1
-    kept = np.concatenate(([0], moved))
-    if len(kept) < 3:
-        return kept
-    steps = np.diff(points[kept], axis=0)
-    across = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
-    along = (steps[:-1] * steps[1:]).sum(axis=1)
-    return kept[np.concatenate(([True], (across != 0) | (along < 0), [True]))]
+    """Return the places of the points without which the drawing would change by more than a step (Ramer, Douglas, Peucker).
+
+    Turning points are kept, so that extremes are exact; between them the point farthest from its chord, until none is far.
+    """
+    places = np.concatenate(([0], np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1))
+    points = points[places]
+    kept = np.ones(len(points), dtype=bool)
+    ways = np.sign(np.diff(points, axis=0))
+    last = np.maximum.accumulate(np.where(ways != 0, np.arange(len(ways))[:, None], 0), axis=0)
+    ways = np.take_along_axis(ways, last, axis=0)  # a level stretch goes on as before
+    kept[1:-1] = np.any(ways[1:] * ways[:-1] < 0, axis=1)
+    inner = np.flatnonzero(~kept)
+    while len(inner):
+        ends = np.flatnonzero(kept)
+        piece = np.searchsorted(ends, inner) - 1
+        start = points[ends[piece]]
+        chord, way = points[ends[piece + 1]] - start, points[inner] - start
+        away = np.abs(chord[:, 0] * way[:, 1] - chord[:, 1] * way[:, 0]) / np.hypot(chord[:, 0], chord[:, 1])
+        first = np.flatnonzero(np.diff(piece, prepend=-1))
+        count = np.diff(first, append=len(piece))
+        largest = np.maximum.reduceat(away, first)
+        farthest = np.flatnonzero(away == np.repeat(np.where(largest > 1.0, largest, -1.0), count))
+        kept[inner[farthest]] = True
+        inner = inner[np.repeat(largest > 1.0, count)]
+        inner = inner[~kept[inner]]
+    return places[kept]
 
 
 def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:

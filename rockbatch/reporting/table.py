@@ -1,5 +1,6 @@
 """Tables of the page."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -8,6 +9,8 @@ from rockbatch.reporting.markup import Markup, escape, join, number, tag
 
 WHOLE = ".10g"  # all digits as given
 MOST_ROWS = 1000
+LEAST_COMMON = 3
+"""Rows from which on a column that says the same in all of them stands above the table."""
 MOST_OPEN = 60
 """Rows of the longest table that is shown unfolded; longer ones are folded, and not printed."""
 
@@ -15,7 +18,8 @@ MOST_OPEN = 60
 class Head(NamedTuple):
     """Head of a column: its text, the format of its numbers, an explanation, and the head over several columns.
 
-    ``value`` is the key of its values in the items of :func:`listed`, or a function of such an item.
+    ``value`` is the key of its values in the items of :func:`listed`, or a function of such an item. By a column with
+    ``filter`` the script of the page chooses rows.
     """
 
     text: str
@@ -23,6 +27,7 @@ class Head(NamedTuple):
     note: str | None = None
     group: str = ""
     value: str | Callable[[Any], object] = ""
+    filter: bool = False
 
     def value_in(self, item: Mapping[str, Any]) -> object:
         """Return the value of an item, None without one."""
@@ -39,6 +44,7 @@ def table(
 ) -> Markup:
     """Return a table in a container that scrolls if it is too wide. Columns without a value are left out.
 
+    Of a ``sortable`` one, which has many rows, columns that say the same in all of them stand in a line above it.
     ``prose``: its cells hold text of several lines.
 
     Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded.
@@ -46,10 +52,16 @@ def table(
     whole = list(rows)
     rows = whole[:MOST_ROWS]
     used = [i for i in range(len(heads)) if i == 0 or any(row[i] not in (None, "") for row in rows)]
+    same = [i for i in used[1:] if sortable and len(whole) > LEAST_COMMON and len({str(row[i]) for row in whole}) == 1]
+    used = [i for i in used if i not in same]
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}
 
     classes = {i: "n" if i in numeric else None for i in used}
-    top = [tag("tr", *(tag("th", heads[i].text, class_=classes[i], scope="col", title=heads[i].note) for i in used))]
+    heading = (
+        tag("th", heads[i].text, class_=classes[i], scope="col", title=heads[i].note, data_filter=heads[i].filter)
+        for i in used
+    )
+    top = [tag("tr", *heading)]
     if any(heads[i].group for i in used):
         spans = [(spanning, len(list(group))) for spanning, group in groupby(used, key=lambda i: heads[i].group)]
         spanning = (tag("th", label, scope="colgroup" if label else None, colspan=wide) for label, wide in spans)
@@ -67,7 +79,18 @@ def table(
     )
     if len(rows) > MOST_OPEN:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
-    return join(shown_of(len(rows), len(whole)), wide)
+    return join(
+        _common([heads[i] for i in same], [whole[0][i] for i in same]) if same else "",
+        shown_of(len(rows), len(whole)),
+        wide,
+    )
+
+
+def _common(heads: Sequence[Head], values: Sequence[object]) -> Markup:
+    """Return the line on columns that say the same in every row."""
+    words = [join(head.text, " ", value if isinstance(value, Markup) else number(value, head.form))
+             for head, value in zip(heads, values, strict=True)]  # fmt: skip
+    return tag("p", "In every row: ", join(*words, between="; "), ".", class_="legend")
 
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:
@@ -76,13 +99,26 @@ def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options:
 
 
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
-    """Return the cells of a column."""
+    """Return the cells of a column, its numbers with their decimal points below each other."""
     start, end = tag(kind, _HERE, **attributes).split(_HERE)
+    shown = [value if isinstance(value, Markup) else number(value, form) for value in values]
+    if form.endswith("g"):  # decimals that differ from row to row
+        shown = _aligned(shown)
+    return [Markup(f"{start}{escape(value)}{end}") for value in shown]
+
+
+def _aligned(values: Sequence[str]) -> list[str]:
+    """Return numbers with as much space behind them as the decimals of others take; words stay."""
+    tails = [len(match[1] or "") if (match := _DECIMALS.fullmatch(value)) else None for value in values]
+    most = max((tail for tail in tails if tail is not None), default=0)
+    spaces = ("\u2008" + "\u2007" * (most - 1), "\u2007")  # as wide as a point and digits, as wide as a digit
     return [
-        Markup(f"{start}{escape(value if isinstance(value, Markup) else number(value, form))}{end}") for value in values
+        value if tail is None or tail == most else value + (spaces[0] if tail == 0 else spaces[1] * (most - tail))
+        for value, tail in zip(values, tails, strict=True)
     ]
 
 
+_DECIMALS = re.compile(r"-?[\d,]+(\.\d+)?")
 _HERE = Markup("\0")
 
 

@@ -28,23 +28,31 @@ TOP = HERE.parent
 
 
 class Section(NamedTuple):
-    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading."""
+    """A part of the page: its heading, its anchor (the ``id`` that links go to), and what stands under the heading.
+
+    A ``folded`` one is unfolded by its heading, and by a link to its anchor. ``badge`` stands beside its name in the list.
+    """
 
     heading: str
     anchor: str
     content: Markup
+    folded: bool = False
+    badge: int = 0
 
 
-def document(kind: str, title: str, sections: Iterable[Section], version: str = __version__) -> str:
-    """Return a whole page as HTML; sections without content are left out.
+def document(
+    title: str, about: object, sections: Iterable[Section], version: str = __version__, whole: bool = False
+) -> str:
+    """Return a page as HTML; sections without content are left out.
 
-    On paper each page has the title and ``version``, that of the rockbatch that made the results.
+    ``about`` stands below the title. On paper each page has the title and ``version``, that of the rockbatch that made the
+    results, and sections that are folded are left out, unless the page is to be printed ``whole``: then none is.
     """
     style, script = ((HERE / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
     return render(
-        "reporting/page.html", kind=kind, title=title, sections=[section for section in sections if section.content],
+        "reporting/page.html", title=title, about=about, sections=[section for section in sections if section.content],
         version=f"rockbatch {version}", digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
-        markers=markers(), style=Markup(style), script=Markup(script),
+        markers=markers(), style=Markup(style), script=Markup(script), whole=whole,
     )  # fmt: skip
 
 

@@ -1,9 +1,9 @@
-"""The figure of a run: the histories of the paper's Fig. 5, thinned to the resolution of the picture, and its loops."""
+"""Figures of runs: histories as in the paper's Fig. 5, thinned to the resolution of the picture, and loops."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,17 +29,30 @@ from rockbatch.pier import yield_deflection
 Response = Any
 """A :class:`rockbatch.Response`, whose module imports this one."""
 
-WIDTH = 224.0
-HEIGHTS = (94.0, 60.0, 60.0, 60.0)
-LOOPS = 78.0
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "ü_g/g")
+GROUND = 3
+"""Place of the ground acceleration among the quantities: it is the same for all piers."""
+HEIGHTS = (94.0, 60.0, 60.0, 60.0)
+WIDTH = 320.0
+"""Width of the figure of one run [px]; loops are half as wide."""
+LOOPS = 112.0
+ON_PAGE = {0: 200.0, 1: 110.0, GROUND: 90.0}
+"""Quantities of :func:`together`, with the height of their panels [px]."""
+ACROSS = 900.0
+"""Width of :func:`together` [px]."""
 SEPARATE = ("separation", "lift-off")
 MOST_DEVICES = 3
 """Most dampers and tendons of a run whose loops are drawn."""
+MOST_LANES = 4
+"""Most piers whose events are drawn together, each in its own lane."""
 LOADED = 1e-3
-"""Share of the largest force below which a spring is not loaded: that of Bouc-Wen tends to nothing as its pivot rises."""
+"""Share of the largest force below which a spring is not loaded."""
 OVER = 1.5
 """Rotation over α beyond which the picture of a pier that overturns ends."""
+MOVES = 0.02
+"""Share of the largest rotation, and of α if it overturns, by which a pier that is not at rest is away from it."""
+CUT = 0.9
+"""Share of the time above which the stretch in which piers move is not worth a cut."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +69,14 @@ class History:
         Time and θ/α of the largest rotation.
     end : tuple of float
         Time and θ/α at the end.
+    moving : tuple of float
+        The first and the last time at which the pier is away from its rest by more than :data:`MOVES` of its peak [s].
     band : float
         |θ/α| up to which a weakly rocking pier keeps both supports: THEORY.md, eq. 10. Zero on the rigid base.
     springs, devices : tuple of Panel
         Force against deflection of both springs; force against elongation of the first dampers and tendons.
     """
 
-    rigid: bool
     status: str
     curves: list[tuple[Array, Array]]
     impacts: Array
@@ -70,70 +84,153 @@ class History:
     flights: Array
     peak: tuple[float, float]
     end: tuple[float, float]
-    band: float
+    moving: tuple[float, float]
+    band: float = 0.0
     springs: tuple[Panel, ...] = ()
     devices: tuple[Panel, ...] = ()
 
+    @property
+    def outcome(self) -> str:
+        """Return the largest rotation over α, or how the run ended instead, with its time."""
+        if self.status in OUTCOMES:
+            return f"{OUTCOMES[self.status]} at {self.end[0]:.1f} s"
+        return f"{abs(self.peak[1]):.4f} at {self.peak[0]:.1f} s"
 
-def reduced(response: Response, pixels: int = 200, most_devices: int | None = MOST_DEVICES) -> History:
-    """Return the response thinned for drawing, ``pixels`` wide."""
+
+OUTCOMES = {"overturned": "overturned", "flight": "left the ground"}
+"""Statuses of runs that end before their largest rotation, in words."""
+
+
+PEAK = Look("peak", shape="dot")
+"""Look of the largest rotation of a pier without a mark of its own."""
+
+
+class Drawn(NamedTuple):
+    """A history among others: its ``label`` in the legend, its ``name`` where values are read, and its style.
+
+    ``look`` is that of its curves, ``mark`` that of its largest rotation.
+    """
+
+    history: History
+    label: str
+    name: str
+    look: Look
+    mark: Look
+
+
+def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int | None = MOST_DEVICES) -> History:
+    """Return the response thinned for drawing, the stretch in which it moves ``pixels`` wide; its loops have this ``look``."""
     pier, t = response.pier, response.t
     theta = response.theta / pier.alpha
     ground = response.history["ag_h"].to_numpy(dtype=np.float64) / pier.gravity
     ordinates = (theta, response.omega / (pier.alpha * pier.p), response.energy, ground)
     worst = int(np.nanargmax(np.abs(theta)))
-    grain = max(float(t[-1]), 1e-9) / pixels
+    moving = _moving(t, theta)
+    grain = max(moving[1] - moving[0], 1e-9) / pixels
 
     def times(*kinds: str) -> Array:
         moments = response.events["t"][response.events["kind"].isin(kinds)].to_numpy(dtype=np.float64)
         return np.unique(np.rint(moments / grain)) * grain
 
     return History(
-        not response.base.on_springs,
         response.status,
-        [thin(t, y, pixels) for y in ordinates],
+        [_thinned(t, y, moving, pixels) for y in ordinates],
         times("impact"),
         times(*SEPARATE),
         times("flight"),
         (float(t[worst]), float(theta[worst])),
         (float(t[-1]), float(theta[-1])),
+        moving,
         _band(response),
-        _springs(response, pixels),
-        tuple(_device(response, name, pixels) for name in _devices(response)[:most_devices]),
+        _springs(response, look, pixels // 8),
+        tuple(_device(response, name, look, pixels // 8) for name in _devices(response)[:most_devices]),
     )
 
 
-def history(own: History, behind: History | None, shown: Sequence[History], record: str, title: str = "") -> Figure:
-    """Return the figure of a history, with another one ``behind`` it, on scales that hold all that are ``shown``."""
-    end = max(own.end[0], behind.end[0] if behind else 0.0) or 1.0
-    panels = []
-    for row, height in enumerate(HEIGHTS):
-        y = _scale(shown, row) if own.status == "ok" else spanning(QUANTITIES[row], _standing(own, row))
-        last = row == len(HEIGHTS) - 1
-        x = Axis("t [s]" if last else "", 0.0, end, about=4, numbered=last)
-        name = y.plain
-        marks: list[Mark] = [Polyline(*own.curves[row], name, look=Look("curve", 0 if own.rigid else 1))]
-        if behind is not None and row < 3:
-            marks.insert(0, Polyline(*behind.curves[row], f"{name}, rigid base", look=Look("behind")))
-        if row == 0:
-            marks += _events(own, y, end)
-        panels.append(Panel(x, replace(y, about=5 if row == 0 else 4), marks, width=WIDTH, height=height, reads="time"))
-    description = f"Rotation, velocity, energy and ground acceleration against time under {record}"
-    return Figure([*panels, *own.springs, *own.devices], description, title, stacked=True)
+def _moving(t: Array, theta: Array) -> tuple[float, float]:
+    """Return when the pier first leaves its rest, and when it has come to that at which it stays."""
+    least = MOVES * min(float(np.nanmax(np.abs(theta))), 1.0)
+    left, away = np.abs(theta) > least, np.abs(theta - theta[-1]) > least
+    if not left.any() or not away.any():
+        return float(t[0]), float(t[-1])
+    return float(t[left.argmax()]), float(t[np.flatnonzero(away)[-1]])
+
+
+def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tuple[Array, Array]:
+    """Return a history thinned to ``pixels`` while the pier moves, and outside as if these were the whole of it."""
+    first, last = np.searchsorted(t, moving)
+    parts = []
+    for part in (slice(0, first), slice(first, last + 1), slice(last + 1, len(t))):
+        inside = t[part]
+        if len(inside):
+            share = 1.0 if part.start == first else (inside[-1] - inside[0]) / (t[-1] - t[0])
+            parts.append(thin(inside, y[part], max(1, math.ceil(pixels * share))))
+    return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
+
+
+def together(runs: Sequence[Drawn], description: str) -> tuple[Figure, Axis]:
+    """Return the histories of piers under one motion while any of them moves, and the time of the whole record."""
+    end = max(run.history.end[0] for run in runs) or 1.0
+    low, high = min(run.history.moving[0] for run in runs), max(run.history.moving[1] for run in runs)
+    low, high = max(low - 0.06 * (high - low), 0.0), min(high + 0.03 * (high - low), end)
+    if high - low > CUT * end:
+        low, high = 0.0, end
+    figure = Figure(_timed(runs, ON_PAGE, (low, high), ACROSS), description, stacked=True)
+    return figure, replace(figure.panels[-1].x, low=0.0, high=end)
 
 
 def of_one(response: Response, title: str) -> Figure:
-    """Return the figure of a response alone, as fine as it is printed."""
-    own = reduced(response, 2000, None)
-    return history(own, None, [own], response.record, title)
+    """Return the figure of a response alone, as fine as it is printed, over its loops."""
+    look = Look("curve", int(response.base.on_springs))
+    own = reduced(response, look, 2000, None)
+    shown = [Drawn(own, "", "", look, PEAK)]
+    panels = _timed(shown, dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0), WIDTH)
+    description = f"Rotation, velocity, energy and ground acceleration against time under {response.record}"
+    return Figure([*panels, *own.springs, *own.devices], description, title, stacked=True)
+
+
+def _timed(
+    runs: Sequence[Drawn], heights: Mapping[int, float], shown: tuple[float, float], width: float
+) -> list[Panel]:
+    """Return a panel for each quantity against time: every run's, and the ground's acceleration once."""
+    panels = []
+    for row, height in heights.items():
+        last = row == max(heights)
+        drawn = [max(runs, key=lambda run: np.ptp(run.history.moving))] if row == GROUND else runs
+        y = _scale([run.history for run in drawn], row)
+        marks: list[Mark] = [
+            Polyline(
+                *run.history.curves[row],
+                y.plain if row == GROUND else f"{y.plain} {run.name}".strip(),
+                look=Look("curve") if row == GROUND else run.look,
+                label=_entry(run) if row == 0 else "",
+            )
+            for run in drawn
+        ]
+        if row == 0:
+            marks += _events(runs, y, shown)
+        x = Axis("t [s]" if last else "", *shown, about=8, numbered=last)
+        panels.append(Panel(x, replace(y, about=4 + (row == 0)), marks, width=width, height=height, reads="time"))
+    return panels
 
 
 def _scale(histories: Sequence[History], row: int) -> Axis:
-    """Return one scale for all columns, not stretched by piers that overturned."""
+    """Return one scale for all, not stretched by piers that overturned."""
     stood = [one for one in histories if one.status == "ok"] or histories
-    bands = [np.array([-one.band, one.band]) for one in stood] if row == 0 else []
-    margin = 0.15 if row == 0 else 0.06  # strokes of events stand beyond the curve
-    return spanning(QUANTITIES[row], *(one.curves[row][1] for one in stood), *bands, margin=margin)
+    bands = [np.array([-one.band, one.band]) for one in stood[:1]] if row == 0 and len(histories) == 1 else []
+    # Strokes of events stand beyond the curves
+    margin = 0.06 + 1.3 * len(histories) * _lane(len(histories)) * (row == 0)
+    return spanning(QUANTITIES[row], *(_standing(one, row) for one in stood), *bands, margin=margin)
+
+
+def _lane(runs: int) -> float:
+    """Return the height of the strokes of one pier's events, as a share of the panel; 0 if they are not drawn."""
+    return 0.05 if runs == 1 else 0.03 if runs <= MOST_LANES else 0.0
+
+
+def _entry(run: Drawn) -> str:
+    """Return a run's entry in the legend, with what it came to; none without a label."""
+    return f"{run.label}: {run.history.outcome}" if run.label else ""
 
 
 def _standing(one: History, row: int) -> Array:
@@ -144,21 +241,36 @@ def _standing(one: History, row: int) -> Array:
     return values[times <= t[beyond[0]]] if len(beyond) else values
 
 
-def _events(one: History, y: Axis, end: float) -> Iterator[Mark]:
-    """Yield impacts at the foot, separations at the top, flights across, the peak with its value, and the end of the run."""
-    if one.band:
-        yield Span("y", max(-one.band, y.low), min(one.band, y.high), look=Look("band"), label="both supports loaded")
-    kinds = (one.impacts, 0.0, 0.05, "event", "impact"), (one.separations, 0.95, 1.0, "event", "separation")
-    for times, low, high, kind, label in (*kinds, (one.flights, 0.0, 1.0, "flown", "both pivots off the ground")):
-        if len(times):
-            yield Rule("x", times, low, high, look=Look(kind), label=label)
-    peak = one.peak[0], float(np.clip(one.peak[1], y.low, y.high))
-    if one.status == "ok" and one.peak[1] != 0:
-        yield Points(np.full(1, peak[0]), np.full(1, peak[1]), look=Look("peak", shape="dot"))
-        yield Words(*peak, f"{abs(one.peak[1]):.4f}", -1 if peak[0] > 0.75 * end else 1, look=Look("peak"))
-    if one.status in ("overturned", "flight"):
-        last = one.end[0], float(np.clip(one.end[1], y.low, y.high))
-        yield Points(np.full(1, last[0]), np.full(1, last[1]), look=sign_of(one.status), label=one.status)
+def _events(runs: Sequence[Drawn], y: Axis, shown: tuple[float, float]) -> Iterator[Mark]:
+    """Yield impacts at the foot, separations at the top, flights across, peaks, the largest with its value, and ends."""
+    if len(runs) == 1 and (band := runs[0].history.band):
+        yield Span("y", max(-band, y.low), min(band, y.high), look=Look("band"), label="both supports loaded")
+    lane = _lane(len(runs))
+    for kind, where in (("impacts", "at the foot"), ("separations", "at the top")) if lane else ():
+        times = [getattr(run.history, kind) for run in runs]
+        if any(map(len, times)):  # grey in the legend
+            yield Rule("x", np.empty(0), look=Look("event"), label=f"{kind}, {where}")
+        for place, (run, own) in enumerate(zip(runs, times, strict=True)):
+            low = place * lane if kind == "impacts" else 1.0 - (place + 1) * lane
+            yield Rule("x", own, low, low + 0.9 * lane, look=Look("event", run.look.colour))
+    flights = np.concatenate([run.history.flights for run in runs])
+    if len(flights):
+        yield Rule("x", flights, look=Look("flown"), label="both pivots off the ground")
+    stood = [run for run in runs if run.history.status == "ok" and run.history.peak[1] != 0]
+    for run in stood:
+        yield Points(*_at(run.history.peak, y), look=run.mark, label=_entry(run))
+    if stood:
+        worst = max((run.history.peak for run in stood), key=lambda peak: abs(peak[1]))
+        side = -1 if worst[0] > 0.25 * shown[0] + 0.75 * shown[1] else 1
+        yield Words(worst[0], float(np.clip(worst[1], y.low, y.high)), f"{abs(worst[1]):.4f}", side, look=Look("peak"))
+    for run in runs:
+        if run.history.status in OUTCOMES:
+            yield Points(*_at(run.history.end, y), look=sign_of(run.history.status), label=OUTCOMES[run.history.status])
+
+
+def _at(point: tuple[float, float], y: Axis) -> tuple[Array, Array]:
+    """Return a point for a marker, at the edge of the panel if it lies beyond."""
+    return np.full(1, point[0]), np.full(1, np.clip(point[1], y.low, y.high))
 
 
 def _band(response: Response) -> float:
@@ -167,7 +279,7 @@ def _band(response: Response) -> float:
     return math.asin(min(sine, 1)) / pier.alpha
 
 
-def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
+def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     """Return force against deflection of both springs, while they are loaded: over those at yield if they can yield."""
     base, pier, sides = response.base, response.pier, ("left", "right")
     if not base.on_springs:
@@ -177,8 +289,10 @@ def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
     forces = [response.z_left, response.z_right] if base.yields else [
         response.history[f"force_{side}"].to_numpy(dtype=np.float64) / pier.gravity for side in sides
     ]  # fmt: skip
-    least = LOADED * max(float(np.abs(force).max(initial=0.0)) for force in forces)
-    forces = [np.where(force < -least, force, np.nan) for force in forces]
+    # A viscoelastic spring recovers while its pivot is in the air, far above: it is loaded while the support bears
+    borne = [response.history[f"force_{side}"].to_numpy(dtype=np.float64) for side in sides]
+    least = LOADED * max(float(np.abs(force).max(initial=0.0)) for force in borne)
+    forces = [np.where(load < -least, force, np.nan) for load, force in zip(borne, forces, strict=True)]
     v = [response.history[f"v_{side}"].to_numpy(dtype=np.float64) / unit for side in sides]
     # As in the paper, the axis ends where the spring unloads: a lifted pivot may be far above
     loaded = np.concatenate([own[~np.isnan(force)] for own, force in zip(v, forces, strict=True)])
@@ -189,11 +303,8 @@ def _springs(response: Response, pixels: int) -> tuple[Panel, ...]:
     yields = Rule("y", -np.ones(1), look=Look("edge", dash=1), label="force at which a support yields")
     panels = []
     for side, own, force in zip(sides, v, forces, strict=True):
-        marks: list[Mark] = [Polyline(*without_repeats(own, force, pixels), y.plain, look=Look("curve", 1))]
-        scale = replace(y, numbered=side == "left")
-        panels.append(
-            Panel(x, scale, marks + [yields] * base.yields, side, width=WIDTH / 2, height=LOOPS, reads="plane")
-        )
+        marks: list[Mark] = [Polyline(*without_repeats(own, force, pixels), y.plain, look=look)]
+        panels.append(Panel(x, y, marks + [yields] * base.yields, side, width=WIDTH / 2, height=LOOPS, reads="plane"))
     return tuple(panels)
 
 
@@ -204,7 +315,7 @@ def _devices(response: Response) -> list[str]:
     return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
-def _device(response: Response, name: str, pixels: int) -> Panel:
+def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:
     """Return force against elongation [mm] of a device, in kN if the mass is known; of a pair, the right one behind."""
     table, pier = response.restraints, response.pier
     assert table is not None
@@ -212,10 +323,11 @@ def _device(response: Response, name: str, pixels: int) -> Panel:
     factor, unit = (1.0 / pier.gravity, "F/(M g)") if pier.mass_t is None else (pier.mass_t, "F [kN]")
     elongations = [1000.0 * table[f"{name}{side} elongation"].to_numpy(dtype=np.float64) for side in sides]
     forces = [factor * table[f"{name}{side} force"].to_numpy(dtype=np.float64) for side in sides]
+    looks = {" right": replace(look, kind="right")}
     marks = [
-        Polyline(*without_repeats(u, force, pixels), f"{unit}{side}", look=Look("right" if side == " right" else "curve", 1),
-             label=f"at the{side} pivot" if side else "")
+        Polyline(*without_repeats(u, force, pixels), f"{unit}{side}", look=looks.get(side, look),
+                 label=f"at the{side} pivot" if side else "")
         for side, u, force in zip(sides, elongations, forces, strict=True)
     ]  # fmt: skip
-    axes = spanning("elongation [mm]", *elongations, about=4), spanning(unit, *forces)
-    return Panel(*axes, marks, name, width=WIDTH, height=LOOPS, reads="plane")
+    axes = spanning("elongation [mm]", *elongations, about=3), spanning(unit, *forces)
+    return Panel(*axes, marks, name, width=WIDTH / 2, height=LOOPS, reads="plane")

@@ -3,6 +3,7 @@
 import re
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
+from typing import NamedTuple
 
 VOID = {"meta", "br", "img", "input", "link"}
 
@@ -42,6 +43,9 @@ class Page(HTMLParser):
         self.attributes += attrs
 
     def handle_endtag(self, tag: str) -> None:
+        if tag in ("td", "th"):
+            row = self.tables[self.section][-1]
+            row[-1] = row[-1].rstrip("\u2007\u2008")  # decimals that other rows have
         if not self.open or self.open.pop() != tag:
             self.mismatched.append(tag)
 
@@ -66,14 +70,39 @@ class Page(HTMLParser):
 
 def figures(text: str) -> list[ET.Element]:
     """Return the inline pictures, but for those of legends; raises if one is not well-formed XML."""
-    return [
-        svg for svg in map(ET.fromstring, re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)) if "role" in svg.attrib
-    ]
+    pictures, start, depth = [], 0, 0
+    for tag in re.finditer(r"<(/?)svg\b", text):
+        start = start if depth else tag.start()
+        depth += -1 if tag[1] else 1  # a picture may hold others
+        if depth == 0:
+            pictures.append(ET.fromstring(text[start : tag.end() + 1]))
+    return [svg for svg in pictures if "role" in svg.attrib]
 
 
-def panels(text: str) -> list[ET.Element]:
-    """Return the pictures of peak rotations, one for each ground motion, scale and pier."""
-    return [svg for svg in figures(text) if {"marks", "strip"} & set(svg.attrib["class"].split()) == {"marks"}]
+class DotRow(NamedTuple):
+    """A row of a picture of peaks: its words, what its marks say in each column, and what stands for runs without a peak."""
+
+    words: str
+    marks: list[list[str]]
+    ends: list[str]
+    role: str
+
+
+def dot_rows(text: str, section: str = "answer") -> list[DotRow]:
+    """Return the rows of the pictures of peaks in a section, without those that other folds hide."""
+    own = text[text.index(f'<section id="{section}">') :].split("</section>")[0]
+    rows = []
+    for role, row in re.findall(r'<div class="row ?(\w*)"[^>]*>(.*?)</div>', own, re.DOTALL):
+        strips = re.findall(r'<svg class="plot strip marks".*?</svg>', row, re.DOTALL)
+        marks = [
+            [re.sub(r"<[^>]+>", "", title).replace("\u00a0", " ") for title in re.findall(r"<title>(.*?)</title>", re.sub(
+                r'<line[^>]*class="limit[^"]*".*?</line>', "", strip, flags=re.DOTALL), re.DOTALL)]
+            for strip in strips
+        ]  # fmt: skip
+        words = Page(re.search(r'<span class="of".*?</span></span>|<span class="of".*?</span>', row, re.DOTALL)[0]).text
+        ends = [Page(end).text for end in re.findall(r'<span class="ends">(.*?)</span>(?=<svg|$)', row, re.DOTALL)]
+        rows.append(DotRow(words, marks, ends, role))
+    return rows
 
 
 def svg_texts(figure: ET.Element) -> list[str]:

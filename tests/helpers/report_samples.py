@@ -166,7 +166,7 @@ def _rocking(pier: Pier, base: Base) -> pd.DataFrame:
     history["ag_h"] = np.where(t < 0.5, pier.gravity * np.sin(4 * np.pi * t), 0.0)
     history["ag_v"] = 0.0
     history["energy"] = 0.7 * np.exp(-0.3 * t) * (t > 0.2)
-    springs = ["v", "z_left", "z_right", "v_left", "v_right"]
+    springs = ["v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"]
     history[springs] = np.nan
     if isinstance(base, ElasticBase):
         ripple = 0.02 * pier.alpha * np.sin(base.beta * pier.p * t) * np.exp(-0.5 * t)
@@ -180,5 +180,6 @@ def _rocking(pier: Pier, base: Base) -> pd.DataFrame:
             for i in range(1, len(v)):
                 z[i] = min(0.0, max(-1.0, z[i - 1] + (v[i] - v[i - 1]) / yielding))
             history[f"v_{side}"], history[f"z_{side}"] = v, z
+            history[f"force_{side}"] = 0.5 * eta * pier.gravity * z
         history["v"] = (history["v_left"] + history["v_right"]) / 2
     return history

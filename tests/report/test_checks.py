@@ -24,6 +24,13 @@ def page(directory, *verdicts: Verdict, cases=None, **results) -> Page:
     return Page(write_report(directory, []).read_text(encoding="utf-8"))
 
 
+def card(found: Page) -> list[list[str]]:
+    """The rows of the scorecard, with what stands in each cell; of the parameters in the name of a case nothing."""
+    return [
+        [" ".join(re.sub(r"^(\d): [^a-z]*", r"\1 ", cell).split()) for cell in row] for row in found.tables["answer"]
+    ]
+
+
 def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
     found = page(
         tmp_path,
@@ -33,21 +40,27 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
         verdict("3", "pass", check="tilt"),
     )
     assert (
-        "? 1 of 3 cases meets the limits, but none is set on mean settlement, residual tilt, ductility: 1."
+        "? 1 of 3 cases meets the limits, but none is set on mean settlement, residual tilt, ductility: 1: β = 40, η = 2.5."
         in found.text
     )
-    assert "✗ 1 of 3 cases fails: 2.margin: 0.625 > 0.5, in 2." in found.text
-    assert "? 1 of 3 cases cannot be decided: 3.margin in 3: between 0.2 and 0.6, limit 0.5." in found.text
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in found.tables["checks"]]
-    assert rows[:4] == [
-        ["case", "margin", "tilt"], ["1", "✓ 0.50", ""], ["2", "✗ 1.25", ""], ["3", "? 0.99", "✓ 0.50"],
+    assert (
+        "✗ 1 of 3 cases fails: 2: β = 40, η = 3.5. Nearest to passing: 2: β = 40, η = 3.5, margin at 125 % of its limit."
+        in found.text
+    )
+    assert (
+        "? 1 of 3 cases cannot be decided: 3: β = 80, η = 2.5. margin in 3: β = 80, η = 2.5: between 0.2 and 0.6, limit 0.5."
+        in found.text
+    )
+    assert card(found) == [
+        ["Case", "margin≤ 0.5", "tilt≤ 0.5"], ["1 passes 1 check", "0.25✓ 50 %", "–"],
+        ["3 check not decided", "0.25? 99 %", "0.25✓ 50 %"], ["2 fails 1 check", "0.625✗ 125 %", "–"],
     ]  # fmt: skip
 
 
 def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(tmp_path):
     shown = page(tmp_path, *(verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING))
     assert "✓ Every check passes in the only case." in shown.text
-    assert "Closest to its limit: theta_max_over_alpha, 0.25 ≤ 0.5." in shown.text
+    assert "Closest to its limit: theta_max_over_alpha at 50 %." in shown.text
     assert "What does not pass" not in shown.text
 
 
@@ -59,8 +72,9 @@ def test_a_case_without_a_check_is_counted_and_its_overturning_named(tmp_path):
     fell = {(record, "rigid"): FELL for record, _ in FIG7[:2]}
     shown = page(tmp_path, *checked, cases=("rigid", "1", "2"), changes=fell)
     assert "? 1 of 3 cases passes; 2 are not checked." in shown.text
-    assert "Not checked: rigid, 2 of 6 runs overturned; 2." in shown.text
-    assert "✓ " not in shown.text[: shown.text.index("Peak rotations")]
+    assert "Not checked: rigid, 2 of 6 runs overturned; 2: η = 3.5." in shown.text
+    assert [row[0] for row in card(shown)[1:]] == ["1 passes 3 checks", "rigidnot checked", "2 not checked"]
+    assert "✓" not in shown.text[: shown.text.index("Case")]
 
 
 def test_a_station_that_could_not_be_used_takes_the_green_from_what_passes(tmp_path):
@@ -84,13 +98,12 @@ def test_a_station_left_out_by_name_stands_beside_the_green(tmp_path):
 
 def test_a_demand_beside_its_limit_shows_on_which_side_it_lies(tmp_path):
     shown = page(tmp_path, verdict("1", "fail", ratio=1.001), verdict("2", "pass", ratio=1.0))
-    cells = [row[1].replace("\u00a0", " ") for row in shown.tables["checks"][1:3]]
-    assert cells == ["✗ 1.0010", "✓ 1.00"]
+    assert [row[1] for row in card(shown)[1:]] == ["0.25✓ 100 %", "0.25✗ 100.1 %"]
 
 
 def test_an_infinite_demand_is_shown_as_such(tmp_path):
     shown = page(tmp_path, verdict("1", "fail", ratio=math.inf, value=math.inf, high=math.inf))
-    assert shown.tables["checks"][1][1] == "✗\u00a0∞"
+    assert card(shown)[1][1] == "∞✗ ∞"
     assert next(row for row in shown.tables["checks"] if row[1] == "1")[3:5] == ["∞", "0.2 – ∞"]
 
 
@@ -102,13 +115,21 @@ def test_a_verdict_stands_with_its_unit_margin_and_governing_run(tmp_path):
         verdict("2", "fail", ratio=2.0, margin=-0.5, value=1.0, low=1.0, high=1.0, **more, governing=1.5),
         verdict("3", "not decided", high=math.inf, **more, governing=0.2),
     )
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
+    rows = [[cell.replace("\u00a0", " ").strip() for cell in row] for row in shown.tables["checks"]]
     start = next(i for i, row in enumerate(rows) if "governing run" in row)
     failed, unsure, passed = ([row[i] for i in (1, 2, 3, 6, 7, 8, 9)] for row in rows[start + 1 : start + 4])
     assert rows[start][8] == "stations"
-    assert failed == ["2", "✗ fail", "1", "-0.5", "m", "5", "largest: WTMC, WTMC.N28W (-), 1.5"]
-    assert unsure == ["3", "? not decided", "≥ 0.25", "≤ 0.25", "m", "5", "left open by WTMC, WTMC.N28W (-), 0.2"]
-    assert passed == ["1", "✓ pass", "0.25", "0.25", "m", "5", "governs: WTMC, WTMC.N28W (-), 0.25"]
+    assert failed == ["2: β = 40, η = 3.5", "✗ fail", "1", "-0.5", "m", "5", "largest: WTMC, WTMC.N28W (-), 1.5"]
+    assert unsure == [
+        "3: β = 80, η = 2.5",
+        "? not decided",
+        "≥ 0.25",
+        "≤ 0.25",
+        "m",
+        "5",
+        "left open by WTMC, WTMC.N28W (-), 0.2",
+    ]
+    assert passed == ["1: β = 40, η = 2.5", "✓ pass", "0.25", "0.25", "m", "5", "governs: WTMC, WTMC.N28W (-), 0.25"]
 
 
 def test_each_verdict_has_its_colour_and_a_sign_with_a_name(tmp_path):
@@ -128,20 +149,55 @@ def test_an_event_that_no_record_may_do_reads_as_words(tmp_path):
         verdict("1", "pass", **event, value=0.0, high=0.0, ratio=0.0),
         verdict("2", "fail", **event, value=1.0, high=1.0, ratio=math.inf),
     )
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
-    assert [row[1] for row in rows[1:3]] == ["✓ none", "✗ some"]
+    assert [row[1] for row in card(shown)[1:]] == ["none✓", "some✗"]
     assert "no record has a run that is missing or not settled" in shown.text
     assert not re.search(r"at most 0(?![.\d])", shown.text)  # but of an error
 
 
-def test_many_verdicts_are_summed_up_and_the_worst_named(tmp_path):
-    some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(40)]
-    shown = page(tmp_path, *some, *(verdict(f"c{i}", "pass") for i in range(5)))
-    rows = [[cell.replace("\u00a0", " ") for cell in row] for row in shown.tables["checks"]]
-    assert rows[:3] == [["check", "pass", "fail"], ["drift", "", "✗ 40"], ["margin", "✓ 5", ""]]
-    worst = [row for row in rows if row[0] == "drift" and "✗ fail" in row]
-    assert [row[1] for row in worst] == [f"c{i}" for i in range(39, 29, -1)]
-    assert "All of them, with what governs each, are in checks.csv" in shown.text
+def test_of_many_cases_the_six_nearest_to_passing_stand_open_and_the_others_follow_folded(tmp_path):
+    some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(1, 41)]
+    write_results(tmp_path)
+    write_verdicts(tmp_path, [*some, *(verdict(f"c{i}", "pass") for i in range(1, 6))])
+    text = write_report(tmp_path, []).read_text(encoding="utf-8")
+    own = text[text.index('<table class="card">') :].split("</table>")[0]
+    rows = re.findall(r'<tr( class="folded")?><th scope="row">(c\d+|rig|\d:)', own)
+    assert [name for folded, name in rows if not folded] == [f"c{i}" for i in range(1, 7)]
+    assert [name for folded, name in rows if folded] == [
+        *(f"c{i}" for i in range(7, 41)),
+        "rig",
+        "1:",
+        "2:",
+        "3:",
+        "4:",
+    ]
+    assert "The 6 nearest to passing of 45 cases." in text  # the five of the study, which have no verdict, too
+    assert "Every verdict with its numbers, the worst first (45)" in text
+
+
+def test_checks_that_pass_everywhere_are_counted_beyond_the_seventh_and_what_fails_comes_first(tmp_path):
+    passing = [verdict("1", "pass", check=f"c{i}", ratio=i / 20) for i in range(10)]
+    failing = [verdict("1", "fail", check=f"f{i}", ratio=1.5 + i) for i in range(2)]
+    head, row = card(page(tmp_path, *passing, *failing))
+    assert [name.split("≤")[0] for name in head] == ["Case", "f1", "f0", "c9", "c8", "c7", "c6", "c5", ""]
+    assert row[-1] == "✓ 5 more"
+    head, row = card(page(tmp_path, *(verdict("1", "fail", check=f"f{i}", ratio=2.0) for i in range(9))))
+    assert len(row) == 1 + 9
+
+
+def test_small_limits_stand_in_millimetres_with_the_digits_that_tell(tmp_path):
+    """Three digits, and more where they would make a demand look like its limit."""
+    more = {"unit": "m", "limit": 0.05, "check": "settlement"}
+    shown = card(page(tmp_path, verdict("1", "pass", **more, value=0.0123456, ratio=0.246912),
+                      verdict("2", "fail", **more, value=0.0500012, ratio=1.000024)))  # fmt: skip
+    assert shown == [
+        ["Case", "settlement≤ 50 mm"], ["1 passes 1 check", "12.3✓ 25 %"], ["2 fails 1 check", "50.001✗ 100.002 %"]
+    ]  # fmt: skip
+
+
+def test_a_case_whose_checks_pass_though_no_run_stands_is_not_said_to_pass(tmp_path):
+    fell = {(record, "1"): FELL for record, _ in FIG7}
+    shown = page(tmp_path, verdict("1", "pass", check="static deflection"), verdict("2", "pass"), changes=fell)
+    assert {row[0] for row in card(shown)[1:]} == {"2 passes 1 check", "1 no run ends standing"}
 
 
 def test_what_a_statistic_of_a_code_rests_on_is_said(tmp_path):
@@ -163,8 +219,9 @@ def test_the_verdict_comes_before_the_figure_and_the_table_of_checks_after_it(tm
     write_results(tmp_path)
     write_verdicts(tmp_path, [verdict(case, "fail", ratio=1.25) for case, _ in FOUNDATIONS])
     text = write_report(tmp_path, []).read_text(encoding="utf-8")
-    places = [text.index(f'<section id="{anchor}">') for anchor in ("answer", "figure", "checks", "studied")]
+    places = [text.index(f'<section id="{anchor}">') for anchor in ("answer", "peaks", "checks", "studied")]
     assert places == sorted(places)
-    assert places[0] < text.index("All 5 cases fail") < places[1]
-    assert "answer" not in Page(text).tables
-    assert len(Page(text).tables["checks"]) > len(FOUNDATIONS)
+    assert (
+        places[0] < text.index("All 5 cases fail") < text.index('class="card"') < text.index('class="dots"') < places[1]
+    )
+    assert len(Page(text).tables["answer"]) == 1 + len(FOUNDATIONS)

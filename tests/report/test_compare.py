@@ -8,7 +8,7 @@ import sys
 import pandas as pd
 import pytest
 from check_samples import verdict
-from report_page import Page, panels
+from report_page import Page, dot_rows
 from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_results
 
 from rockbatch.checks import write_verdicts
@@ -69,13 +69,17 @@ def test_failures_of_both_studies_stand_beside_the_better_one(tmp_path):
     assert "of 29 pairs of runs (1 more have no ratio)" in text
 
 
-def test_panels_hold_both_studies(tmp_path):
-    a, b = two(tmp_path)
+def test_the_picture_has_a_column_for_each_study_on_one_axis(tmp_path):
+    a, b = two(tmp_path, second={"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.5}}})
     text = write_comparison(a, b).read_text(encoding="utf-8")
-    drawn = panels(text)
-    assert len(drawn) == len(FIG7)
-    marks = [node.get("class") for node in drawn[0].iter() if node.tag.endswith("use")]
-    assert sorted(marks) == sorted(["s1", "s1 open", "s2", "s2 open", "s3", "s3 open", "s4", "s4 open"])
+    rows = dot_rows(text, "figure")
+    assert len(rows) == len(FIG7)
+    assert rows[0].words == "SYL360"
+    first, second = ({title.split(": ")[-2][-1:]: title for title in marks} for marks in rows[0].marks)
+    assert [len(first), len(second)] == [5, 5]
+    changed = [title for title in rows[0].marks[1] if title not in rows[0].marks[0]]
+    assert [title.split("\n")[1].split(" ±")[0] for title in changed] == ["2: 0.5000"]
+    assert text.count('<span class="column">') == 2
 
 
 def test_what_is_only_in_one_is_listed_and_not_compared(tmp_path):

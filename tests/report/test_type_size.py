@@ -10,8 +10,9 @@ from report_page import figures
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.commands.cli import main
+from rockbatch.common.figures.description import Look
 from rockbatch.reporting import write_report
-from rockbatch.simulation.figures import QUANTITIES, History, history
+from rockbatch.simulation.figures import ON_PAGE, PEAK, QUANTITIES, Drawn, History, together
 
 STUDY = study_text(
     title="Every picture",
@@ -37,7 +38,7 @@ STUDY = study_text(
     sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"kinematics": ["first-order", "finite"]}},
 )  # fmt: skip
 PICTURES = {
-    "answer", "figure", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",
+    "answer", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",
     "error_and_time",
 }  # fmt: skip
 """Sections of the report that have one."""
@@ -90,28 +91,6 @@ def test_the_smallest_words_of_every_picture_can_be_read(tmp_path, report, width
 
 
 @needs_chromium
-def test_a_wide_table_goes_on_below_on_paper_with_every_column_once(tmp_path, report):
-    act = """
-    const table = document.querySelector("#forces .wide > table");
-    const heads = (of) => [...of.tHead.rows[of.tHead.rows.length - 1].cells].map((cell) => cell.textContent);
-    found.all = heads(table);
-    dispatchEvent(new Event("beforeprint"));
-    const parts = [...document.querySelectorAll("#forces .sliced")][0].querySelectorAll("table");
-    found.parts = [...parts].map(heads);
-    found.rows = [...parts].map((part) => part.tBodies[0].rows.length - table.tBodies[0].rows.length);
-    dispatchEvent(new Event("afterprint"));
-    found.left = document.querySelectorAll(".sliced, .whole-width").length;
-    """
-    found = browse(tmp_path, report, act)
-    first, *rest = found["all"]
-    assert len(found["parts"]) > 1
-    assert all(part[0] == first for part in found["parts"])
-    assert [head for part in found["parts"] for head in part[1:]] == rest
-    assert set(found["rows"]) == {0}
-    assert found["left"] == 0
-
-
-@needs_chromium
 def test_no_page_is_printed_smaller_because_a_table_is_too_wide(tmp_path, report):
     """Check the scale of the pages, which Chromium shrinks until the widest element fits: 300 units to an inch, 3.125 a pixel."""
     text = report.read_text(encoding="utf-8")
@@ -136,8 +115,10 @@ def test_a_pier_that_overturns_leaves_the_picture_and_does_not_flatten_how_it_ro
     theta = np.where(t < 10.0, 0.4 * np.sin(t), 0.4 * np.sin(10.0) - np.expm1(t - 10.0))
     none = np.array([])
     fell = History(
-        True, "overturned", [(t, theta)] * len(QUANTITIES), none, none, none, (20.0, 1e4), (20.0, theta[-1]), 0.0
-    )  # fmt: skip
-    scales = [panel.y for panel in history(fell, None, [fell], "record").panels]
-    assert len(scales) == len(QUANTITIES)
+        "overturned", [(t, theta)] * len(QUANTITIES), none, none, none, (20.0, 1e4), (20.0, theta[-1]), (0.0, 20.0)
+    )
+    figure, _ = together([Drawn(fell, "rigid", "rigid", Look("rigid"), PEAK)], "")
+    scales = [panel.y for panel in figure.panels]
+    assert len(scales) == len(ON_PAGE)
     assert all(-2.0 < scale.low < -0.4 < 0.4 < scale.high < 2.0 for scale in scales)
+    assert "rigid: overturned at 20.0 s" in figure.legend

@@ -515,5 +515,5 @@ def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):
     energy = response.ledger[["kinetic", "potential", "elastic"]].sum(axis=1)
     np.testing.assert_allclose(response.energy, energy, atol=1e-9)
     report = (tmp_path / "out" / "report.html").read_text()
-    assert ">damper 1</text>" in report
+    assert ", damper 1</span></figcaption>" in report
     assert "F/(M g) left" in report

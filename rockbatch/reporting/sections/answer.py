@@ -1,45 +1,141 @@
-"""The answer: verdicts, worst responses, runs without a result, and every peak in one picture."""
+"""The first screen: which cases pass, every check in every case, runs without a result, and every peak in one picture."""
 
-import math
+from collections.abc import Iterator
 from decimal import ROUND_UP, Decimal
 
 import numpy as np
 
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
-from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all
+from rockbatch.checks.responses import RESPONSES, Worst, in_words
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
-from rockbatch.reporting.markup import Markup, join, number, tag
+from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
 from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
-from rockbatch.reporting.table import alarm
-from rockbatch.reporting.templates import render
+from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.results.rows import NOT_RUN
 from rockbatch.results.suite_statistics import reasons_of_failure
 
-MOST_COMPARED = 4
-"""Cases whose greatest rotations stand beside each other."""
-
 LEAST_ERROR = 1e-6
 """Of α: smaller errors are given as this."""
-
-Facts = list[tuple[str, Markup]]
-"""Headings with a sentence each."""
+UNITS = {
+    "theta_max_over_alpha": ("θ/α", 1.0), "top_drift_m": ("mm", 1e3), "settlement_m": ("mm", 1e3), "base_tilt_rad": ("mrad", 1e3),
+    "theta_res_rad": ("mrad", 1e3), "heel_uplift_m": ("mm", 1e3), "ductility": ("", 1.0),
+}  # fmt: skip
+"""Units of the responses in the table, and factors to them."""
+DEVICES = {
+    "damper": ("stroke_m", "stroke"), "tendon": ("yield_m", "plastic elongation"), "stop": ("deflection_m", "deflection"),
+    "deck_spring": ("deflection_m", "deflection"),
+}  # fmt: skip
+"""Column of each kind of device of which the table has the greatest value beside the force, and its words."""
 
 
 def section(finished: Finished) -> Markup:
     """Return the first screen; every check and every run follow further down."""
     weak = weak_supports(finished.info["cases"])
-    passes = tag("div", verdicts.answer(finished), class_="lead")
-    return join(tag("div", alarm(weak)) if weak else "", passes, worst(finished), by_record(finished))
+    checked = any(verdict.case for verdict in finished.verdicts)
+    card = verdicts.scorecard(finished) if checked else responses(finished)
+    return join(
+        tag("div", alarm(weak)) if weak else "", tag("div", verdicts.answer(finished), class_="lead"),
+        paragraphs(*_without_a_result(finished)), card, tag("p", *_notes(finished, checked), class_="legend"),
+        by_record(finished),
+    )  # fmt: skip
 
 
-def worst(finished: Finished) -> Markup:
-    """Return the worst responses, and how the runs ended, first those that did not end standing."""
+def responses_beside_checks(finished: Finished) -> Markup:
+    """Return the greatest responses of each case, whatever is checked; empty without checks, since they are the answer then."""
+    return responses(finished) if any(verdict.case for verdict in finished.verdicts) else Markup("")
+
+
+def responses(finished: Finished) -> Markup:
+    """Return a row for each case with its greatest responses among the runs that end standing, each with its record."""
+    if finished.runs.empty:
+        return Markup("")
+    by_case = grouped(finished.worst, lambda worst: _place(finished, worst))
+    present = [name for name in RESPONSES if any(worst.demand == name for worst in finished.worst)]
+    devices = [kind for kind, (column, _) in DEVICES.items() if f"{kind}_{column}" in finished.runs]
+    rows = []
+    for (series, pier), of_case in sorted(by_case.items(), key=lambda item: _rotation(item[1])):
+        by_demand = {worst.demand: worst for worst in of_case}
+        name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
+        runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
+        cells = [_response(finished, by_demand[demand]) if demand in by_demand else "–" for demand in present]
+        rows.append([name, *cells, *(cell for kind in devices for cell in _of_devices(finished, runs, kind))])
+    heads = [Head("case"), *(_head(name) for name in present)]
+    heads += [head for kind in devices for head in _heads_of(finished, kind)]
+    return table(heads, rows, name="Greatest responses")
+
+
+def _place(finished: Finished, worst: Worst) -> tuple[int, int]:
+    return finished.place(str(worst.case["case"]), worst.case["columns"])
+
+
+def _rotation(of_case: "list[Worst]") -> float:
+    return next((worst.value for worst in of_case if worst.demand == "theta_max_over_alpha"), 0.0)
+
+
+def _head(name: str) -> Head:
+    unit, _ = UNITS[name]
+    note = DEMANDS[name].words + (", of a rigid shaft" if name == "top_drift_m" else "")
+    return Head(f"{RESPONSES[name].words}{f' [{unit}]' if unit else ''}", ".3g", note)
+
+
+def _response(finished: Finished, worst: Worst) -> Markup:
+    """Return a greatest response, with the value in all its units and its record as a note."""
+    said = f"{in_words(worst)}: {finished.place_of(worst.run)}, t = {number(float(worst.run['t_max_s']))} s"
+    return tag("span", number(worst.value * UNITS[worst.demand][1], ".3g"), title=said)
+
+
+def _heads_of(finished: Finished, kind: str) -> list[Head]:
+    words = DEVICES[kind][1]
+    name = kind.replace("_", " ")
+    unit = "kN" if _weighed(finished.runs, kind) else "of the weight"
+    return [Head(f"{name} force [{unit}]", ".3g"), Head(f"{words} [mm]", ".3g", f"greatest of a {name}")]
+
+
+def _weighed(runs: "pd.DataFrame", kind: str) -> bool:
+    return f"{kind}_force_kN" in runs and bool(runs[f"{kind}_force_kN"].notna().any())
+
+
+def _of_devices(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[object]:
+    """Return the greatest force, and stroke, yield or deflection [mm], of devices of a kind among runs that end standing."""
+    stood = runs[runs["status"] == "ok"]
+    force = f"{kind}_force_kN" if _weighed(finished.runs, kind) else f"{kind}_force_over_weight"
+    cells: list[object] = []
+    for column, factor in ((force, 1.0), (f"{kind}_{DEVICES[kind][0]}", 1000.0)):
+        values = stood[column].to_numpy(np.float64) if column in stood else np.empty(0)
+        if not np.isfinite(values).any():
+            cells.append("–")
+            continue
+        place = int(np.nanargmax(values))
+        cells.append(tag("span", number(factor * values[place], ".3g"), title=finished.place_of(stood.iloc[place])))
+    return cells
+
+
+def _without_a_result(finished: Finished) -> Iterator[Markup]:
+    """Yield sentences on runs that did not end standing, and on files that could not be used."""
     runs = finished.runs
-    stood, unread = runs["status"] == "ok", len(finished.info["unusable"])
-    failed = int((runs["status"] == "failed").sum())
-    guided = runs.loc[stood & runs["flight_s"].notna(), "flight_height_m"]
+    if runs.empty:
+        yield alarm("No ground motion could be used: there are no results.")
+    ended = (
+        ("overturned", "The pier overturns in {}", "t_end_s"),
+        ("flight", "In {} both pivots leave the ground, and the analysis stops there", "flight_s"),
+    )
+    for status, words, time in ended:
+        of_status = runs[runs["status"] == status]
+        if len(of_status):
+            first = of_status.sort_values(time, kind="stable").iloc[0] if time in of_status else of_status.iloc[0]
+            place = finished.place_of(first)
+            said = words.format(
+                f"{len(of_status):,} of {counted(len(runs), 'run')}"
+                if status == "overturned"
+                else counted(len(of_status), "run")
+            )
+            yield join(alarm(said), f"{': ' if len(of_status) == 1 else ', among them '}{place}.")
+    failed, unread = int((runs["status"] == "failed").sum()), len(finished.info["unusable"])
     lost = [
         f"{counted(n, noun)} {state}"
         for n, noun, state in (
@@ -47,92 +143,40 @@ def worst(finished: Finished) -> Markup:
         )
         if n
     ]  # fmt: skip
-    return render(
-        "reporting/sections/answer.html", finished=finished, runs=runs, guided=guided,
-        alphas={f"{math.degrees(case['pier']['alpha']):.3g}°" for case in finished.cases.values()},
-        symbols=any("=" in words for words in (*(series.label for series in finished.series), *finished.piers)),
-        over=runs[runs["status"] == "overturned"],
-        flown=runs[runs["status"] == "flight"].sort_values("flight_s", kind="stable"),
-        lost=lost, standing=finished.of_all(int(stood.sum()), "end standing"), all_stand=stood.all() and not finished.not_run,
-        reasons=reasons_of_failure(runs),
-        responses=[] if runs.empty else [*_responses(finished), *_of_devices(finished), *_by_case(finished)],
-        went=_converged(finished),
-        height=float(guided.max()), error=_error(finished), noted=int((runs.loc[stood, "note"] != "").sum()),
-    )  # fmt: skip
+    if lost:
+        reasons = "; ".join(f"{count} ×: {reason}" for reason, count in reasons_of_failure(runs).items())
+        words = " and ".join(lost)
+        yield join(
+            alarm(words[0].upper() + words[1:]), f" ({reasons})" if reasons else "", "; see ",
+            tag("a", "Not used", href="#unusable"), ".",
+        )  # fmt: skip
 
 
-def _responses(finished: Finished) -> Facts:
-    """Return the worst of all cases, regardless of checks, with the run in which it occurs."""
-    largest = worst_of_all(finished.worst)
-    facts: Facts = []
-    first: dict[object, str] = {}
-    for name, worst in largest.items():
-        words, run = RESPONSES[name].words, worst.run
-        rotation = name == "theta_max_over_alpha"
-        time = f", at t = {number(float(run['t_max_s']))} s" if rotation else ""
-        place = f": {finished.label(run['record'])}, case {finished.case_of(run)}{time}"
-        if first.setdefault(run.name, words) != words:
-            place = f", in the run of the greatest {first[run.name]}"
-        lean = " (mostly the lean of a base that has yielded)" if rotation and run["theta_max_is"] else ""
-        qualifier = {"top_drift_m": ", of a rigid shaft", "heel_uplift_m": ", above the toe"}.get(name, "")
-        facts.append((words, join(tag("strong", in_words(worst)), lean, qualifier, place)))
-    bases = {worst.case["base"] for worst in finished.worst}
-    if bases == {"rigid"}:
-        exception = "" if "theta_res_rad" in largest else "; nothing holds the pier at a tilt"
-        facts.append(("of the supports", join(f"no settlement: the ground is rigid{exception}")))
-    elif "yielding" not in bases:
-        facts.append(("of the supports", join("no settlement: they are elastic")))
+def _notes(finished: Finished, checked: bool) -> Iterator[object]:
+    """Yield what belongs to the scorecard: what a value is, the error of peaks, and where remarks are."""
+    if not checked:
+        standing = finished.of_all(int((finished.runs["status"] == "ok").sum()), "end standing")
+        yield f"Greatest values of {standing}; the record of each is its note. "
+        yield "θ/α = 1: the pier alone stands on its edge on rigid ground. "
+        bases = {str(case["base"]) for case in finished.info["cases"]}
+        if bases == {"rigid"}:
+            yield "No settlement: the ground is rigid. "
+        elif "yielding" not in bases:
+            yield "No settlement: the supports are elastic. "
+    else:
+        yield f"{verdicts.statistics_in_words(finished)} "
     if undamped := undamped_settlement(finished.worst):
-        facts.append(("of the settlement", join(undamped)))
-    return facts
-
-
-def _of_devices(finished: Finished) -> Facts:
-    """Return the greatest force of devices, in kN if the mass is known, and the greatest stroke, yield or deflection."""
-    stood = finished.runs["status"] == "ok"
-    facts: Facts = []
-    for device, quantity, words in (
-        ("damper", "damper_stroke_m", "stroke"),
-        ("tendon", "tendon_yield_m", "plastic elongation"),
-        ("stop", "stop_deflection_m", "deflection"),
-        ("deck_spring", "deck_spring_deflection_m", "deflection"),
-    ):
-        if quantity not in finished.runs or finished.runs.loc[stood, quantity].isna().all():
-            continue
-        runs = finished.runs[stood]
-        weighed = f"{device}_force_kN" in runs and runs[f"{device}_force_kN"].notna().any()
-        forces = runs[f"{device}_force_kN" if weighed else f"{device}_force_over_weight"]
-        hardest, longest = (runs.iloc[int(np.nanargmax(values))] for values in (forces, runs[quantity]))
-        force = f"{forces.max():,.0f} kN" if weighed else f"{forces.max():.3g} of the pier's weight"
-        moved = join(f"no {words}")
-        if longest[quantity] > 0.0:
-            place = f": {finished.label(longest['record'])}, case {finished.case_of(longest)}"
-            moved = join(f"{words} at most ", tag("strong", f"{1000 * longest[quantity]:,.3g} mm"), place)
-        bears = join("force of one at most ", tag("strong", force), f" ({finished.case_of(hardest)}); ")
-        facts.append((f"{device.replace('_', ' ')}s", join(bears, moved)))
-    return facts
-
-
-def _by_case(finished: Finished) -> Facts:
-    """Return the greatest rotation of each of a few cases if all runs stood, for studies that compare cases."""
-    rotations = [worst for worst in finished.worst if worst.demand == "theta_max_over_alpha"]
-    stood = len(rotations) == len(finished.cases) and (finished.runs["status"] == "ok").all()
-    if not stood or not 1 < len(rotations) <= MOST_COMPARED:
-        return []
-    words = (f"{worst.value:.4f} α ({finished.case_of(worst.run)})" for worst in rotations)
-    return [("rotation by case", join("; ".join(words)))]
-
-
-def _converged(finished: Finished) -> str:
-    """Report how many peaks converged; a chaotic one has no error."""
-    if not finished.info["numerics"].get("tolerance"):
-        return "none failed"
-    errors = finished.runs["theta_max_error"]
-    return "every peak converged" if errors.notna().all() else f"{counted(int(errors.notna().sum()), 'peak')} converged"
+        yield f"{undamped}. "
+    yield _error(finished)
+    noted = int((finished.runs.loc[finished.runs["status"] == "ok", "note"] != "").sum())
+    if noted:
+        yield join(
+            " ", tag("a", f"{counted(noted, 'run')} {'has' if noted == 1 else 'have'} remarks", href="#peaks"), "."
+        )
 
 
 def _error(finished: Finished) -> str:
-    """Report the largest error of the peaks, or that none was estimated."""
+    """Report the largest error of the peaks, or that none was estimated; a chaotic peak has none."""
     numerics = finished.info["numerics"]
     errors = finished.runs.loc[finished.runs["status"] == "ok", "theta_max_error"]
     largest, lacking = errors.max(), int(errors.isna().sum())
@@ -141,7 +185,7 @@ def _error(finished: Finished) -> str:
         error = error.quantize(Decimal(1).scaleb(error.adjusted()), ROUND_UP)
         allowed = Decimal(repr(float(numerics["tolerance"])))
         unknown = f"; of {counted(lacking, 'run')} it is not known" if lacking else ""
-        return f"Estimated error of rotation: at most {error:f} α ({allowed:f} α allowed){unknown}."
+        return f"Error of rotations: at most {error:f} α ({allowed:f} α allowed){unknown}."
     if numerics.get("substeps"):
         steps = counted(numerics["substeps"], "step")
         return f"Every sampling interval was integrated in {steps}; the error was not estimated."

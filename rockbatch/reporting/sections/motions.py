@@ -16,7 +16,9 @@ PULSE_LIKE = (
 )
 Record = Mapping[str, Any]
 COLUMNS = (
-    Head("station", note="its components count as one record", value="station"),
+    Head("event", value="event"),
+    Head("station", value="station_name"),
+    Head("code", note="column station of peaks.csv: components of one count as one record", value="station"),
     Head("PGA [g]", ".3f", value="pga_g"),
     Head("PGV [m/s]", ".3f", value="pgv_m_s"),
     Head("PGD [m]", ".3f", value="pgd_m"),
@@ -55,7 +57,11 @@ def section(finished: Finished) -> Markup:
     records = sorted(finished.info["records"], key=lambda record: (record["pga_g"], record["record"]))
     name = Head("record", value=lambda record: finished.shown(record["record"]))
     scaled = any(record.get("factor", 1.0) != 1.0 for record in records)
-    heads = [name, *(head for head in COLUMNS if scaled or head.value != "factor")]
+    heads = [
+        name,
+        Head("in peaks.csv", value="record"),
+        *(head for head in COLUMNS if scaled or head.value != "factor"),
+    ]
     lacking = finished.info.get("without_vertical")
     no_vertical = tag("p", f"no vertical: {'; '.join(map(finished.named, lacking))}") if lacking else ""
     sources = [
@@ -66,7 +72,7 @@ def section(finished: Finished) -> Markup:
     ]
     return join(
         picture, listed(heads, records, sortable=True, name="Ground motions"), no_vertical,
-        tag("h3", "Where they come from, and what was done to them"), listed(sources, records, prose=True, name="Sources"),
+        tag("details", tag("summary", "Files, and what was done to them"), listed(sources, records, prose=True, name="Sources")),
     )  # fmt: skip
 
 

@@ -1,13 +1,12 @@
-"""Peaks in tables: Fig. 7 in numbers, and every run with the worst first."""
+"""Every run in a table, the worst first."""
 
 import math
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import creeps
 from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
 from rockbatch.reporting.finished import Finished, worst_first
-from rockbatch.reporting.labels import head, symbol
+from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
 from rockbatch.reporting.templates import render
@@ -18,7 +17,11 @@ from rockbatch.simulation.outcome import LINEARISED
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-MOST_COLUMNS = 24
+REMARKS = ("reason", "note")
+"""Columns of texts, which stand below the table."""
+LAST_DIGIT = 1e-5
+"""Of θ_max/α in the table."""
+MOST_OPEN_REMARKS, MOST_REMARKS = 6, 200
 
 
 def section(finished: Finished) -> Markup:
@@ -34,28 +37,6 @@ def section(finished: Finished) -> Markup:
         ratchets=any(map(creeps, finished.info["cases"])),
         range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
     )  # fmt: skip
-
-
-def at_a_glance(finished: Finished, runs: "pd.DataFrame", records: "Sequence[str]") -> Markup:
-    """Return the paper's Fig. 7 in numbers: a row per record, a column per foundation (and direction)."""
-    series = [(place, finished.series[place]) for place in runs["series"].unique()]
-    series.sort(key=lambda pair: (not pair[1].rigid, pair[1].index))
-    signs = sorted(runs["polarity"].unique())
-    if len(series) * len(signs) > MOST_COLUMNS:
-        return Markup("")
-    heads = [Head("record"), Head("PGA [g]", ".3f")]
-    heads += [
-        Head(f.label + (f" ({sign})" if len(signs) > 1 else ""), THETA_FORMAT) for _, f in series for sign in signs
-    ]
-    stood = runs[runs["status"] == "ok"]["theta_max_over_alpha"]
-    shown = runs[runs["record"].isin(records)]
-    run_of = {(run["record"], run["series"], run["polarity"]): run for run in as_dicts(shown)}
-    rows: list[list[object]] = []
-    for name in records:
-        values = [run_of.get((name, place, sign)) for place, _ in series for sign in signs]
-        pga = next((run["pga"] for run in values if run), math.nan)
-        rows.append([finished.shown(name), pga, *(outcome(run, stood.max()) for run in values)])
-    return table(heads, rows, name="Peak rotations in numbers")
 
 
 def outcome(run: "dict[str, Any] | None", worst: float = math.nan) -> object:
@@ -86,32 +67,54 @@ def at_least(run: dict[str, Any]) -> Markup:
 
 
 def _every_run(finished: Finished) -> Markup:
-    """Return the rows of ``peaks.csv``, the worst first."""
+    """Return the rows of ``peaks.csv``, the worst first; remarks stand below the table, each once."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
     also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
-    has_stations = (runs["station"] != "").any() and (runs["station"] != runs["record"]).any()
-    names = {name: head(COLUMNS[name]) for name in (("station", "case") if has_stations else ("case",))}
-    names |= {key: Head(symbol(key), note=key) for key in varied}
-    names |= {name: head(COLUMNS[name]) for name, changes in also.items() if changes}
+    names = {"case": head(COLUMNS["case"])._replace(filter=True)}
+    names |= {key: Head(symbol(key), note=key, filter=True) for key in varied}
+    names |= {name: head(COLUMNS[name])._replace(filter=True) for name, changes in also.items() if changes}
     if runs["with_vertical"].nunique() > 1:
-        names["with_vertical"] = Head("vertical component")
+        names["with_vertical"] = Head("vertical component", filter=True)
     columns = {column.name: head(column) for column in report_columns() if column.source and column.name in runs}
     columns |= {
         name: Head(name)
         for name in map(str, finished.saved.peaks)
         if name not in COLUMNS and name not in ("vertical", *varied)
     }
+    columns["status"] = columns["status"]._replace(filter=True)
+    remarks: dict[str, int] = {}
+    texts = [name for name in REMARKS if columns.pop(name, None)]
 
     def cell(run: dict[str, Any], name: str) -> object:
         if name == "settlement_m":
             return _settlement(run)
+        if name == "theta_max_error":
+            return _rounded_up(run[name])
         return (name == "theta_max_over_alpha" and at_least(run)) or _cell(name, run[name])
 
     def cells(run: dict[str, Any]) -> list[object]:
-        return [*(run[name] for name in names), *(cell(run, name) for name in columns)]
+        own = [remarks.setdefault(run[name], len(remarks) + 1) for name in texts if run[name]]
+        return [*(run[name] for name in names), *(cell(run, name) for name in columns), " ".join(map(str, own))]
 
-    return every_run(finished, [head(COLUMNS["record"]), *names.values(), *columns.values()], cells, "Every run")
+    heads = [head(COLUMNS["record"]), *names.values(), *columns.values(), Head("remark")]
+    drawn = every_run(finished, heads, cells, "Every run")
+    return join(drawn, _remarks(list(remarks)))
+
+
+def _rounded_up(error: float) -> float | None:
+    """Return an error in the digits that peaks are shown with, never less than it is."""
+    return math.ceil(error / LAST_DIGIT) * LAST_DIGIT if error == error else None
+
+
+def _remarks(texts: "Sequence[str]") -> Markup:
+    """Return the numbered list of what the table says of single runs; folded if it is long."""
+    if not texts:
+        return Markup("")
+    listed = tag("ol", *(tag("li", words) for words in texts[:MOST_REMARKS]), class_="remarks")
+    if len(texts) <= MOST_OPEN_REMARKS:
+        return listed
+    return tag("details", tag("summary", f"{counted(len(texts), 'remark')}"), listed)
 
 
 def every_run(

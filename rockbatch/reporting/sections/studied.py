@@ -4,9 +4,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
 from rockbatch.reporting.finished import Finished
-from rockbatch.reporting.labels import symbol
+from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
 from rockbatch.reporting.structure import pier_of, restraints_of
 from rockbatch.reporting.svg import sketch
@@ -26,6 +27,10 @@ GIVEN = {
     "top_m": ("drift read at", "m"),
 }
 """Keys of [pier] that are quoted, with their words and units."""
+
+IN_A_LINE = {"height_m": "m high", "width_m": "m wide", "mass_t": "t", "deck_mass_t": "t of deck"}
+"""Keys of [pier] that tell piers apart at a glance."""
+MOST_VALUES = 3
 
 Case = Mapping[str, Any]
 
@@ -54,6 +59,31 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         foundations=_foundations(finished),
         springs=any(case["base"] != "rigid" for case in cases),
     )  # fmt: skip
+
+
+def in_a_line(finished: Finished) -> str:
+    """Return pier, suite and runs in a line, which stands below the title."""
+    given = finished.pier_as_given
+    sizes = [
+        f"{plain(float(given[key]), 6)} {words}"
+        for key, words in IN_A_LINE.items()
+        if isinstance(given.get(key), int | float) and not isinstance(given[key], bool)
+    ]
+    shaft = {key: value for key, value in (("α", "alpha"), ("p", "p")) if not sizes}
+    for symbol_, key in shaft.items():
+        values = dict.fromkeys(plain(case["pier"][key], 4) for case in finished.info["cases"])
+        sizes += (
+            [f"{symbol_} = {', '.join(values)}{' rad/s' if key == 'p' else ''}"] if len(values) <= MOST_VALUES else []
+        )
+    stations, records = stations_of(finished.info), finished.info["records"]
+    of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
+    suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
+    motions = f"{counted(len(records), 'component')} ({_vertical(finished)})"
+    runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
+    ended = "all end standing" if stood == runs and not finished.not_run else f"{stood} end standing"
+    return " · ".join(
+        filter(None, (", ".join(sizes), f"{suite}, {motions}", f"{counted(runs + finished.not_run, 'run')}, {ended}"))
+    )
 
 
 def _drawn(finished: Finished) -> list[Markup]:

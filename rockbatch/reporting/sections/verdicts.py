@@ -1,45 +1,38 @@
 """Verdicts: the answer in a sentence, every check in every case, and the demands of the checks."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.coverage import CaseRuns, stations_of
-from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.scorecard import Cell, Row
+from rockbatch.checks.scorecard import Scorecard as Card
+from rockbatch.checks.scorecard import scorecard as of_verdicts
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
 from rockbatch.reporting.table import Head, table
-from rockbatch.results.labels import quantity
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
+MOST_COLUMNS, MOST_ROWS, OPEN_ROWS = 7, 12, 6
+"""Checks that the scorecard shows though they pass in every case; cases that it shows at all, and of more those unfolded."""
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
-MOST_WORST = 10
-"""Rows of the worst verdicts, if there are too many to list all."""
 
 
 def section(finished: Finished) -> Markup:
-    """Return all checks in all cases, their demands, and all verdicts, or the worst of many; empty without checks."""
+    """Return what the checks ask, and, folded, every verdict with its numbers; empty without checks."""
     verdicts = finished.verdicts
     if not verdicts:
         return Markup("")
-    parts: list[object] = [LEGEND]
-    notes = wording.Notes(verdicts)
-    if len(verdicts) > wording.MOST:
-        every = tag("summary", f"All {len(verdicts)} verdicts, a row for each case")
-        worst = wording.worst_first(verdicts)[:MOST_WORST]
-        parts += [_counts(verdicts), tag("details", every, matrix(verdicts)), tag("h3", "The worst verdicts")]
-        parts.append(_every(worst, notes) if worst else tag("p", "Nothing fails or is left undecided."))
-        parts.append(
-            tag("p", "All of them, with what governs each, are in ", tag("a", tag("code", CHECKS), href=CHECKS), ".")
-        )
-    else:
-        rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
-        parts += [matrix(verdicts), tag("h3", "Every verdict"), _every([*wording.worst_first(verdicts), *rest], notes)]
-    return join(*parts, tag("h3", "What the checks ask"), _requirements(verdicts))
+    rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
+    every = _every(finished, [*wording.worst_first(verdicts), *rest], wording.Notes(verdicts))
+    summary = tag("summary", f"Every verdict with its numbers, the worst first ({len(verdicts)})")
+    return join(_requirements(verdicts), tag("details", summary, every))
 
 
 def mark(verdict: str, words: str) -> Markup:
@@ -49,11 +42,10 @@ def mark(verdict: str, words: str) -> Markup:
 
 
 def answer(finished: Finished) -> Markup:
-    """Report the cases that pass, what fails and by how much, and what is not decided."""
-    scaled = len({runs.scale for runs in finished.suites}) > 1
+    """Report which cases pass, fail, or are not decided or not checked, and how many stations are behind it."""
     lines = answered(
-        finished.verdicts, finished.worst, lambda row: _case(row, scaled), lambda row: finished.label(row.record),
-        finished.suites, stations_of(finished.info),
+        finished.verdicts, finished.worst, _namer(finished), lambda row: finished.label(row.record), finished.suites,
+        stations_of(finished.info),
     )  # fmt: skip
     listed = tag("ul", *map(_line, lines), class_="answer") if lines else ""
     if any(verdict.case for verdict in finished.verdicts):
@@ -64,49 +56,80 @@ def answer(finished: Finished) -> Markup:
 
 def _line(line: Line) -> Markup:
     cases = f": {line.cases}." if line.cases else "."
-    details = tag("ul", *(tag("li", words) for words in line.details)) if line.details else ""
+    details = join(*(tag("span", " ", words, class_="detail") for words in line.details))
     return tag("li", tag("strong", mark(line.verdict, line.text)), cases, details)
 
 
-def _case(verdict: Verdict | CaseRuns, scaled: bool) -> str:
-    if not verdict.case:
-        return wording.SUITE
-    words = [quantity(key, value) for key, value in verdict.columns.items()]
-    words += [f"motions scaled by {verdict.scale:g}"] if scaled else []
-    return verdict.case + (f" ({', '.join(words)})" if words else "")
+def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
+    return lambda row: finished.named_case(row.case, row.columns, row.scale) if row.case else wording.SUITE
 
 
-LEGEND = tag(
-    "p",
-    "Demand over limit; above 1 is too much; of events, whether there are any. ✓ passes, ✗ fails, ? not decided: the bounds "
-    "of the demand straddle the limit, or records are missing; – does not apply.",
-    class_="legend",
-)
-"""Legend of :func:`matrix`."""
-
-
-def matrix(verdicts: Sequence[Verdict]) -> Markup:
-    """Return a row for each case, a column for each check: demand over limit, and the verdict."""
-    checks = list(dict.fromkeys(verdict.check for verdict in verdicts))
-    rows = []
-    scaled = wording.scaled(verdicts)
-    for case, of_case in grouped(verdicts, lambda verdict: _case(verdict, scaled)).items():
-        by_check = {verdict.check: verdict for verdict in of_case}
-        rows.append([case, *(_cell(by_check[name]) if name in by_check else "" for name in checks)])
-    return table([Head("case"), *(Head(name) for name in checks)], rows, name="Checks of every case")
-
-
-def _cell(verdict: Verdict) -> Markup:
-    return mark(verdict.verdict, wording.demanded(verdict) if verdict.is_ban else wording.ratio(verdict))
-
-
-def _counts(verdicts: Sequence[Verdict]) -> Markup:
-    """Return a row for each check: the number of verdicts of each kind."""
-    rows = [
-        [name, *(mark(kind, str(n)) if n else "" for kind, n in count.items())]
-        for name, count in wording.count_by_check(verdicts).items()
+def scorecard(finished: Finished) -> Markup:
+    """Return a row for each case and a column for each check: demand, its share of the limit, and a bar up to twice that."""
+    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites)
+    columns = card.open_columns(MOST_COLUMNS)
+    open_rows = MOST_ROWS if len(card.rows) <= MOST_ROWS else OPEN_ROWS
+    folded = len(card.columns) - len(columns)
+    asked = {verdict.check: wording.requirement(verdict) for verdict in finished.verdicts}
+    heads = [
+        tag("th", name, tag("small", limit), scope="col", title=asked[name])
+        for name, limit, _ in (card.columns[i] for i in columns)
     ]
-    return table([Head("check"), *map(Head, wording.WAYS)], rows, name="Verdicts of each kind")
+    more = [tag("th", scope="col")] if folded else []
+    rows = [
+        _row(finished, card, row, columns, "folded" if place >= open_rows else None)
+        for place, row in enumerate(card.rows)
+    ]
+    head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
+    drawn = tag("table", head, tag("tbody", *rows), class_="card")
+    rest = tag("p", f"The {open_rows} nearest to passing of {len(card.rows)} cases.", class_="legend rest")
+    return join(tag("div", drawn, class_="wide"), rest if open_rows < len(card.rows) else "")
+
+
+def statistics_in_words(finished: Finished) -> str:
+    """Return which statistic of the suite each check is about, and what the bars show."""
+    by_statistic = grouped(
+        dict.fromkeys((v.statistic, v.check) for v in finished.verdicts if v.case and not v.is_ban and v.statistic),
+        lambda pair: pair[0],
+    )
+    words = [
+        f"{STATISTICS[name].words} over {wording.records_of(finished.verdicts)} ({', '.join(check for _, check in pairs)})"
+        for name, pairs in by_statistic.items()
+    ]
+    values = "; ".join(words)
+    return f"{values[0].upper()}{values[1:]}. The mark on a bar is the limit." if values else ""
+
+
+def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
+    cells = [_cell(finished, card.columns[i].check, row.cells[i]) for i in columns]
+    others = [cell for i, cell in enumerate(row.cells) if i not in columns]
+    if others:
+        passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in others)
+        cells.append(tag("td", mark(PASS, f"{passing} more") if passing else "", class_="others"))
+    return tag("tr", tag("th", row.name, tag("small", row.in_words), scope="row"), *cells, class_=class_)
+
+
+def _cell(finished: Finished, check: str, cell: Cell | None) -> Markup:
+    """Return a cell: value, sign and share of the limit, the bar, and, on paper, the record that governs."""
+    if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
+        return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
+    verdict = cell.verdict
+    share = min(max(verdict.ratio, 0.0), 2.0) / 2.0 if verdict.ratio == verdict.ratio and not verdict.is_ban else None
+    bar = tag("span", class_="bar", style=f"--share:{100 * share:.0f}%") if share is not None else ""
+    record = tag("small", finished.label(verdict.record), class_="governs") if verdict.record else ""
+    return tag(
+        "td", tag("span", tag("strong", cell.value), mark(verdict.verdict, cell.percent), class_="top"), bar, record,
+        class_=CLASSES[verdict.verdict], title=_said(finished, verdict), data_check=check,
+    )  # fmt: skip
+
+
+def _said(finished: Finished, verdict: Verdict) -> str:
+    """Return what a cell says: the demand against the limit, its bounds, the record that governs, and remarks."""
+    between = f"between {_between(verdict)}" if _between(verdict) else ""
+    record = f"{finished.label(verdict.record)} ({verdict.polarity})" if verdict.record else ""
+    against = "" if verdict.is_ban or math.isnan(verdict.value) else wording.against(verdict)
+    parts = (wording.requirement(verdict), against, between, record, verdict.counted, verdict.note)
+    return "\n".join(filter(None, parts))
 
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
@@ -119,7 +142,7 @@ def _requirements(verdicts: Sequence[Verdict]) -> Markup:
     return join(drawn, paragraphs(*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences))
 
 
-def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
+def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
     """Return a row for each verdict: its numbers with their unit, the governing run, and remarks."""
     bounds = "bounds left by errors, by the other spring law and by runs without an outcome"
     heads = [
@@ -137,10 +160,10 @@ def _every(verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
         ),
         Head("note"),
     ]
-    scaled = wording.scaled(verdicts)
+    case_of = _namer(finished)
     rows = [
         [
-            row.check, _case(row, scaled), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
+            row.check, case_of(row), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
             "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
             wording.governing(row), "; ".join(filter(None, (row.counted, notes.about(row)))),
         ]

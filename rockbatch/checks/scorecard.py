@@ -1,0 +1,143 @@
+"""The scorecard: cases by checks, each with its demand over the limit, as page and terminal show it."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from rockbatch.checks import wording
+from rockbatch.checks.coverage import CaseRuns
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.common.grouping import grouped
+
+SMALL = {"m": ("mm", 1e3), "rad": ("mrad", 1e3), "m/s": ("mm/s", 1e3)}
+"""Units in which limits below one are written, and factors to them."""
+VERBS = {PASS: "passes", FAIL: "fails"}
+_ORDER = (PASS, NOT_DECIDED, FAIL, DOES_NOT_APPLY)
+"""Cases in the order of a scorecard."""
+
+
+class Column(NamedTuple):
+    """A check: its name, the limit with its sign and unit, and the factor from the demand's unit to that one."""
+
+    check: str
+    limit: str
+    factor: float
+
+
+class Cell(NamedTuple):
+    """A verdict in the scorecard: the demand in the unit of its column, and "115 %" of the limit; both empty without numbers."""
+
+    verdict: Verdict
+    value: str
+    percent: str
+
+
+class Row(NamedTuple):
+    """A case: its name, the verdict on it, and a cell for each column, None where the check says nothing of it.
+
+    The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing.
+    """
+
+    name: str
+    verdict: str
+    cells: list[Cell | None]
+
+    def count(self, *kinds: str) -> int:
+        """Return the number of its verdicts of these kinds."""
+        return sum(cell is not None and cell.verdict.verdict in kinds for cell in self.cells)
+
+    @property
+    def in_words(self) -> str:
+        """Return what becomes of the case: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
+        if self.verdict == DOES_NOT_APPLY:
+            return "not checked" if not self.count(PASS) else "no run ends standing"
+        number = self.count(self.verdict)
+        checks = f"{number} check{'s' * (number != 1)}"
+        return f"{checks} not decided" if self.verdict == NOT_DECIDED else f"{VERBS[self.verdict]} {checks}"
+
+
+class Scorecard(NamedTuple):
+    """Columns with the worst check first, and rows with the case first that is nearest to passing, or farthest from failing."""
+
+    columns: list[Column]
+    rows: list[Row]
+
+    def open_columns(self, most: int) -> list[int]:
+        """Return the places of columns to show: those in which something fails or is open, then others up to ``most``."""
+        in_columns = zip(*(row.cells for row in self.rows), strict=True)
+        telling = sum(
+            any(cell and cell.verdict.verdict in (FAIL, NOT_DECIDED) for cell in cells) for cells in in_columns
+        )
+        return list(range(max(telling, min(most, len(self.columns)))))
+
+
+def scorecard(
+    verdicts: Sequence[Verdict], case_of: Callable[[Verdict | CaseRuns], str], runs: Sequence[CaseRuns] = ()
+) -> Scorecard:
+    """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any; ``case_of`` names one."""
+    of_cases = [verdict for verdict in verdicts if verdict.case]
+    by_check = grouped(of_cases, lambda verdict: verdict.check)
+    checks = sorted(by_check, key=lambda name: max(map(_badness, by_check[name])), reverse=True)
+    columns = [_column(by_check[name]) for name in checks]
+    fallen = {case_of(case) for case in runs if sum(case.ended.values()) >= case.runs}
+    rows: list[tuple[tuple[int, float], Row]] = []
+    for name, of_case in grouped(of_cases, case_of).items():
+        own = {verdict.check: verdict for verdict in of_case}
+        cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
+        kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
+        rows.append((max(map(_badness, of_case)), Row(name, kind, cells)))
+    named = {row.name for _, row in rows}
+    rows += [
+        ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns))) for name in map(case_of, runs) if name not in named
+    ]
+    rows.sort(key=lambda row: (_ORDER.index(row[1].verdict), row[0]))
+    return Scorecard(columns, [row for _, row in rows])
+
+
+def _worst(verdicts: Sequence[Verdict]) -> str:
+    """Return the verdict on a case: it passes if a check does and no other fails or is open."""
+    kinds = {verdict.verdict for verdict in verdicts}
+    return next(kind for kind in (FAIL, NOT_DECIDED, PASS, DOES_NOT_APPLY) if kind in kinds)
+
+
+def _badness(verdict: Verdict) -> tuple[int, float]:
+    """Return by how much a verdict is worse than others: what fails, then what is open, then by the share of the limit."""
+    kind = (DOES_NOT_APPLY, PASS, NOT_DECIDED, FAIL).index(verdict.verdict)
+    ratio = -1.0 if math.isnan(verdict.ratio) else math.inf if verdict.is_ban and kind == 3 else verdict.ratio
+    return max(kind, 1), -1.0 if kind == 0 or (verdict.is_ban and kind == 1) else ratio
+
+
+def _column(verdicts: Sequence[Verdict]) -> Column:
+    first = verdicts[0]
+    if first.is_ban:
+        return Column(first.check, "none", 1.0)
+    unit, factor = SMALL[first.unit] if first.unit in SMALL and abs(first.limit) < 1.0 else (first.unit, 1.0)
+    sign = "≤" if first.sense == "at most" else "≥"
+    return Column(first.check, f"{sign}\u00a0{_number(first.limit * factor)}\u00a0{unit}".rstrip("\u00a0"), factor)
+
+
+def _cell(verdict: Verdict, column: Column) -> Cell:
+    if verdict.verdict == DOES_NOT_APPLY or math.isnan(verdict.value):
+        return Cell(verdict, "", "")
+    if verdict.is_ban:
+        return Cell(verdict, wording.demanded(verdict), "")
+    bound = "≥\u00a0" if math.isinf(verdict.high) and math.isfinite(verdict.value) else ""
+    value = _number(verdict.value * column.factor, verdict.limit * column.factor)
+    return Cell(verdict, bound + value, f"{bound}{percent(verdict.ratio)}")
+
+
+def percent(ratio: float) -> str:
+    """Return a share of the limit as "115 %", with decimals where it would otherwise look like the limit itself."""
+    if not math.isfinite(ratio):
+        return "∞" if ratio > 0 else ""
+    digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)
+    return f"{100 * ratio:,.{digits}f}\u00a0%"
+
+
+def _number(value: float, limit: float = math.nan) -> str:
+    """Return a value in three significant digits, in more if it would look the same as a limit that it is not."""
+    if not math.isfinite(value):
+        return wording.number(value)
+    digits = next((n for n in range(3, 10) if value == limit or f"{value:.{n}g}" != f"{limit:.{n}g}"), 10)
+    rounded = float(f"{value:.{digits}g}")
+    return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
