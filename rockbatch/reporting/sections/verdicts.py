@@ -7,14 +7,14 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.coverage import CaseRuns, stations_of
-from rockbatch.checks.scorecard import Cell, Row
+from rockbatch.checks.scorecard import Cell, Column, Row
 from rockbatch.checks.scorecard import Scorecard as Card
 from rockbatch.checks.scorecard import scorecard as of_verdicts
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
-from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
+from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.reporting.table import Head, table
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
@@ -101,7 +101,7 @@ def statistics_in_words(finished: Finished) -> str:
 
 
 def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
-    cells = [_cell(finished, card.columns[i].check, row.cells[i]) for i in columns]
+    cells = [_cell(finished, card.columns[i], row.cells[i]) for i in columns]
     others = [cell for i, cell in enumerate(row.cells) if i not in columns]
     if others:
         passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in others)
@@ -109,8 +109,9 @@ def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class
     return tag("tr", tag("th", row.name, tag("small", row.in_words), scope="row"), *cells, class_=class_)
 
 
-def _cell(finished: Finished, check: str, cell: Cell | None) -> Markup:
+def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
     """Return a cell: value, sign and share of the limit, the bar, and, on paper, the record that governs."""
+    check = f"{column.check} {column.limit}"
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
     verdict = cell.verdict
@@ -139,7 +140,8 @@ def _requirements(verdicts: Sequence[Verdict]) -> Markup:
     heads = map(Head, ("check", "asks", "limit from", "reason"))
     sentences = (f"{name}: {words}." for name, words in rests.items() if words)
     drawn = table([*heads], rows, prose=True, name="What the checks ask")
-    return join(drawn, paragraphs(*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences))
+    notes = [*wording.Notes(verdicts).common(), *wording.counting(verdicts), *sentences]
+    return join(drawn, tag("p", " ".join(notes), class_="legend"))
 
 
 def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes) -> Markup:
