@@ -45,6 +45,40 @@ DOCUMENTS = {
 """Pages that are documents of the repository."""
 
 
+TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "studies": (
+        "Studies and results",
+        ("load_study", "Study", "run", "open_results", "report", "check", "Rule", "InputError"),
+    ),
+    "piers": (
+        "Piers and bases",
+        (
+            "Pier",
+            "Part",
+            "RigidBase",
+            "ElasticBase",
+            "YieldingBase",
+            "Damper",
+            "Tendon",
+            "Stop",
+            "DeckSpring",
+            "statics",
+            "Statics",
+        ),
+    ),
+    "runs": ("Single runs", ("simulate", "Response")),
+    "analyses": (
+        "Analyses",
+        ("fragility", "HazardCurve", "spectrum", "sensitivity", "release", "accuracy"),
+    ),
+    "motions": (
+        "Ground motions",
+        ("read_motions", "ReadOptions", "Motion", "MotionSet", "pulse", "sequence", "pair_spectrum"),
+    ),
+}
+"""Pages of the Python reference, with their headings and the public names on them."""
+
+
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages, schemas and pictures that are made."""
     pages: dict[str, str | bytes] = {page: _included(document, page) for page, document in DOCUMENTS.items()}
@@ -52,8 +86,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "reference/study.md": _study(),
         "reference/files.md": _other_files(),
         "reference/commands.md": _commands(),
-        "reference/python.md": _python(),
-    }
+    } | {f"reference/python/{name}.md": text for name, text in _python().items()}
     for name, sections in FILES.items():
         pages[f"reference/{name}.schema.json"] = json.dumps(schema_of(sections, f"rockbatch {name}"), indent=1)
     pictures = {f"pictures/{script.stem}.svg": _picture(script) for script in sorted((HERE / "gallery").glob("*.py"))}
@@ -239,22 +272,47 @@ def _help(command: str) -> str:
     return printed.getvalue().rstrip()
 
 
-def _python() -> str:
-    parts = [
-        "# Python",
-        "",
-        "`import rockbatch as rb` has these names; modules behind them are for those who extend rockbatch.",
-        "",
-    ]
-    for name in rockbatch.__all__:
-        documented = getattr(rockbatch, name)
-        # rb.report is its package, which can be called
-        home = documented.__name__ if isinstance(documented, ModuleType) else documented.__module__
-        parts += [f"::: {home}.{name}", ""]
-    parts += ["# Ground motions alone", "", "`from rockbatch import motions` has these names beside those above.", ""]
-    further = (name for name in motions.__all__ if name not in rockbatch.__all__)
-    parts += [f"::: rockbatch.motions.{name}\n" for name in further]
-    return "\n".join(parts)
+def _python() -> dict[str, str]:
+    """Return the pages of the Python reference by their names, with every public name on one of them."""
+    listed = [name for _, names in TOPICS.values() for name in names]
+    if sorted(listed) != sorted(rockbatch.__all__):
+        raise PluginError(f"TOPICS: not the public names: {set(listed) ^ set(rockbatch.__all__)}")
+    pages = {
+        topic: "\n".join([f"# {heading}", "", *(f"::: {_home(name)}.{name}\n" for name in names)])
+        for topic, (heading, names) in TOPICS.items()
+    }
+    further = [name for name in motions.__all__ if name not in rockbatch.__all__]
+    pages["motions"] += "\n".join(
+        ["# Of `rockbatch.motions` alone", "", *(f"::: rockbatch.motions.{name}\n" for name in further)]
+    )
+    pages["index"] = "\n".join(
+        [
+            "# Python",
+            "",
+            "`import rockbatch as rb` has these names. Modules behind them are for those who extend rockbatch.",
+            "",
+            "| topic | names |",
+            "| --- | --- |",
+            *(f"| [{heading}]({topic}.md) | {_links(topic, names)} |" for topic, (heading, names) in TOPICS.items()),
+            f"| [`from rockbatch import motions`](motions.md) | {_links('motions', further)} |",
+            "",
+        ]
+    )
+    return pages
+
+
+def _home(name: str) -> str:
+    """Return the module of a public name; ``rb.report`` is its package, which can be called."""
+    documented = getattr(rockbatch, name)
+    return documented.__name__ if isinstance(documented, ModuleType) else documented.__module__
+
+
+def _links(topic: str, names: Iterable[str]) -> str:
+    return ", ".join(f"[`{name}`]({topic}.md#{_anchor(name)})" for name in names)
+
+
+def _anchor(name: str) -> str:
+    return f"{_home(name) if name in rockbatch.__all__ else 'rockbatch.motions'}.{name}"
 
 
 # Pictures, counts and paper

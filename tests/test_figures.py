@@ -4,8 +4,10 @@ import math
 import re
 import warnings
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from figure_makers import makers
@@ -155,13 +157,48 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     flowing = Figure([panel] * 3, "three")
     assert svg.drawn(flowing).count("<figure") == 3
     assert len({axes.get_position().x0 for axes in _laid_out(flowing, 160.0).axes}) == 2
-    assert len({axes.get_position().x0 for axes in _laid_out(flowing, 80.0).axes}) == 1
+    own = Figure([replace(panel, x=Axis("x", 0.0, high)) for high in (1.0, 2.0, 3.0)], "axes of their own")
+    assert len({axes.get_position().x0 for axes in _laid_out(own, 80.0).axes}) == 1
     half = Panel(panel.x, panel.y, [], width=150.0)
     stacked = Figure([panel, half, half], "two rows", stacked=True)
     assert [len(row) for row in stacked.rows] == [1, 2]
     assert svg.drawn(stacked).count("<svg") == 1
     tall = Figure([panel, panel, panel], "three rows", stacked=True)
     assert len({re.search('viewBox="([^"]*)"', one)[1] for one in svg.alike([stacked, tall])}) == 1
+
+
+def test_many_panels_that_share_their_axes_fit_a_page_and_are_numbered_at_its_edges():
+    panel = Panel(
+        Axis("x", 0.0, 1.0), Axis("θ_max/α", 0.0, 1.0), [], "Waiau 2016, Te Mara Farm, N28W", width=166.0, height=110.0
+    )
+    for width in (88.0, 160.0):
+        drawn = _laid_out(Figure([panel] * 20, "twenty", "A title"), width)
+        assert drawn.get_figheight() < 1.5 * drawn.get_figwidth()
+        numbered = [axes for axes in drawn.axes if axes.get_yticklabels()[0].get_text()]
+        assert len({axes.get_position().x0 for axes in numbered}) == 1
+        assert [axes.get_ylabel() for axes in drawn.axes if axes.get_ylabel().strip()] == [r"θ$_\mathrm{max}$/α"]
+        assert drawn.axes[0].yaxis.label.get_rotation() == 0.0
+
+
+def test_a_plot_is_drawn_in_axes_of_a_figure_that_exists():
+    whole, (first, second) = plt.subplots(1, 2)
+    panel = Panel(Axis("x", 0.0, 2.0), Axis("y", 0.0, 2.0), MARKS)
+    assert paper.drawn(Figure([panel], "one"), 88.0, first) is whole
+    assert first.get_legend() is not None
+    assert first.get_xlim() == (0.0, 2.0)
+    assert paper.drawn(Figure([panel] * 3, "three"), 88.0, second) is whole
+    whole.draw_without_rendering()
+    assert len(whole.subfigs[0].axes) == 3
+    assert second not in whole.axes
+    plt.close(whole)
+
+
+def test_several_panels_do_not_go_into_axes_without_a_grid():
+    whole = plt.figure()
+    axes = whole.add_axes((0.1, 0.1, 0.8, 0.8))
+    with pytest.raises(rb.InputError, match="several panels; make it by matplotlib's subplots"):
+        paper.drawn(Figure([Panel(Axis("", 0.0, 1.0), Axis("", 0.0, 1.0), [])] * 2, "two"), 88.0, axes)
+    plt.close(whole)
 
 
 def _laid_out(shown, width_mm):

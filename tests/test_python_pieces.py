@@ -74,6 +74,23 @@ def test_a_motion_is_drawn_with_all_its_components():
     np.testing.assert_allclose(axes[0].lines[0].get_ydata(), VALUES)
 
 
+def test_piers_bases_and_devices_show_what_was_given_as_a_table_in_notebooks():
+    pads = rb.YieldingBase(beta=80, eta=2.5, restraints=(rb.Damper("viscous", nu=1.0742785, exponent=0.3),))
+    shown = {each: each._repr_html_() for each in (TALL, pads, rb.RigidBase())}
+    assert "<strong>Pier</strong>" in shown[TALL]
+    assert f"<tr><th>size_m</th><td>{TALL.size:.5g}</td></tr>" in shown[TALL]
+    assert "<td>Damper: kind = viscous, nu = 1.0743, exponent = 0.3</td>" in shown[pads]
+    assert "kinematics" not in shown[pads]  # a default
+    assert shown[rb.RigidBase()] == "<p><strong>RigidBase</strong></p>"
+
+
+def test_a_study_without_motions_is_told_of_the_argument():
+    tables = {"pier": {"alpha": 0.13, "p": 0.38}, "case": [{"base": "rigid"}]}
+    with pytest.raises(rb.InputError, match="no ground motions; give them as motions=…, or write path"):
+        rb.Study.from_dict(tables)
+    assert rb.Study.from_dict(tables, motions=rb.Motion.from_array(VALUES, 0.01, "g")).cases
+
+
 def test_devices_in_kilonewtons_are_those_of_a_study(tmp_path):
     """A study with the same keys, and the closed forms of THEORY.md: F/(M g), C/(M p), k b²/(M g R0)."""
     devices = [

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import fields
 from html import escape
 
 from rockbatch.common.lazy import pd
@@ -10,22 +11,17 @@ MOST_ROWS = 12
 """Greatest number of rows of a table in a notebook."""
 
 
-class Shown(ABC):
-    """An object whose ``repr`` and view in a notebook are made of the same few facts."""
+class InNotebook:
+    """A dataclass that shows the fields that differ from their defaults as a table in a notebook; its ``repr`` is Python's."""
 
-    @abstractmethod
     def _facts(self) -> tuple[str, Mapping[str, str]]:
-        """Return the title, and facts by their names; those without words are left out."""
+        """Return the title, and facts by their names; empty ones are left out."""
+        given = [(field.name, getattr(self, field.name), field.default) for field in fields(self)]  # type: ignore[arg-type]
+        return type(self).__name__, {name: _short(value) for name, value, default in given if value != default}
 
     def _beneath(self) -> "pd.DataFrame | None":
-        """Return a table whose first rows are shown below the facts, in notebooks only."""
+        """Return a table whose first rows are shown below the facts."""
         return None
-
-    def __repr__(self) -> str:
-        title, facts = self._facts()
-        facts = {name: words for name, words in facts.items() if words}
-        width = max(map(len, facts), default=0)
-        return "\n".join([f"<{title}>", *(f"  {name:<{width}}  {words}" for name, words in facts.items())])
 
     def _repr_html_(self) -> str:
         title, facts = self._facts()
@@ -37,6 +33,30 @@ class Shown(ABC):
         more = len(table) - MOST_ROWS
         remainder = f"<p>and {more} more</p>" if more > 0 else ""
         return shown + table.head(MOST_ROWS).to_html(index=False, na_rep="", border=0) + remainder
+
+
+class Shown(InNotebook, ABC):
+    """An object whose ``repr`` and view in a notebook are made of the same few facts."""
+
+    @abstractmethod
+    def _facts(self) -> tuple[str, Mapping[str, str]]:
+        """Return the title, and facts by their names; empty ones are left out."""
+
+    def __repr__(self) -> str:
+        title, facts = self._facts()
+        facts = {name: words for name, words in facts.items() if words}
+        width = max(map(len, facts), default=0)
+        return "\n".join([f"<{title}>", *(f"  {name:<{width}}  {words}" for name, words in facts.items())])
+
+
+def _short(value: object) -> str:
+    """Return a value in few letters: 5 significant digits, items separated by semicolons."""
+    if isinstance(value, InNotebook):
+        title, facts = value._facts()
+        return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items())
+    if isinstance(value, tuple):
+        return "; ".join(map(_short, value))
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 def several(n: int, noun: str) -> str:

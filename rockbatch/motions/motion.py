@@ -18,6 +18,7 @@ from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -387,13 +388,14 @@ class Motion(Shown):
         sa = spectral_acceleration(self.horizontal, self.dt, undamped, damping) / GRAVITY
         return pd.Series(sa, index=pd.Index(undamped, name="period_s"), name="sa_g")
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the acceleration of its components against time: a matplotlib Figure of this width."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw the acceleration of its components against time: a matplotlib Figure,
+        ``width_mm`` wide or in the place of ``ax``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.motions.figures import record
 
         components = {"horizontal": self.horizontal} | ({} if self.vertical is None else {"vertical": self.vertical})
-        return drawn(record(components, self.dt, self.label), width_mm)
+        return drawn(record(components, self.dt, self.label), width_mm, ax)
 
     @checked
     def times(self, factor: float, reverse: bool = False) -> "Motion":

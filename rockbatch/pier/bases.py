@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
 from rockbatch.pier.block import Pier
 from rockbatch.pier.places import holds_a_tilt, prestress_over_weight
@@ -74,7 +75,7 @@ WORDS: dict[str, tuple[str, ...]] = {
 """Possible words of the fields of bases."""
 
 
-class _Traits:
+class _Traits(InNotebook):
     """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
 
     on_springs: ClassVar[bool]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
 
 
@@ -112,7 +113,7 @@ class Part(NamedTuple):
 
 @checked
 @dataclass(frozen=True)
-class Pier:
+class Pier(InNotebook):
     """A rigid block that can pivot about its two lower corners.
 
     Attributes
@@ -350,6 +351,10 @@ class Pier:
             top_m=2 * column.height,
             deck_over_columns=ratio,
         )
+
+    def _facts(self) -> tuple[str, dict[str, str]]:
+        """See :class:`InNotebook`."""
+        return "Pier", {name: f"{value:.5g}" for name, value in described(self).items()}
 
     @property
     def size(self) -> float:

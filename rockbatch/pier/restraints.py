@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import Pier
@@ -42,7 +43,7 @@ FIELDS["deck_spring"] = FIELDS["stop"]
 
 @checked
 @dataclass(frozen=True)
-class Damper:
+class Damper(InNotebook):
     """A damper between the pier and the ground.
 
     Attributes
@@ -130,7 +131,7 @@ class Damper:
 
 @checked
 @dataclass(frozen=True)
-class Tendon:
+class Tendon(InNotebook):
     """An unbonded tendon between the pier and the ground that takes tension only.
 
     Attributes
@@ -178,7 +179,7 @@ class Tendon:
 
 @checked
 @dataclass(frozen=True)
-class Stop:
+class Stop(InNotebook):
     """A stop that limits how far the base may lift: a spring that is met when its place has risen by a gap.
 
     While it is pressed in for the first time it takes F = k δ; on its way back, and pressed in again up to the greatest δ of the
@@ -228,7 +229,7 @@ class Stop:
 
 @checked
 @dataclass(frozen=True)
-class DeckSpring:
+class DeckSpring(InNotebook):
     """A horizontal spring between the deck and what stands beside it and goes with the ground: an abutment, a neighbouring span.
 
     With a gap, or on one side, the deck meets it as the base does a :class:`Stop`, and it follows the same law. On both sides

@@ -18,6 +18,7 @@ from rockbatch.pier.places import symmetric
 from rockbatch.pier.plausibility import unlikely_devices
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -197,12 +198,13 @@ class Statics(Shown):
             "period_s": swings.period, "impact_damping": swings.impact_damping,
         })  # fmt: skip
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Return the moment and the steady acceleration over the rotation, and the periods, as a matplotlib figure."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Return the moment and the steady acceleration over the rotation, and the periods, as a matplotlib figure,
+        ``width_mm`` wide or in the place of ``ax``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.pier.figures import Sheet, statics
 
-        return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at)]), width_mm)
+        return drawn(statics([Sheet("", self.pier, self.equilibria, self.swings_at)]), width_mm, ax)
 
     def _at_amplitude(self, values: Array) -> float | None:
         """Return the value at :data:`COMPARED`; None if there is none."""

@@ -24,6 +24,7 @@ from rockbatch.simulation.response import Response
 from rockbatch.toml.kinds import shown
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MOST_CANDIDATES = 8
@@ -59,9 +60,9 @@ class Results(Shown, Saved):
             )
         return read_shocks(path, self.info["varied"])
 
-    def plot_cdf(self, width_mm: float = 160.0) -> "Figure":
+    def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw the distribution of θ_max/α over the records, a panel for each pier and scale, a curve for each case: a matplotlib
-        Figure.
+        Figure, ``width_mm`` wide or in the place of ``ax``.
 
         A station counts as one record, with the worst of its components, unless the study counts them apart. Records under
         which the pier overturned, or that were ended by flight, are what a curve lacks of 1 at its right end, where a cross
@@ -70,7 +71,7 @@ class Results(Shown, Saved):
         from rockbatch.common.figures.paper import drawn
         from rockbatch.results.figures import distributions_of_all
 
-        return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm)
+        return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm, ax)
 
     def _beside(self, name: str, key: str) -> "pd.DataFrame":
         path = self.directory / name
@@ -131,8 +132,11 @@ class Results(Shown, Saved):
         return self.response(record, case, **more).events
 
     @checked
-    def plot(self, width_mm: float = 160.0, axes: str = "records") -> "Figure":
+    def plot(self, width_mm: float = 160.0, axes: str = "records", ax: "Axes | None" = None) -> "Figure":
         """Draw the peaks of every run, a matplotlib Figure: ``results.plot().savefig("peaks.pdf")``.
+
+        It is ``width_mm`` wide, or in the place of ``ax``, matplotlib Axes of your own: in them if the figure has one panel, in
+        a subfigure that replaces them if it has several.
 
         With ``axes="records"`` as the paper's Fig. 7: a panel for each record, θ_max/α over the foundations, lines for the rigid
         base; other piers, scales and directions have open marks, or colours of their own. With ``axes="self-similar"`` a panel
@@ -146,7 +150,7 @@ class Results(Shown, Saved):
         if axes not in ("records", "self-similar"):
             raise InputError(f'axes = "{axes}": must be "records" or "self-similar"')
         figure = peaks_of_all if axes == "records" else self_similar
-        return drawn(figure(self._labelled, self.info), width_mm)
+        return drawn(figure(self._labelled, self.info), width_mm, ax)
 
     @property
     def _labelled(self) -> Labelled:

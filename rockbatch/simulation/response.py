@@ -12,6 +12,7 @@ from rockbatch.common.showing import Shown
 from rockbatch.pier import Base, Pier
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Samples = npt.NDArray[np.float64]
@@ -216,13 +217,14 @@ class Response(Shown):
             dict(zip(COLUMNS, (*cycles, apparent_restitution(self.pier, cycles.amplitude)), strict=True))
         )
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw rotation, angular velocity, energy and ground motion against time, events as strokes, and the loops of supports,
-        dampers and tendons: a matplotlib Figure of this width, ``response.plot().savefig("pier.pdf")``."""
+        dampers and tendons: a matplotlib Figure, ``width_mm`` wide or in the place of ``ax``,
+        ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.simulation.figures import of_one
 
-        return drawn(of_one(self, self._title), width_mm)
+        return drawn(of_one(self, self._title), width_mm, ax)
 
     def _facts(self) -> tuple[str, dict[str, str]]:
         """See :class:`Shown`."""

@@ -190,8 +190,8 @@ def read_motions_table(file: TomlFile, replaced_by: Path | MotionSet | None = No
     if ("motions",) not in file.misspelt and not (table and any(map(table.has, SOURCES))):
         file.complain(
             ("motions",),
-            '[motions]: there are no ground motions; write path = "../motions" in [motions], or a '
-            "[[motions.fema_p695]], or a [[motions.pulse]]",
+            f"[motions]: there are no ground motions; {'' if file.lines else 'give them as motions=…, or '}"
+            'write path = "../motions" in [motions], or a [[motions.fema_p695]], or a [[motions.pulse]]',
         )
     if table:
         read["paths"] = tuple(_path(table, n, written) for n, written in enumerate(paths))

@@ -22,6 +22,7 @@ from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -44,13 +45,14 @@ class Accuracy(Analysis):
     accuracy: "pd.DataFrame"
     records: tuple[str, ...]
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the largest error, that of 95 % of the runs and the median over the time of a run: a matplotlib Figure."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw the largest error, that of 95 % of the runs and the median over the time of a run: a matplotlib
+        Figure, ``width_mm`` wide or in the place of ``ax``."""
         from rockbatch.analyses.accuracy.figures import error_and_time
         from rockbatch.analyses.accuracy.levels import of_table
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(error_and_time(of_table(self.accuracy)), width_mm)
+        return drawn(error_and_time(of_table(self.accuracy)), width_mm, ax)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write ``accuracy.csv``, and the report again where the folder holds results of this very study.

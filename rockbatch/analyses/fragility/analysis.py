@@ -27,6 +27,7 @@ from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -77,12 +78,13 @@ class Fragility(Analysis):
     curves: tuple[Curve, ...]
     spec: FragilitySpec
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the share of records that exceed each limit, and the fitted curves: a matplotlib Figure of this width."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw the share of records that exceed each limit, and the fitted curves: a matplotlib Figure, ``width_mm`` wide
+        or in the place of ``ax``."""
         from rockbatch.analyses.fragility.figures import curves
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(curves(self.info), width_mm)
+        return drawn(curves(self.info), width_mm, ax)
 
     @checked
     def risk(

@@ -27,6 +27,7 @@ from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.study import Case, Motions, Study
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 GRIDS = {
@@ -76,12 +77,13 @@ class Release(Analysis):
     release_history: "pd.DataFrame"
     spec: ReleaseSpec
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the computed rotation of each case, and the measured impacts and amplitudes on it: a matplotlib Figure."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw the computed rotation of each case, and the measured impacts and amplitudes on it: a matplotlib Figure,
+        ``width_mm`` wide or in the place of ``ax``."""
         from rockbatch.analyses.release.figures import rotations
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(rotations(self.release_impacts, self.release_history, self.study.varied), width_mm)
+        return drawn(rotations(self.release_impacts, self.release_history, self.study.varied), width_mm, ax)
 
 
 @checked

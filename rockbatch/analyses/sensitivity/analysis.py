@@ -29,6 +29,7 @@ from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -56,12 +57,13 @@ class Sensitivity(Analysis):
     sobol: "pd.DataFrame"
     spec: SensitivitySpec
 
-    def plot(self, width_mm: float = 160.0) -> "Figure":
-        """Draw the answer over the range of each input, the greatest swing on top, and Sobol's indices: a matplotlib Figure."""
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw the answer over the range of each input, the greatest swing on top, and Sobol's indices: a matplotlib
+        Figure, ``width_mm`` wide or in the place of ``ax``."""
         from rockbatch.analyses.sensitivity.figures import bars
         from rockbatch.common.figures.paper import drawn
 
-        return drawn(bars(self.sensitivity, self.sobol, self.study.varied), width_mm)
+        return drawn(bars(self.sensitivity, self.sobol, self.study.varied), width_mm, ax)
 
 
 @checked

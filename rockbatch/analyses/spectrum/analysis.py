@@ -22,6 +22,7 @@ from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -55,8 +56,9 @@ class Spectrum(Analysis):
     maps: tuple[MapSpec, ...]
 
     @checked
-    def plot(self, width_mm: float = 160.0, axis: str | None = None) -> "Figure":
-        """Draw the spectrum of each case, with its median over the records, and the maps: a matplotlib Figure of this width.
+    def plot(self, width_mm: float = 160.0, axis: str | None = None, ax: "Axes | None" = None) -> "Figure":
+        """Draw the spectrum of each case, with its median over the records, and the maps: a matplotlib Figure,
+        ``width_mm`` wide or in the place of ``ax``.
 
         ``axis`` is "two_pi_over_p_s", which it is unless given, "p" or "size_m"; a self-similar spectrum has "omega_g_over_p"
         alone, over which all its slendernesses share a panel. Raises ``InputError`` for another.
@@ -73,7 +75,7 @@ class Spectrum(Analysis):
         of_suite, of_maps = self.spectrum_suite, self.overturning_map
         figures = [] if of_suite is None else [spectra(of_suite, self.spectrum, self.info, axis or axes[0])]
         figures += [] if of_maps is None else [maps(of_maps, self.info)]
-        return drawn(Description([panel for figure in figures for panel in figure.panels], ""), width_mm)
+        return drawn(Description([panel for figure in figures for panel in figure.panels], ""), width_mm, ax)
 
 
 @checked

@@ -3,9 +3,11 @@
 Colours and dashes are those of the page; letters have the size in which they are printed, whatever the width.
 """
 
+import itertools
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import singledispatch
 from io import BytesIO
 from typing import Any
@@ -17,11 +19,13 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure as MatplotlibFigure
+from matplotlib.figure import FigureBase
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, NullLocator
 
+from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import (
     Area,
     Axis,
@@ -46,6 +50,10 @@ MM = 0.25
 """Millimetres of the paper for a pixel of the page."""
 LETTERS, BESIDE = 0.62, 10.0
 """Letters in a line of a caption for each millimetre of the axes, and room beside these [mm]."""
+PROPORTION, NARROWEST, LOWEST = 1.2, 20.0, 9.0
+"""Height over width of all panels together, so that the figure fits A4; narrowest panel and lowest axes for its sake [mm]."""
+LEAST_SIZE = 0.5
+"""Height of panels that share their axes, over that on the page."""
 
 _DASHES: tuple[Any, ...] = ("-", (0, (6, 3)), (0, (2, 2)), (0, (8, 2, 2, 2)))
 _MARKERS = {
@@ -68,6 +76,10 @@ _STYLE: Any = {
 }  # fmt: skip
 
 
+Entries = dict[str, dict[type[Mark], Artist]]
+"""What stands for each label of a legend, one artist for each type of mark."""
+
+
 class ShownFigure(MatplotlibFigure):
     """A matplotlib Figure that is not pyplot's, and shows itself in a notebook nevertheless, also without ``%matplotlib``."""
 
@@ -77,84 +89,156 @@ class ShownFigure(MatplotlibFigure):
         return picture.getvalue()
 
 
-def drawn(figure: Figure, width_mm: float) -> MatplotlibFigure:
-    """Draw a figure ``width_mm`` wide."""
+def drawn(figure: Figure, width_mm: float, ax: Axes | None = None) -> MatplotlibFigure:
+    """Draw a figure ``width_mm`` wide, or in the place of ``ax``: in it if there is one panel; return the whole figure."""
     with mpl.rc_context(_STYLE):
-        rows = list(_rows(figure, width_mm))
-        columns = [len(row if figure.stacked else rows[0]) for row in rows]
-        heights = [
-            max(_height(panel, width_mm / abreast, figure.stacked) for panel in row)
-            for row, abreast in zip(rows, columns, strict=True)
-        ]
-        result = ShownFigure(layout="constrained")
-        grid = result.add_gridspec(len(rows), math.lcm(*columns), height_ratios=heights)
-        entries: dict[str, dict[type, Artist]] = {}
-        for place, (row, abreast) in enumerate(zip(rows, columns, strict=True)):
-            each = grid.ncols // abreast
-            for column, panel in enumerate(row):
-                axes = result.add_subplot(grid[place, column * each : (column + 1) * each])
-                for mark, artist in _panel(axes, panel, width_mm / abreast):
-                    entries.setdefault(mark.label, {}).setdefault(type(mark), artist)
-        entries.pop("", None)
-        _colour_bar(result, figure)
-        height = sum(heights) + _legend(result, entries, width_mm) + 7.0 * bool(figure.title) + 2.0
-        if figure.title:
-            result.suptitle(_text(figure.title))
-        result.set_size_inches(width_mm / 25.4, height / 25.4)
-        return result
+        if ax is None:
+            shown = ShownFigure(layout="constrained")
+            height = _drawn_in(shown, figure, width_mm, PROPORTION * width_mm)
+            shown.set_size_inches(width_mm / 25.4, height / 25.4)
+            return shown
+        parent = ax.figure
+        width, height = (25.4 / parent.dpi * length for length in (ax.bbox.width, ax.bbox.height))
+        if len(figure.panels) == 1:
+            _alone(ax, figure, width)
+        elif place := ax.get_subplotspec():
+            ax.remove()
+            _drawn_in(parent.add_subfigure(place), figure, width, height)
+        else:
+            raise InputError(
+                "ax: is in no grid, and this figure has several panels; make it by matplotlib's subplots()"
+            )
+        whole = parent.figure
+        if whole.get_layout_engine() is None:
+            whole.set_layout_engine("constrained")  # or labels of neighbours overlap
+        return whole
 
 
-def _legend(result: MatplotlibFigure, entries: dict[str, dict[type, Artist]], width_mm: float) -> float:
-    """Draw the legend of all panels below them; return its height [mm]."""
-    if not entries:
-        return 0.0
-    columns = max(1, min(len(entries), int(width_mm / (8.0 + 1.4 * max(map(len, entries))))))
-    together: Any = [tuple(artists.values()) for artists in entries.values()]
-    result.legend(together, list(map(_text, entries)), loc="outside lower center", ncols=columns)
-    return 4.0 * math.ceil(len(entries) / columns)
+def _alone(axes: Axes, figure: Figure, width_mm: float) -> None:
+    """Draw a figure of one panel in axes that exist."""
+    entries: Entries = {}
+    _panel(axes, figure.panels[0], width_mm - BESIDE, entries)
+    _colour_bar(axes.figure, [axes], figure)
+    if entries:
+        axes.legend(**_legend_of(entries))
 
 
-def _colour_bar(result: MatplotlibFigure, figure: Figure) -> None:
+def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float) -> float:
+    """Draw a figure in ``place``, its panels ``tallest`` mm high together if that can be; return its height [mm]."""
+    rows, heights, across = _arranged(figure, width_mm, tallest)
+    spare = MM * min((panel.height for panel in figure.panels), default=0.0) * (LEAST_SIZE if across else 0.8) - LOWEST
+    lower = min(max(sum(heights) - tallest, 0.0) / len(rows), spare)
+    heights = [height - lower for height in heights]
+    columns = [len(row if figure.stacked else rows[0]) for row in rows]
+    grid = place.add_gridspec(len(rows), math.lcm(*columns), height_ratios=heights)
+    entries: Entries = {}
+    made = []
+    for at, (row, abreast) in enumerate(zip(rows, columns, strict=True)):
+        each = grid.ncols // abreast
+        for column, panel in enumerate(row):
+            axes = place.add_subplot(grid[at, column * each : (column + 1) * each])
+            _panel(axes, panel, across or width_mm / abreast - BESIDE, entries)
+            made.append(axes)
+    _colour_bar(place, made, figure)
+    title = textwrap.wrap(figure.title, int(0.6 * width_mm))
+    if title:
+        place.suptitle("\n".join(map(_text, title)))
+    height = sum(heights) + 4.0 * len(title) + 5.0
+    if entries:
+        longest = 8.0 + 1.4 * max(map(len, entries))
+        columns_of_legend = max(1, min(len(entries), int(width_mm / longest)))
+        place.legend(**_legend_of(entries), loc="outside lower center", ncols=columns_of_legend)
+        height += 4.0 * math.ceil(len(entries) / columns_of_legend)
+    return height
+
+
+def _legend_of(entries: Entries) -> dict[str, Any]:
+    return {"handles": [tuple(artists.values()) for artists in entries.values()], "labels": list(map(_text, entries))}
+
+
+def _colour_bar(place: FigureBase, axes: Sequence[Axes], figure: Figure) -> None:
     """Draw the scale of tones, if marks have any."""
     for mark in (mark for panel in figure.panels for mark in panel.marks):
         if isinstance(mark, Points) and mark.shade:
             scale = mark.shade[0]
             tones = ScalarMappable(LogNorm(scale.low, scale.high), "cividis")
-            result.colorbar(tones, ax=result.axes, label=_label(scale))
+            place.colorbar(tones, ax=axes, label=_label(scale))
             return
 
 
-def _rows(figure: Figure, width_mm: float) -> Iterator[Sequence[Panel]]:
-    """Yield the panels of each row: as many as there is room for, or as they are stacked."""
-    if not figure.stacked:
-        columns = max(1, min(len(figure.panels), round(width_mm / (MM * max(panel.width for panel in figure.panels)))))
-        yield from (figure.panels[i : i + columns] for i in range(0, len(figure.panels), columns))
-        return
-    for row in figure.rows:
-        abreast = len(row) if width_mm >= 50.0 * len(row) else 1
-        yield from (row[i : i + abreast] for i in range(0, len(row), abreast))
+Arranged = tuple[list[list[Panel]], list[float], float]
+"""Rows of panels, their heights [mm], and the distance of columns that share their axes [mm], else 0."""
 
 
-def _height(panel: Panel, width_mm: float, stacked: bool) -> float:
+def _arranged(figure: Figure, width_mm: float, tallest: float) -> Arranged:
+    """Arrange panels in rows, stacked as they are or as many abreast as there is room for.
+
+    Of panels that share their axes more stand abreast, and lower, if the rows would together be higher than ``tallest`` mm.
+    """
+    if figure.stacked:
+        rows = []
+        for row in figure.rows:
+            abreast = len(row) if width_mm >= 50.0 * len(row) else 1
+            rows += [row[i : i + abreast] for i in range(0, len(row), abreast)]
+        return rows, [max(_height(panel, width_mm / len(row)) for panel in row) for row in rows], 0.0
+    first, count = figure.panels[0], len(figure.panels)
+    columns = max(1, min(count, round(width_mm / (MM * max(panel.width for panel in figure.panels)))))
+    if count == columns or any((panel.x, panel.y) != (first.x, first.y) for panel in figure.panels):
+        return _grid(figure.panels, columns, width_mm, 0.8)
+    for abreast in itertools.count(columns):
+        across = (width_mm - BESIDE) / abreast
+        rows, heights, _ = _grid(_inner(figure.panels, abreast), abreast, width_mm, LEAST_SIZE, across)
+        if sum(heights) <= tallest or width_mm < NARROWEST * (abreast + 1):
+            break
+    return rows, heights, across
+
+
+def _grid(panels: Sequence[Panel], columns: int, width_mm: float, least: float, across: float = 0.0) -> Arranged:
+    """Arrange panels in columns; they are at least ``least`` times as high as on the page."""
+    size = min(max(width_mm / columns / (MM * max(panel.width for panel in panels)), least), 1.5)
+    rows = [list(panels[i : i + columns]) for i in range(0, len(panels), columns)]
+    heights = [max(_height(panel, width_mm / columns, size, across) for panel in row) for row in rows]
+    return rows, heights, across
+
+
+def _inner(panels: Sequence[Panel], columns: int) -> list[Panel]:
+    """Return panels that share their axes: numbers at the left and at the foot, the upper label above the first row."""
+    return [
+        replace(
+            panel,
+            x=replace(panel.x, numbered=panel.x.numbered and foot, label=panel.x.label * foot),
+            y=replace(panel.y, numbered=panel.y.numbered and left, label=label),
+        )
+        for at, panel in enumerate(panels)
+        for left, foot in [(at % columns == 0, at + columns >= len(panels))]
+        for label in [panel.y.label if at == 0 else " " * (at < columns)]
+    ]
+
+
+def _height(panel: Panel, width_mm: float, size: float = 1.0, across: float = 0.0) -> float:
     """Return the height of a panel with what stands above and below it [mm]."""
-    wider = 1.0 if stacked else min(max(width_mm / (MM * panel.width), 0.8), 1.5)
-    beside = 3.2 * len(_caption(panel, width_mm)) + 4.0 * panel.x.numbered + 4.0 * bool(panel.x.label) + 2.0
-    return MM * panel.height * wider + beside
+    lines = len(_caption(panel, across or width_mm - BESIDE)) + bool(panel.y.label and panel.framed)
+    return MM * panel.height * size + 3.2 * lines + 4.0 * panel.x.numbered + 4.0 * bool(panel.x.label) + 2.0
 
 
-def _caption(panel: Panel, width_mm: float) -> list[str]:
-    """Return the lines of a panel's caption."""
+def _caption(panel: Panel, across: float) -> list[str]:
+    """Return the lines of a panel's caption above axes of this width [mm]."""
     words = ", ".join(filter(None, (panel.caption, panel.note)))
-    return textwrap.wrap(words, int(LETTERS * (width_mm - BESIDE)))
+    return textwrap.wrap(words, max(int(LETTERS * across), 6))
 
 
-def _panel(axes: Axes, panel: Panel, width_mm: float) -> Iterator[tuple[Mark, Artist]]:
-    """Draw a panel; yield its marks as they are drawn."""
+def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
+    """Draw a panel, and note what stands for its marks in the legend."""
     for mark in panel.marks:
-        yield mark, _draw(mark, axes)
-    axes.set_title("\n".join(map(_text, _caption(panel, width_mm))))
+        artist = _draw(mark, axes)
+        if mark.label:
+            entries.setdefault(mark.label, {}).setdefault(type(mark), artist)
     for axis, scale in (("x", panel.x), ("y", panel.y)):
         _axis(axes, axis, scale)
+    axes.yaxis.label.set(rotation=0.0, horizontalalignment="left", verticalalignment="bottom")
+    axes.yaxis.set_label_coords(0.0, 1.02)
+    pad = 1.5 * float(axes.yaxis.label.get_fontsize()) if panel.y.label and panel.framed else 0.0
+    axes.set_title("\n".join(map(_text, _caption(panel, across))), pad=pad + 4.0)
     if not panel.framed:
         axes.set_axis_off()
         axes.set_aspect("equal")
@@ -169,9 +253,7 @@ def _axis(axes: Axes, which: str, scale: Axis) -> None:
     ticks = scale.ticks()
     axis.set_minor_locator(NullLocator())
     axis.set_ticks(list(ticks), list(map(_text, ticks.values())) if scale.numbered else [""] * len(ticks))
-    axis.set_label_text(
-        "".join(rf"$_\mathrm{{{words}}}$" if low else _text(words) for words, low in subscripts(scale.label))
-    )
+    axis.set_label_text(_label(scale))
     if scale.names is not None:
         axis.grid(False)
 
