@@ -82,6 +82,7 @@ def _every_run(finished: Finished) -> Markup:
         for name in map(str, finished.saved.peaks)
         if name not in COLUMNS and name not in ("vertical", *varied)
     }
+    columns.pop(OTHER_LAW, None)  # the other end of the range of settlement
     columns["status"] = columns["status"]._replace(filter=True)
     remarks: dict[str, int] = {}
     texts = [name for name in REMARKS if columns.pop(name, None)]
