@@ -163,8 +163,36 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     stacked = Figure([panel, half, half], "two rows", stacked=True)
     assert [len(row) for row in stacked.rows] == [1, 2]
     assert svg.drawn(stacked).count("<svg") == 1
-    tall = Figure([panel, panel, panel], "three rows", stacked=True)
-    assert len({re.search('viewBox="([^"]*)"', one)[1] for one in svg.alike([stacked, tall])}) == 1
+
+
+def test_stretched_panels_have_words_of_one_size_at_shares_of_the_width_in_either_view():
+    x, y = np.linspace(0.0, 10.0, 101), np.sin(np.linspace(0.0, 10.0, 101))
+    marks = [Polyline(x, y, "y"), Points(np.full(1, 3.0), np.full(1, 0.5)), Words(8.0, 0.0, "late")]
+    panel = Panel(Axis("t [s]", 2.0, 4.0), Axis("y", -1.0, 1.0), marks, width=900.0, reads="time")
+    picture = parsed(svg.timed(Figure([panel], "one", stacked=True), Axis("t [s]", 0.0, 10.0)))[0][0]
+    assert "viewBox" not in picture.attrib
+    views = {name: next(node for node in picture.iter("g") if node.get("class") == name) for name in ("v0", "v1")}
+    places = {name: [node.get("x") for node in view.iter("use")] for name, view in views.items()}
+    assert places == {"v0": ["50.00%"], "v1": ["30.00%"]}
+    written = {name: [node.text for node in view.iter("text")] for name, view in views.items()}
+    assert written["v0"] == ["2.0", "2.5", "3.0", "3.5", "4.0"]  # what lies outside is not beside it
+    assert written["v1"] == ["late", "0", "2", "4", "6", "8", "10"]
+    (inner,) = (node for node in picture if node.tag == "svg")
+    assert (inner.get("viewBox"), inner.get("data-views").split("|")[1]) == ("0.0 0 900.0 132", "-900.0 0 4500.0 132")
+    alone = parsed(svg.timed(Figure([panel], "one", stacked=True), panel.x))[0][0]
+    assert {node.get("class") for node in alone.iter("g")} == {"axes", "v0"}
+    assert not any("data-views" in node.attrib for node in alone)
+
+
+def test_a_curve_is_drawn_by_few_points_to_a_tenth_of_a_pixel_and_to_its_extremes():
+    x = np.linspace(0.0, 900.0, 9001)
+    y = 100.0 * np.sin(x / 20.0) * np.exp(-x / 300.0)
+    path = re.search(' d="M([^"]*)"', svg.curve(x, y, ""))[1]
+    points = np.array([*map(int, re.findall(r"-?\d+", path))]).reshape(-1, 2).cumsum(axis=0) / 10.0
+    assert len(points) < 800
+    away = np.abs(np.interp(x, *points.T) - y) / np.hypot(1.0, np.gradient(y, x))
+    assert away.max() < 0.1 + 0.08  # rounding in both directions, too
+    assert (points[:, 1].min(), points[:, 1].max()) == pytest.approx((y.min(), y.max()), abs=0.051)
 
 
 def test_many_panels_that_share_their_axes_fit_a_page_and_are_numbered_at_its_edges():

@@ -357,7 +357,7 @@ for (const pictures of document.querySelectorAll(".histories")) {
     pictures.classList.add("several");
     const select = document.createElement("select");
     for (const figure of figures) select.add(new Option(figure.querySelector("strong").textContent));
-    control(select, "Motion ", select).addEventListener("change", () => {
+    control(select, "Motion, the worst first ", select).addEventListener("change", () => {
       hush();
       figures.forEach((figure, i) => figure.classList.toggle("chosen", i === select.selectedIndex));
     });

@@ -407,7 +407,7 @@ def _(mark: Words, box: Box) -> Markup:
 def _words(mark: Words, x: float | str, y: float) -> Markup:
     anchor = {-1: "e", 0: "m", 1: ""}[mark.side]
     class_ = " ".join(filter(None, (classes(mark.look), anchor)))
-    place = {"x": _short(x), "y": _short(y + 3.5 - mark.lift), "dx": 5 * mark.side or None}
+    place = {"x": _short(x), "y": _short(y + 3.5 - mark.lift), "dx": 7 * mark.side or None}
     return tag("text", mark.text, **place, class_=class_ or None)
 
 

@@ -168,14 +168,15 @@ def _thinned(t: Array, y: Array, moving: tuple[float, float], pixels: int) -> tu
     return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
 
 
-def together(runs: Sequence[Drawn], description: str) -> tuple[Figure, Axis]:
+def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
     """Return the histories of piers under one motion while any of them moves, and the time of the whole record."""
     end = max(run.history.end[0] for run in runs) or 1.0
     low, high = min(run.history.moving[0] for run in runs), max(run.history.moving[1] for run in runs)
-    low, high = max(low - 0.06 * (high - low), 0.0), min(high + 0.03 * (high - low), end)
+    margin = 0.03 * (high - low)
+    low, high = max(low - margin, 0.0), min(high + margin, end)
     if high - low > CUT * end:
         low, high = 0.0, end
-    figure = Figure(_timed(runs, ON_PAGE, (low, high), ACROSS), description, stacked=True)
+    figure = history(runs, ON_PAGE, (low, high), ACROSS, record)
     return figure, replace(figure.panels[-1].x, low=0.0, high=end)
 
 
@@ -183,16 +184,15 @@ def of_one(response: Response, title: str) -> Figure:
     """Return the figure of a response alone, as fine as it is printed, over its loops."""
     look = Look("curve", int(response.base.on_springs))
     own = reduced(response, look, 2000, None)
-    shown = [Drawn(own, "", "", look, PEAK)]
-    panels = _timed(shown, dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0), WIDTH)
-    description = f"Rotation, velocity, energy and ground acceleration against time under {response.record}"
-    return Figure([*panels, *own.springs, *own.devices], description, title, stacked=True)
+    runs, heights, shown = [Drawn(own, "", "", look, PEAK)], dict(enumerate(HEIGHTS)), (0.0, own.end[0] or 1.0)
+    return history(runs, heights, shown, WIDTH, response.record, title, [*own.springs, *own.devices])
 
 
-def _timed(
-    runs: Sequence[Drawn], heights: Mapping[int, float], shown: tuple[float, float], width: float
-) -> list[Panel]:
-    """Return a panel for each quantity against time: every run's, and the ground's acceleration once."""
+def history(
+    runs: Sequence[Drawn], heights: Mapping[int, float], shown: tuple[float, float], width: float,
+    record: str, title: str = "", loops: Sequence[Panel] = (),
+) -> Figure:  # fmt: skip
+    """Return a panel for each quantity against time: every run's, and the ground's acceleration once; ``loops`` below."""
     panels = []
     for row, height in heights.items():
         last = row == max(heights)
@@ -211,7 +211,8 @@ def _timed(
             marks += _events(runs, y, shown)
         x = Axis("t [s]" if last else "", *shown, about=8, numbered=last)
         panels.append(Panel(x, replace(y, about=4 + (row == 0)), marks, width=width, height=height, reads="time"))
-    return panels
+    description = f"Rotation, velocity and ground acceleration against time under {record}"
+    return Figure([*panels, *loops], description, title, stacked=True)
 
 
 def _scale(histories: Sequence[History], row: int) -> Axis:

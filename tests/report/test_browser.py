@@ -286,3 +286,16 @@ def test_it_prints(tmp_path, page):
     printed = (tmp_path / "report.pdf").read_bytes()
     boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
     assert {float(width) > float(height) for width, height in boxes} == {False}  # wide tables go on below
+
+
+def test_on_paper_stands_the_motion_that_is_shown_and_every_one_if_all_is_asked_for(tmp_path):
+    write_results(tmp_path)
+    page = write_report(
+        tmp_path, [response(record, *FOUNDATIONS[1]) for record in ("ERZ-NS", "RRS228", "SYL360", "CPM000")]
+    )
+    sheets = []
+    for words in ('<html lang="en">', '<html lang="en" class="all">'):
+        page.write_text(page.read_text(encoding="utf-8").replace('<html lang="en">', words), encoding="utf-8")
+        chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
+        sheets.append(len(re.findall(rb"/MediaBox", (tmp_path / "report.pdf").read_bytes())))
+    assert sheets[1] >= sheets[0] + 1

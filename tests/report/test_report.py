@@ -376,6 +376,20 @@ def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path):
         assert sum(f"θ/α {name}" in names_of(svg) for svg in readable(text)) == len(worst)
 
 
+def test_of_many_cases_under_one_motion_the_worst_are_drawn_and_the_number_of_the_others_is_said(tmp_path):
+    pier = Pier(alpha=0.2, p=1.0)
+    bases = [(f"pad{i}", YieldingBase(beta=50.0, eta=2.0 + 0.1 * i)) for i in range(9)]
+    cases = [case_entry("rigid", {}, pier, RigidBase()), *(case_entry(name, {}, pier, base) for name, base in bases)]
+    scale = 1.0 / 3.0  # peaks.csv has ten digits of it
+    write_results(tmp_path, records=[("sine", 1.0)], cases=cases, scales=(round(scale, 10),))
+    drawn = [replace(response("sine", name, base), scale=scale) for name, base in [("rigid", RigidBase()), *bases]]
+    text = write_report(tmp_path, drawn).read_text(encoding="utf-8")
+    runs = read(tmp_path).runs.query("case != 'rigid'").sort_values("theta_max_over_alpha", ascending=False)
+    letters = sorted("abcdefghi"[int(case.removeprefix("pad"))] for case in runs["case"].iloc[:7])
+    assert names_of(readable(text)[0])[:8] == ["θ/α rigid", *(f"θ/α {letter}" for letter in letters)]
+    assert "The 2 cases with the smallest rotations are left out." in Page(text).text
+
+
 @pytest.mark.parametrize(("folder", "compiled"), [("", [1, 0]), ("missing", [1, 1])])
 def test_templates_are_compiled_once_where_modules_are_kept(tmp_path, monkeypatch, folder, compiled):
     monkeypatch.setattr(sys, "dont_write_bytecode", False)

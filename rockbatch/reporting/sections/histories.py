@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import accumulate
 from typing import Any
 
 from rockbatch.common.figures.description import COLOURS, DASHES, Figure, Look, marks_of
@@ -25,7 +26,7 @@ MOST_TOGETHER = 7
 
 Row = dict[str, Any]
 MOTION = ("record", "polarity", "scale", "pier")
-"""What is alike for the runs of one picture."""
+"""Columns that are alike for the runs of one picture."""
 
 
 def section(finished: Finished) -> Markup:
@@ -35,9 +36,7 @@ def section(finished: Finished) -> Markup:
     words = list(map(str, finished.info["command"]))
     from_command = not any(word.endswith(FROM_PYTHON) for word in words)
     command = shlex.join([*words, "--history", "RECORD"]) if from_command else ""
-    pictures = _pictures(finished)
-    kinds = {name: any(picture[name] for picture in pictures) for name in ("springs", "devices")}
-    return render("reporting/sections/histories.html", pictures=pictures, command=command, **kinds)
+    return render("reporting/sections/histories.html", pictures=_pictures(finished), command=command)
 
 
 def _pictures(finished: Finished) -> list[dict[str, Any]]:
@@ -46,31 +45,30 @@ def _pictures(finished: Finished) -> list[dict[str, Any]]:
     rows = _rows_of(finished, responses)
     pictures = []
     for numbers in _motions(finished, rows):
+        shown = _shown(finished, [rows[number] | {"number": number} for number in numbers])
+        places = [row["number"] for row in shown]
         chosen = (
-            responses.without_rows(numbers) if isinstance(responses, Responses) else map(responses.__getitem__, numbers)
+            responses.without_rows(places) if isinstance(responses, Responses) else map(responses.__getitem__, places)
         )
-        runs = [
-            _drawn(finished.series[rows[number]["series"]], response)
-            for number, response in zip(numbers, chosen, strict=True)
-        ]
-        pictures.append(_picture(finished, rows[numbers[0]], runs))
+        runs = [_drawn(finished.series[row["series"]], response) for row, response in zip(shown, chosen, strict=True)]
+        pictures.append(_picture(_title(finished, shown[0]), runs) | {"left_out": len(numbers) - len(shown)})
     return pictures
 
 
-def _picture(finished: Finished, motion: Row, runs: Sequence[Drawn]) -> dict[str, Any]:
-    title = _title(finished, motion)
-    figure, whole = together(runs, f"Rotation, velocity and ground acceleration against time under {title}")
+def _picture(title: str, runs: Sequence[Drawn]) -> dict[str, Any]:
+    figure, whole = together(runs, title)
     loops = [
         replace(panel, caption=f"{run.name}, {panel.caption}")
         for run in runs
         for panel in (*run.history.springs, *run.history.devices)
     ]
     x = figure.panels[-1].x
-    kinds = {name: any(getattr(run.history, name) for run in runs) for name in ("springs", "devices")}
     return {
-        "title": title, "whole": whole, "shown": x if x != whole else None, "curves": timed(figure, whole),
-        "key": key_of(figure), "loops": drawn(Figure(loops, f"Force against deflection under {title}")) if loops else "",
-    } | kinds  # fmt: skip
+        "title": title, "cut": x if x != whole else None, "whole": whole,
+        "curves": timed(figure, whole), "key": key_of(figure),
+        "loops": drawn(Figure(loops, f"Force against deflection under {title}")) if loops else "",
+        "springs": any(run.history.springs for run in runs), "devices": any(run.history.devices for run in runs),
+    }  # fmt: skip
 
 
 def _drawn(series: Series, response: Response) -> Drawn:
@@ -97,24 +95,30 @@ def _rows_of(finished: Finished, responses: Sequence[Response]) -> list[Row]:
 
 
 def _motions(finished: Finished, rows: Sequence[Row]) -> list[list[int]]:
-    """Return the numbers of the runs under each motion, the worst motion first; of many those that are worst for some case."""
-    names = [*MOTION, "series"]
-    number_of = {tuple(run[name] for name in names): number for number, run in enumerate(rows)}
-    ordered = worst_first(finished.runs, len(finished.runs)).drop_duplicates(names)[names].itertuples(index=False)
-    worst = [number_of[key] for key in map(tuple, ordered) if key in number_of]
-    motions = grouped(worst, lambda number: tuple(rows[number][name] for name in MOTION))
+    """Return the numbers of the runs under each motion, the worst first; of many the motions that are worst for some case."""
+    runs = finished.runs[finished.runs["record"].isin({row["record"] for row in rows})]
+    ordered = map(_key, as_dicts(worst_first(runs, len(runs))[[*MOTION, "series"]]))
+    rank = {key: place for place, key in enumerate(dict.fromkeys(ordered))}
+    numbers = sorted(range(len(rows)), key=lambda number: rank.get(_key(rows[number]), len(rank)))
+    motions = [*grouped(numbers, lambda number: _key(rows[number])[:-1]).values()]
     if len(rows) > MOST_HISTORIES:
-        of_case = grouped(worst, lambda number: (rows[number]["series"], rows[number]["pier"]))
-        needed = {numbers[0] for numbers in of_case.values()}
-        motions = {motion: numbers for motion, numbers in motions.items() if needed.intersection(numbers)}
-    chosen: list[list[int]] = []
-    for numbers in motions.values():
-        if sum(map(len, chosen)) >= MOST_HISTORIES:
-            break
-        rigid = [number for number in numbers if finished.series[rows[number]["series"]].rigid]
-        others = [number for number in numbers if number not in rigid][:MOST_TOGETHER]
-        chosen.append(sorted(rigid + others, key=lambda number: rows[number]["series"]))
-    return chosen
+        of_case = grouped(numbers, lambda number: (rows[number]["series"], rows[number]["pier"]))
+        needed = {own[0] for own in of_case.values()}
+        motions = [own for own in motions if needed.intersection(own)]
+    before = accumulate(map(len, motions), initial=0)
+    return [own for own, count in zip(motions, before, strict=False) if count < MOST_HISTORIES]
+
+
+def _key(row: Row) -> tuple[object, ...]:
+    """Return what identifies a run, its foundation last; the scale with the digits of peaks.csv."""
+    return row["record"], row["polarity"], float(f"{row['scale']:.10g}"), row["pier"], row["series"]
+
+
+def _shown(finished: Finished, rows: Sequence[Row]) -> list[Row]:
+    """Return the runs of one picture, in the order of the foundations: of many the rigid ones and the worst."""
+    rigid = [row for row in rows if finished.series[row["series"]].rigid]
+    others = [row for row in rows if row not in rigid][:MOST_TOGETHER]
+    return sorted(rigid + others, key=lambda row: (row not in rigid, finished.series[row["series"]].index))
 
 
 def _title(finished: Finished, run: Row) -> str:
