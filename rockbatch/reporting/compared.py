@@ -210,7 +210,10 @@ def pairs(pair: Pair) -> Markup:
         first, second = (run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in pair_of_runs)
         ratio = second / first if first > 0 and second == second else None
         other_values = (on_scale(column.name, run[column.name]) for column in more for run in pair_of_runs)
-        rows.append([*(pair_of_runs[0][name] for name in names), *map(outcome, pair_of_runs), ratio, *other_values])
+        own = (
+            pair.named.shown(run[name]) if name == "record" else run[name] for run in pair_of_runs[:1] for name in names
+        )
+        rows.append([*own, *map(outcome, pair_of_runs), ratio, *other_values])
     return join(shown_of(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
 
 

@@ -94,9 +94,9 @@ PARTS_OF_TWO = (
     Part("What differs in the inputs", "inputs", compared.inputs),
     Part("Peak rotations", "figure", compared.figures),
     Part("Every pair of runs", "peaks", compared.pairs),
-    Part("The suite in each case", "suite", compared.suites),
+    Part("Statistics of the suite", "suite", compared.suites, folded=True),
     Part("Only in one", "only", compared.only_in_one),
-    Part("What is compared", "studied", compared.studies),
+    Part("What is compared", "studied", compared.studies, folded=True),
     Part("How the study files differ", "difference", compared.difference),
 )
 """Sections of two folders, from ``compared.py``, in the order of the page."""
