@@ -8,15 +8,13 @@ import numpy as np
 from rockbatch.analyses.fragility.cloud import Cloud
 from rockbatch.analyses.fragility.curves import CloudPoint, Curve
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, threshold
+from rockbatch.analyses.fragility.quantities import FEW
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 
 CLOUD = "fragility_cloud.csv"
-
-FEW = 3
-"""Records beyond a limit, fewer of which leave its curve an extrapolation."""
 
 
 def cloud_table(

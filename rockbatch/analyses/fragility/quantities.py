@@ -10,6 +10,9 @@ from rockbatch.reporting.table import Head
 Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
 
+FEW = 3
+"""Records beyond a limit, fewer of which leave the curve of a cloud an extrapolation."""
+
 
 def level_of(info: Mapping[str, Any]) -> str:
     """Return the level of the intervals in words."""
@@ -81,13 +84,22 @@ def _rates(low: str, high: str, written: Callable[[float], str]) -> Callable[[Cu
 
 def _probability(name: str) -> Callable[[Curve], Markup]:
     def written(curve: Curve) -> Markup:
-        value, low, high = (_percent(curve["risk"][key]) for key in (name, f"{name}_low", f"{name}_high"))
+        value, low, high = (percent(curve["risk"][key]) for key in (name, f"{name}_low", f"{name}_high"))
         return Markup(f"{value}\u00a0% ({interval(low, high)})")
 
     return written
 
 
-def _percent(p: float) -> str:
+def power(value: float) -> str:
+    """Return a rate with a power of ten: "7.4·10⁻⁴"."""
+    digits, exponent = f"{value:.1e}".split("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def percent(p: float) -> str:
     """Return a probability in per cent with two digits, without exponent where it is all but certain."""
     return "100" if p >= 0.995 else f"{100.0 * p:.2g}"
 

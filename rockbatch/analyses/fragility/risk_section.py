@@ -1,9 +1,10 @@
-"""Annual rates of ``rockbatch fragility``: the hazard, which intensities contribute, and a table of probabilities."""
+"""Annual rates of ``rockbatch fragility``: the worst case, the hazard, which intensities contribute, and a table."""
 
 from collections.abc import Sequence
 
+from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import label, risk
-from rockbatch.analyses.fragility.quantities import Curve, level_of, of_rates
+from rockbatch.analyses.fragility.quantities import Curve, level_of, of_rates, power
 from rockbatch.reporting.finished_analysis import Contents, of_files
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.svg import drawn
@@ -21,10 +22,10 @@ def section(contents: Contents) -> Markup:
     curves = [entry for entry in info["curves"] if entry["risk"]]
     if not curves:
         return tag("p", "No curve could be fitted, so that there are no rates.")
-    heads = [Head("limit", value="limit_state"), Head("case", value=label), *of_rates(info, _power)]
+    heads = [Head("limit", value="limit_state"), Head("case", value=label), *of_rates(info, power)]
     return render(
-        "analyses/fragility/risk_section.html", info=info, hazard=info["hazard"], share=level_of(info),
-        panels=drawn(risk(info, curves)),
+        "analyses/fragility/risk_section.html", info=info, answer=answer.of_rates(info), hazard=info["hazard"],
+        share=level_of(info), panels=drawn(risk(info, curves)),
         table=listed(heads, curves, prose=True, name="Annual rates and probabilities"), notes=_notes(curves),
     )  # fmt: skip
 
@@ -33,12 +34,3 @@ def _notes(curves: Sequence[Curve]) -> Markup:
     """Return what the numbers do not say by themselves, a line for each curve."""
     notes = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
     return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))
-
-
-def _power(value: float) -> str:
-    """Return a rate with a power of ten: "7.4·10⁻⁴"."""
-    digits, exponent = f"{value:.1e}".split("e")
-    return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
-
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

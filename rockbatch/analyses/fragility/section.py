@@ -1,8 +1,9 @@
-"""Results of ``rockbatch fragility``: for each limit points, curves and bands, and a table of medians."""
+"""Results of ``rockbatch fragility``: the weakest case, for each limit points, curves and bands, and a table of medians."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import clouds, curves, label
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves
 from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_files
@@ -21,11 +22,10 @@ def section(contents: Contents) -> Markup:
     if analysis is None or not analysis.info["curves"]:
         return Markup("")
     info = analysis.info
-    entries = info["curves"]
-    of_clouds = clouds(info)
+    entries, of_clouds = info["curves"], clouds(info)
     return render(
-        "analyses/fragility/section.html", info=info, share=level_of(info), panels=drawn(curves(info)), table=_table(info),
-        little=[f"{entry['limit_state']}, {label(entry)}" for entry in entries if entry["says_little"]],
+        "analyses/fragility/section.html", info=info, answer=answer.of_curves(info), share=level_of(info),
+        panels=drawn(curves(info)), table=_table(info), notes=_notes(entries),
         open=any("open" in entry for entry in entries), looked=any(entry.get("looked") for entry in entries),
         clouds=drawn(of_clouds) if of_clouds.panels else "", factors=_factors(info),
         own=any(None in row for row in info.get("scales", {}).get("factors", ())),
@@ -40,9 +40,17 @@ def _table(info: Mapping[str, Any]) -> Markup:
         *of_curves(info),
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
-        Head("note", value="note"),
+        Head("no curve", value=lambda entry: entry["note"] if entry["median"] is None else None),
     ]  # fmt: skip
     return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
+
+
+def _notes(entries: Iterable[Curve]) -> Markup:
+    """Return a folded list of what is to know about single curves; empty if there is nothing."""
+    lines = [
+        tag("li", f"{entry['limit_state']}, {label(entry)}: {entry['note']}.") for entry in entries if entry["note"]
+    ]
+    return tag("details", tag("summary", "Notes on the curves"), tag("ul", *lines)) if lines else Markup("")
 
 
 def _factors(info: Mapping[str, Any]) -> Markup:

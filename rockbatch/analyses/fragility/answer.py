@@ -1,0 +1,228 @@
+"""The answer of a fragility in sentences: the weakest case, for overturning and for the limit that is exceeded first."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from rockbatch.analyses.fragility.figures import label
+from rockbatch.analyses.fragility.quantities import FEW, Curve, level_of, percent, power
+from rockbatch.common.grouping import grouped
+from rockbatch.reporting.labels import counted
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.results.labels import plain
+
+NOTABLE = 0.2
+"""Share of a rate that rests on an extrapolation, from which the answer says so."""
+MOST_NAMES = 3
+"""Most cases that a remark names."""
+
+Info = Mapping[str, Any]
+"""Content of fragility.json."""
+
+
+def of_curves(info: Info) -> Markup:
+    """Return the weakest case for overturning and for the limit that is exceeded first, and what leaves them open."""
+    overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
+    sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]
+    weakest = min(others, key=_lowest, default=None)
+    if weakest is not None and _lowest(weakest) < _lowest(overturning):
+        words = f" ({weakest[0]['words']})" if weakest[0]["words"] else ""
+        sentences.append(_of_limit(info, weakest, f"The limit exceeded first, {weakest[0]['limit_state']}{words},"))
+    elif others:
+        sentences.append(_sentence("The other limits are not exceeded earlier"))
+    return _answer(sentences, _of_all(info))
+
+
+def of_rates(info: Info) -> Markup:
+    """Return how often the worst case overturns and exceeds the limit that is exceeded most often, and what leaves that open."""
+    by_limit = grouped(info["curves"], lambda curve: curve["limit_state"])
+    known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
+    overturning, *_ = known
+    often = max(known, key=lambda name: max(map(_rate, known[name]), default=-1.0))
+    subjects = {name: _capital(name) for name in (overturning, often)}
+    if info["hazard"]["source"]:
+        subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
+    sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
+    return _answer(sentences, [*_without_rates(info), *_narrow(info)])
+
+
+def _without_rates(info: Info) -> Iterator[str]:
+    if lost := sum(not curve["risk"] for curve in info["curves"]):
+        yield f"{lost} of {len(info['curves'])} curves could not be fitted: what has no rate here may be exceeded more often."
+
+
+def _answer(sentences: Sequence[str], remarks: Iterable[str]) -> Markup:
+    """Return the sentences as a paragraph, and a line below for each remark."""
+    lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)
+    return join(tag("p", join(*sentences, between=" "), class_="lead"), *lines)
+
+
+def _sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
+    """Return a sentence with what leaves it open at its end, marked."""
+    return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
+
+
+def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
+    """Return the sentence about a limit: the case with the lowest median."""
+    curve = min(curves, key=_strength)
+    decided = _decided(curve)
+    beyond = sum(point["exceeded"] for point in decided)
+    total = sum(point["records"] - point["undecided"] for point in decided)
+    case = f" for {label(curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
+    if curve["median"] is not None:
+        interval = f"{level_of(info)} from {_records(curve)}: {_bounds(curve['median_interval'])}"
+        dispersion = "" if curve["dispersion"] is None else f" and a dispersion of {curve['dispersion']:.2f}"
+        said = f"has a median of {_intensity(info, curve['median'])} ({interval}){dispersion}{case}"
+        said += (
+            ", whose intervals overlap" if any(_overlap(curve, each) for each in curves if each is not curve) else ""
+        )
+    elif not total:
+        said = "is decided by no run" + (f" in any of {len(curves)} cases" if case else "")
+    elif _withstood(decided, curve):
+        said = f"is not reached up to {_intensity(info, decided[-1]['level'])} by any of {_records(curve)}"
+        said += f", in any of {len(curves)} cases" if case else ""
+    elif beyond == total:
+        said = f"is reached by every record from {_intensity(info, decided[0]['level'])} on{case}: its median is below that"
+    else:
+        said = f"has no median{case}: no curve could be fitted"
+    return _sentence(f"{subject} {said}", _left_open(info, curve, curves))
+
+
+def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[str]:
+    """Yield what leaves the median of ``curve`` open, the lowest of ``curves``, beside its interval."""
+    undecided = sum(curve["undecided"][kind] for kind in ("flight", "failed", "other"))
+    runs = f"{undecided} of {counted(curve['undecided']['runs'], 'run')}"
+    if curve["says_little"]:
+        bounds = _bounds(curve["median_undecided"])
+        yield f"too many runs are undecided to say much, {runs}: with these on either side the median is {bounds}"
+    elif curve["median"] is None and undecided:
+        yield f"{runs} undecided"
+    if curve["median"] is not None:
+        if curve["median"] > info["levels"][-1] or curve["median"] < info["levels"][0]:
+            ends = " to ".join(plain(info["levels"][end], 3) for end in (0, -1))
+            yield f"an extrapolation, as runs are at {ends} {info['unit']}"
+        if "cloud" in curve and (beyond := sum(point["exceeded"] for point in curve["points"])) < FEW:
+            yield f"only {counted(beyond, 'record')} beyond the limit"
+    doubtful = [other for other in curves if other is not curve and other["median_undecided"]]
+    least = min(doubtful, key=lambda other: other["median_undecided"][0] or 0.0, default=None)
+    if least is not None and (low := least["median_undecided"][0] or 0.0) < _strength(curve):
+        yield f"{label(least)} may be weaker, down to {plain(low, 3)}, as runs of it are undecided"
+
+
+def _of_all(info: Info) -> Iterator[str]:
+    """Yield remarks on all curves that may change a decision."""
+    curves = info["curves"]
+    if len(curves) > 1:  # else the sentence has said it
+        if lost := sum(map(_unknown, curves)):
+            yield f"{lost} of {len(curves)} curves could not be fitted: the table says why."
+        if little := sum(curve["says_little"] for curve in curves):
+            yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
+    yield from _narrow(info)
+    if gaps := list(dict.fromkeys(label(curve) for curve in curves if len(curve.get("looked", ())) > 1)):
+        cases = ", ".join(gaps) if len(gaps) <= MOST_NAMES else f"{len(gaps)} cases"
+        yield f"Between the levels nothing was run in {cases}: a first exceedance there is missed, and medians may be too high."
+
+
+def _narrow(info: Info) -> Iterator[str]:
+    """Yield why intervals are too narrow."""
+    if info.get("stations", info["records"]) < info["records"]:
+        counts = f"The {info['records']} records are components of {counted(info['stations'], 'station')}"
+        yield f"{counts}, each counted by itself: the intervals are too narrow."
+    if info["method"] == "cloud" and max(len(curve["points"]) for curve in info["curves"]) > info["records"]:
+        yield "Each record counts at every scale as one of its own: the intervals are too narrow."
+
+
+def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
+    """Return the sentence about a limit: the case that exceeds it most often."""
+    if not curves:
+        return _sentence(f"{subject} has no rate, as no curve could be fitted")
+    curve = max(curves, key=_rate)
+    risk, years = curve["risk"], min(info["hazard"]["years"])
+    p, low, high = (percent(risk[f"p_in_{years:g}_years{end}"]) for end in ("", "_low", "_high"))
+    case = f" for {label(curve)}, the greatest of {len(curves)} cases" if len(curves) > 1 else ""
+    said = (
+        f"{subject} has a probability of {p}\u00a0% in {years:g} years ({level_of(info)}: {low} to {high}\u00a0%){case}"
+    )
+    return _sentence(f"{said}, a mean rate of {power(_rate(curve))} a year", _rate_left_open(info, curve))
+
+
+def _rate_left_open(info: Info, curve: Curve) -> Iterator[str]:
+    risk, rate = curve["risk"], _rate(curve)
+    if risk["rate_high"] is None:
+        yield "the records leave its upper bound open"
+    if curve["says_little"]:
+        ends = (
+            "no bound" if (end := risk[f"rate_if_{way}"]) is None else power(end) for way in ("withstood", "exceeded")
+        )
+        yield f"undecided runs leave it between {' and '.join(ends)} a year"
+    for what, where in (("points", "an extrapolated hazard"), ("levels", "intensities that were not run")):
+        share = sum(risk[f"rate_{side}_{what}"] for side in ("below", "above")) / rate if rate > 0 else 0.0
+        if share > NOTABLE:
+            yield f"{100 * share:.0f}\u00a0% of it from {where}"
+
+
+def _lowest(curves: Sequence[Curve]) -> float:
+    return min(map(_strength, curves))
+
+
+def _strength(curve: Curve) -> float:
+    """Return the median of a curve; without one the lowest level at which half of the decided records exceed the limit."""
+    if curve["median"] is not None:
+        return float(curve["median"])
+    half = (
+        point["level"] for point in _decided(curve)
+        if point["exceeded"] and 2 * point["exceeded"] >= point["records"] - point["undecided"]
+    )  # fmt: skip
+    return min(half, default=float("inf"))
+
+
+def _decided(curve: Curve) -> list[Mapping[str, Any]]:
+    return [point for point in curve["points"] if point["records"] > point["undecided"]]
+
+
+def _withstood(points: Sequence[Mapping[str, Any]], curve: Curve) -> bool:
+    """Return whether no record is known to exceed the limit, at ``points`` or between the levels."""
+    return not any(point["exceeded"] for point in points) and all(high is None for _, high in curve["capacities"])
+
+
+def _unknown(curve: Curve) -> bool:
+    """Return whether a curve has no median though some record may have one."""
+    points = curve["points"]
+    return curve["median"] is None and not (
+        _withstood(points, curve)
+        and any(point["records"] for point in points)
+        and not any(point["undecided"] for point in points)
+    )
+
+
+def _overlap(curve: Curve, other: Curve) -> bool:
+    """Return whether the median of another curve may be as low, by the intervals."""
+    if other["median"] is None:
+        return False
+    low, high = (other["median_interval"][0] or 0.0), curve["median_interval"][1]
+    return high is None or low <= high
+
+
+def _records(curve: Curve) -> str:
+    """Return how many records count, at every level where that differs."""
+    numbers = [point["records"] for point in curve["points"]]
+    least, most = (sum(numbers),) * 2 if "cloud" in curve else (min(numbers), max(numbers))
+    return counted(most, "record") if least == most else f"{least} to {most} records a level"
+
+
+def _bounds(interval: Sequence[float | None]) -> str:
+    low, high = interval
+    if high is None:
+        return f"{plain(low, 3)} or more" if low else "open"
+    return f"{plain(low, 3)} to {plain(high, 3)}" if low else f"{plain(high, 3)} or less"
+
+
+def _intensity(info: Info, value: float) -> str:
+    return f"{info['measure']} {plain(value, 3)} {info['unit']}".replace(" ", "\u00a0")
+
+
+def _rate(curve: Curve) -> float:
+    return float(curve["risk"]["rate_per_year"])
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,222 @@
+"""The first sentences of a fragility name the weakest of all curves, and say what leaves it open."""
+
+import html
+import re
+
+import pytest
+
+from rockbatch.analyses.fragility.answer import of_curves, of_rates
+
+LEVELS = (0.2, 0.5, 1.0, 2.0)
+INFO = {
+    "method": "stripes",
+    "measure": "PGV",
+    "unit": "m/s",
+    "levels": LEVELS,
+    "confidence": 0.95,
+    "records": 10,
+    "stations": 10,
+}
+
+
+def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9), interval=None, **more):
+    """A curve of ten records, of which so many exceed the limit at each level."""
+    undecided = more.pop("undecided", (0, 0, 0, 0))
+    points = [
+        {"level": level, "records": 10, "exceeded": over, "undecided": unknown}
+        for level, over, unknown in zip(LEVELS, exceeded, undecided, strict=True)
+    ]
+    return {
+        "case": case, "columns": {}, "limit_state": limit, "words": "" if limit == "overturning" else "theta > 1",
+        "median": median, "median_interval": interval or (median and [0.8 * median, 1.3 * median]), "points": points,
+        "dispersion": median and 0.4, "median_undecided": None, "says_little": False, "risk": None,
+        "capacities": [], "undecided": {"runs": 40, "flight": 0, "failed": sum(undecided), "other": 0},
+    } | more  # fmt: skip
+
+
+def said(*curves, by=of_curves, **more):
+    """What the page says, and what of it is marked."""
+    answer = by(INFO | {"curves": list(curves)} | more)
+    marked = re.findall(r'<span class="undecided">(.*?)</span>', answer)
+    lines = re.findall(r"<p[^>]*>(.*?)</p>", answer)
+    return [html.unescape(re.sub("<.*?>", "", line)).replace("\u00a0", " ") for line in lines], marked
+
+
+def test_the_lowest_median_of_each_limit_is_said_whatever_the_order_of_cases():
+    (line,), marked = said(
+        curve("rock", median=1.4),
+        curve("pads", median=1.0),
+        curve("rock", "drift", median=0.9),
+        curve("rock", "uplift", median=0.7),
+        curve("pads", "uplift", median=0.4),
+    )
+    overturning, first = line.split(". ", 1)[0] + ".", line.split("cases, whose intervals overlap. ")[-1]
+    assert overturning == (
+        "Overturning has a median of PGV 1 m/s (95 % from 10 records: 0.8 to 1.3) and a dispersion of 0.40 for pads, the lowest "
+        "of 2 cases, whose intervals overlap."
+    )
+    assert first == (
+        "The limit exceeded first, uplift (theta > 1), has a median of PGV 0.4 m/s (95 % from 10 records: 0.32 to 0.52) and a "
+        "dispersion of 0.40 for pads, the lowest of 2 cases."
+    )
+    assert not marked
+
+
+def test_a_limit_that_is_exceeded_after_overturning_is_not_called_the_first():
+    (line,), _ = said(curve(median=0.6), curve(limit="settlement", median=0.9))
+    assert line.endswith("dispersion of 0.40. The other limits are not exceeded earlier.")
+
+
+def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
+    """Every record exceeds the limit at the lowest level on pads: their median is not known, but below that of rock."""
+    (line, lost), marked = said(curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10)))
+    assert line == (
+        "Overturning is reached by every record from PGV 0.2 m/s on for pads, the lowest of 2 cases: its median is below that."
+    )
+    assert lost == "1 of 2 curves could not be fitted: the table says why."
+    assert marked == [lost]
+
+
+@pytest.mark.parametrize(("cases", "words"), [(1, "10 records."), (2, "10 records, in any of 2 cases.")])
+def test_a_limit_that_no_record_reaches_has_no_median_and_that_is_no_flaw(cases, words):
+    (line,), marked = said(*(curve(f"case {n}", exceeded=(0, 0, 0, 0)) for n in range(cases)))
+    assert line == f"Overturning is not reached up to PGV 2 m/s by any of {words}"
+    assert not marked
+
+
+def test_undecided_runs_at_the_highest_level_are_said_beside_a_limit_that_no_decided_record_reaches():
+    (line,), marked = said(curve(exceeded=(0, 0, 0, 0), undecided=(0, 0, 4, 10)))
+    assert line == "Overturning is not reached up to PGV 1 m/s by any of 10 records; 14 of 40 runs undecided."
+    assert marked == ["14 of 40 runs undecided"]
+
+
+def test_without_a_decided_run_nothing_is_claimed():
+    (line,), _ = said(curve(exceeded=(0, 0, 0, 0), undecided=(10, 10, 10, 10)))
+    assert line == "Overturning is decided by no run; 40 of 40 runs undecided."
+
+
+def test_too_many_undecided_runs_stand_in_the_sentence_with_the_median_that_they_allow():
+    open_ = {"says_little": True, "median_undecided": [0.3, None], "undecided": (0, 5, 5, 0)}
+    (line,), marked = said(curve(median=0.8, **open_))
+    assert (
+        "; too many runs are undecided to say much, 10 of 40 runs: with these on either side the median is 0.3 or more."
+        in line
+    )
+    assert len(marked) == 1
+
+
+def test_another_case_that_undecided_runs_may_make_weaker_is_named():
+    open_ = {"says_little": True, "median_undecided": [0.3, 1.1], "undecided": (0, 5, 5, 0)}
+    (line, little), _ = said(curve("rock", median=0.8), curve("pads", median=1.0, **open_))
+    assert line.endswith("; pads may be weaker, down to 0.3, as runs of it are undecided.")
+    assert little == "1 of 2 curves says little: too many runs are undecided."
+
+
+@pytest.mark.parametrize(
+    ("interval", "words"), [((0.5, None), "0.5 or more"), ((0.0, 2.5), "2.5 or less"), ((0.0, None), "open")]
+)
+def test_an_interval_without_a_bound_is_said_so(interval, words):
+    (line,), _ = said(curve(median=0.8, interval=interval))
+    assert f"(95 % from 10 records: {words})" in line
+
+
+@pytest.mark.parametrize("median", [0.1, 3.4])
+def test_a_median_beyond_the_levels_is_called_an_extrapolation(median):
+    _, marked = said(curve(median=median))
+    assert marked == ["an extrapolation, as runs are at 0.2 to 2 m/s"]
+
+
+def test_a_curve_whose_shares_do_not_grow_has_no_median():
+    (line,), _ = said(curve(exceeded=(4, 3, 4, 3)))
+    assert line == "Overturning has no median: no curve could be fitted."
+
+
+def test_a_cloud_with_few_records_beyond_the_limit_says_how_few():
+    (line, narrow), _ = said(curve(median=0.8, exceeded=(0, 0, 1, 1), cloud={}), method="cloud", records=2, stations=2)
+    assert line.endswith("from 40 records: 0.64 to 1.04) and a dispersion of 0.40; only 2 records beyond the limit.")
+    assert narrow.startswith("Each record counts at every scale as one of its own")
+
+
+def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
+    alone = {"looked": [[level, level] for level in LEVELS]}
+    lines, marked = said(curve("pads", median=0.8, **alone), curve("rock", median=0.9, looked=[[0.2, 2.0]]), stations=5)
+    assert lines[1:] == [
+        "The 10 records are components of 5 stations, each counted by itself: the intervals are too narrow.",
+        "Between the levels nothing was run in pads: a first exceedance there is missed, and medians may be too high.",
+    ]
+    assert marked == lines[1:]
+
+
+def rate(per_year, **more):
+    return {
+        "rate_per_year": per_year, "rate_low": 0.5 * per_year, "rate_high": 3 * per_year, "rate_if_withstood": None,
+        "rate_if_exceeded": None, "rate_below_points": 0.0, "rate_above_points": 0.0, "rate_below_levels": 0.0,
+        "rate_above_levels": 0.0, "p_in_50_years": 50 * per_year, "p_in_50_years_low": 25 * per_year, "p_in_50_years_high": 0.5,
+    } | more  # fmt: skip
+
+
+HAZARD = {"source": "", "years": [100.0, 50.0]}
+
+
+def test_the_most_frequent_case_is_said_though_another_has_the_lower_median():
+    (line,), marked = said(
+        curve("rock", median=0.7, risk=rate(1e-4)),
+        curve("pads", median=0.9, risk=rate(2e-4)),
+        curve("rock", "drift", median=1.5, risk=rate(1e-5)),
+        curve("pads", "uplift", median=0.3, risk=rate(1e-3)),
+        by=of_rates, hazard=HAZARD | {"source": "made up"},
+    )  # fmt: skip
+    assert line == (
+        "With the hazard “made up” overturning has a probability of 1 % in 50 years (95 %: 0.5 to 50 %) for pads, the greatest "
+        "of 2 cases, a mean rate of 2.0·10⁻⁴ a year. Uplift has a probability of 5 % in 50 years (95 %: 2.5 to 50 %), a mean "
+        "rate of 1.0·10⁻³ a year."
+    )
+    assert not marked
+
+
+def test_a_curve_without_a_rate_may_be_the_worst_and_is_counted():
+    (line, lost), marked = said(
+        curve("rock", exceeded=(10, 10, 10, 10)), curve("rock", "uplift", risk=rate(1e-3)), by=of_rates, hazard=HAZARD
+    )
+    assert line.startswith("Overturning has no rate, as no curve could be fitted. Uplift has a probability of 5 %")
+    assert lost == "1 of 2 curves could not be fitted: what has no rate here may be exceeded more often."
+    assert marked == [lost]
+
+
+def test_a_rate_says_what_it_rests_on_and_what_leaves_it_open():
+    open_ = {"rate_high": None, "rate_above_points": 3e-5, "rate_below_levels": 5e-5}
+    readings = {"rate_if_withstood": 1e-5, "rate_if_exceeded": None}
+    (line,), marked = said(
+        curve(median=0.7, says_little=True, risk=rate(1e-4, **open_, **readings)), by=of_rates, hazard=HAZARD
+    )
+    assert marked == [
+        "the records leave its upper bound open",
+        "undecided runs leave it between 1.0·10⁻⁵ and no bound a year",
+        "30\u00a0% of it from an extrapolated hazard",
+        "50\u00a0% of it from intensities that were not run",
+    ]
+    assert line.endswith("were not run.")
+
+
+def test_names_of_limits_and_hazards_are_text_and_no_elements():
+    """fragility.json may come from anybody."""
+    fitted = curve("rock", limit="<b>uplift</b>", median=0.3, risk=rate(1e-3))
+    answers = (
+        of_curves(INFO | {"curves": [curve(median=0.7), fitted]}),
+        of_rates(INFO | {"curves": [curve(limit="<b>"), fitted], "hazard": HAZARD | {"source": "<b>"}}),
+    )
+    for answer in answers:
+        assert "&lt;b&gt;" in answer
+        assert "<b>" not in answer
+
+
+def test_a_record_that_exceeds_between_the_levels_only_does_not_count_as_withstanding():
+    (line,), _ = said(curve(exceeded=(0, 0, 0, 0), capacities=[[0.5, 0.6], [2.0, None]]), method="ida")
+    assert line == "Overturning has no median: no curve could be fitted."
+
+
+def test_records_that_differ_from_level_to_level_are_said_as_a_range():
+    fewer = curve(median=0.8)
+    fewer["points"][3]["records"] = 9
+    (line,), _ = said(fewer)
+    assert "(95 % from 9 to 10 records a level: " in line
