@@ -1,10 +1,11 @@
-"""Pictures of ``rockbatch sensitivity``: the effect of each input alone, and Sobol's indices."""
+"""Results of ``rockbatch sensitivity``: what matters most, the effect of each input alone, and Sobol's indices."""
 
+from rockbatch.analyses.sensitivity.answer import answer
 from rockbatch.analyses.sensitivity.figures import bars, symbol
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES, SOBOL, TORNADO
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.reporting.finished_analysis import Contents, of_files
-from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.finished_analysis import Contents, named, of_files
+from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
 from rockbatch.reporting.templates import render
@@ -22,17 +23,15 @@ def section(contents: Contents) -> Markup:
     if swings is None or shares is None:
         return Markup("")
     info = analysis.info
-    keys = ["case", *info["varied"]]
+    keys, cases = ["case", *info["varied"]], swings.groupby(["case", *info["varied"]], dropna=False).ngroups
     heads = [Head("input", value=lambda row: symbol(row["parameter"])), *QUANTITIES]
-    tables = [
-        listed(heads, as_dicts(part.merge(shares, on=[*keys, "parameter"])), name="Sensitivity in numbers")
-        for _, part in swings.groupby(keys, sort=False, dropna=False)
-    ]
-    picture = tag("figure", drawn(bars(swings, shares, info["varied"])), class_="whole")
+    heads = [Head("case", value=lambda row: named(row, keys)), *heads] if cases > 1 else heads
+    rows = as_dicts(swings.merge(shares, on=[*keys, "parameter"]))
     vertical = [motion["vertical"] for motion in info.get("under", [])]
     return render(
         "analyses/sensitivity/section.html", info=info, statistic=STATISTICS[info["statistic"]].words,
-        drawn=join(picture, *tables),
+        answer=answer(info, swings, shares), picture=drawn(bars(swings, shares, info["varied"])),
+        table=listed(heads, rows, name="Sensitivity in numbers"),
         runs=[f"{count} {status}" for status, count in sorted(info["statuses"].items())],
         idle=vertical and not any(vertical) and any(entry.get("name") == "vertical" for entry in info["inputs"]),
         provenance=analysis.provenance(),

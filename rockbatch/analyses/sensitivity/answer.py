@@ -1,0 +1,104 @@
+"""The answer of a sensitivity study in sentences: the inputs that matter most, and what one of them does alone."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rockbatch.analyses.sensitivity.figures import symbol, written
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.reporting.finished_analysis import named
+from rockbatch.reporting.labels import counted, heading
+from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.results.labelled import as_dicts
+from rockbatch.results.labels import plain
+
+HARDLY = 0.05
+"""Total index below which an input hardly matters."""
+MOST_CASES = 3
+"""Most cases that have a sentence each; of more the answer says in how many an input comes first."""
+MOST_INPUTS = 4
+"""Most inputs of a case that are named with their indices."""
+
+Info = Mapping[str, Any]
+"""Content of sensitivity.json."""
+Rows = Sequence[Mapping[str, Any]]
+"""Inputs of a case: rows of sensitivity.csv with their indices of sobol.csv, the greatest total index first."""
+
+
+def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
+    """Return which inputs matter most in each case, and what puts that in doubt."""
+    keys = ["case", *info["varied"]]
+    merged = swings.merge(sobol, on=[*keys, "parameter"]).groupby(keys, sort=False, dropna=False)
+    parts = (as_dicts(part.sort_values("total", ascending=False, kind="stable")) for _, part in merged)
+    cases = {named(rows[0], keys): rows for rows in parts}
+    subject = heading(f"{STATISTICS[info['statistic']].words} of θ_max/α over {counted(info['motions'], 'motion')}")
+    if len(cases) > MOST_CASES:
+        lines = [join("The ", subject, _in_most(list(cases.values())))]
+    else:
+        lines = [
+            join(f"{case}: the " if len(cases) > 1 else "The ", subject, _of_case(rows)) for case, rows in cases.items()
+        ]
+    remarks = (tag("p", tag("span", words, class_="undecided")) for words in _of_runs(info))
+    return join(*(tag("p", line, class_="lead") for line in lines), *remarks)
+
+
+def _of_case(rows: Rows) -> Markup:
+    """Return the rest of the sentence about a case, and one about the input that moves the answer most by itself."""
+    if rows[0]["total"] != rows[0]["total"]:
+        nothing = tag("span", "there is nothing to attribute to any of them", class_="undecided")
+        return join(f" is {plain(rows[0]['answer_base'], 3)} whatever the inputs are: ", nothing, ".")
+    first, *others = rows
+    shown = [row for row in others if row["total"] >= HARDLY][: MOST_INPUTS - 1]
+    said = f" depends most on {symbol(first['parameter'])} (total Sobol index {_index(first)})"
+    if shown:
+        said += ", then " + ", ".join(f"{symbol(row['parameter'])} ({_index(row)})" for row in shown)
+    if remaining := others[len(shown) :]:
+        most = max(row["total"] + row["total_error"] for row in remaining)
+        names = symbol(remaining[0]["parameter"]) if len(remaining) == 1 else f"the other {len(remaining)}"
+        matter = "may matter, too" if most >= HARDLY else "hardly matters" if len(remaining) == 1 else "hardly matter"
+        said += f"; {names} {matter} ({most:.2f} at most)"
+    greatest = max(rows, key=lambda row: row["swing"])
+    ends = [f"{plain(greatest[f'answer_{end}'], 3)} at {written(greatest[end])}" for end in ("low", "high")]
+    study = f"{plain(greatest['answer_base'], 3)} in the study"
+    moved = f" Alone {symbol(greatest['parameter'])} moves it from {ends[0]} to {ends[1]} ({study})."
+    return join(said, _doubt(first, shown), ".", moved if greatest["swing"] > 0 else "")
+
+
+def _index(row: Mapping[str, Any]) -> str:
+    return f"{row['total']:.2f}\u00a0±\u00a0{row['total_error']:.2f}"
+
+
+def _doubt(first: Mapping[str, Any], shown: Rows) -> Markup:
+    """Return that the order of the inputs is not known, marked; empty if it is."""
+    least = first["total"] - first["total_error"]
+    alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
+    if alike:
+        words = f"more samples would tell {symbol(first['parameter'])} and {', '.join(alike)} apart"
+    elif first["total_error"] > 0.5 * first["total"]:
+        words = "more samples would narrow that interval"
+    else:
+        return Markup("")
+    return join("; ", tag("span", words, class_="undecided"))
+
+
+def _in_most(cases: Sequence[Rows]) -> Markup:
+    """Return the rest of a sentence about many cases: which input comes first in how many."""
+    known = [rows[0] for rows in cases if rows[0]["total"] == rows[0]["total"]]
+    groups = sorted(grouped(known, lambda row: symbol(row["parameter"])).items(), key=lambda group: -len(group[1]))
+    parts = []
+    for name, rows in groups[:MOST_INPUTS]:
+        totals = [row["total"] for row in rows]
+        parts.append(f"on {name} in {len(rows)} (total Sobol index {min(totals):.2f} to {max(totals):.2f})")
+    if len(known) < len(cases):
+        parts.append(f"on none of the inputs in {len(cases) - len(known)}")
+    return join(f" depends most, in {len(cases)} cases, {', '.join(parts)}.")
+
+
+def _of_runs(info: Info) -> Iterator[str]:
+    """Yield how many runs have no peak of their own."""
+    number, runs = info["statuses"], counted(sum(info["statuses"].values()), "run")
+    if ended := number.get("overturned", 0) + number.get("flight", 0):
+        yield f"{ended} of {runs} overturned or were ended by flight, and count as {info['overturned']:g} here."
+    if failed := number.get("failed", 0):
+        yield f"{failed} of {runs} failed, and count with their best value."

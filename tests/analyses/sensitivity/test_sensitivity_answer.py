@@ -1,0 +1,103 @@
+"""The first sentences of a sensitivity study name the inputs that matter most, and say what puts that in doubt."""
+
+import html
+import math
+import re
+
+import pandas as pd
+import pytest
+
+from rockbatch.analyses.sensitivity.answer import answer
+
+INFO = {"varied": [], "statistic": "median", "motions": 3, "overturned": 1.0, "statuses": {"ok": 60}}
+
+
+def said(cases, **more):
+    """What the page says of cases of inputs (name, total, error, answers at both ends), and what of it is marked."""
+    rows = [
+        {"case": case, "parameter": name, "low": 0.3, "base": 0.4, "high": 0.5, "answer_low": low, "answer_base": 0.2}
+        | {
+            "answer_high": high,
+            "swing": max(low, high, 0.2) - min(low, high, 0.2),
+            "total": total,
+            "total_error": error,
+        }
+        for case, inputs in cases.items()
+        for name, total, error, low, high in inputs
+    ]
+    table = pd.DataFrame(rows)
+    indices = ["case", "parameter", "total", "total_error"]
+    page = answer(INFO | more, table.drop(columns=indices[2:]), table[indices])
+    lines = re.findall(r"<p[^>]*>(.*?)</p>", page)
+    marked = re.findall(r'<span class="undecided">(.*?)</span>', page)
+    return [html.unescape(re.sub("<.*?>", "", line)).replace("\u00a0", " ") for line in lines], marked
+
+
+def test_inputs_are_said_in_the_order_of_their_total_index_and_the_greatest_swing_by_itself():
+    """The order of the table is that of the swings, in which a choice comes first here."""
+    (line,), marked = said(
+        {
+            "rock": [
+                ("kinematics", 0.02, 0.01, 0.2, 0.6), ("p", 0.7, 0.1, 0.1, 0.3), ("beta", 0.2, 0.05, 0.15, 0.25),
+                ("n", 0.01, 0.01, 0.2, 0.2),
+            ]
+        }
+    )  # fmt: skip
+    assert line == (
+        "The median of θmax/α over 3 motions depends most on p (total Sobol index 0.70 ± 0.10), then β (0.20 ± 0.05); the other "
+        "2 hardly matter (0.03 at most). Alone kinematics moves it from 0.2 at 0.3 to 0.6 at 0.5 (0.2 in the study)."
+    )
+    assert not marked
+
+
+def test_an_input_whose_interval_reaches_far_is_not_said_to_hardly_matter():
+    (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3), ("n", 0.01, 0.2, 0.2, 0.2)]})
+    assert "; n may matter, too (0.21 at most)." in line
+
+
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        ([("p", 0.5, 0.2, 0.1, 0.3), ("beta", 0.4, 0.2, 0.1, 0.3)], "more samples would tell p and β apart"),
+        ([("p", 0.5, 0.4, 0.1, 0.3), ("beta", 0.02, 0.01, 0.1, 0.3)], "more samples would narrow that interval"),
+    ],
+)
+def test_indices_that_do_not_tell_the_order_are_marked_so(inputs, words):
+    _, marked = said({"rock": inputs})
+    assert marked == [words]
+
+
+def test_an_answer_that_nothing_changes_is_attributed_to_nothing():
+    """As where every run overturns and counts as 1."""
+    (line, ended), marked = said(
+        {"rock": [("p", math.nan, math.nan, 0.2, 0.2)]}, statuses={"overturned": 59, "flight": 1}
+    )
+    assert line.endswith("is 0.2 whatever the inputs are: there is nothing to attribute to any of them.")
+    assert ended == "60 of 60 runs overturned or were ended by flight, and count as 1 here."
+    assert len(marked) == 2
+
+
+def test_runs_without_a_peak_are_counted():
+    lines, _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statuses={"ok": 50, "overturned": 7, "failed": 3})
+    assert lines[1:] == [
+        "7 of 60 runs overturned or were ended by flight, and count as 1 here.",
+        "3 of 60 runs failed, and count with their best value.",
+    ]
+
+
+def test_each_of_a_few_cases_has_its_sentence_in_the_order_of_the_study():
+    lines, _ = said({"rock": [("p", 0.6, 0.1, 0.1, 0.3)], "pads": [("beta", 0.9, 0.1, 0.1, 0.3)]})
+    assert [line.split(" (")[0] for line in lines] == [
+        f"{case}: the median of θmax/α over 3 motions depends most on {name}"
+        for case, name in (("rock", "p"), ("pads", "β"))
+    ]
+
+
+def test_of_many_cases_it_is_said_in_how_many_an_input_comes_first():
+    cases = {f"case {n}": [("p", 0.5 + 0.1 * n, 0.1, 0.1, 0.3), ("n", 0.75, 0.1, 0.1, 0.3)] for n in range(5)}
+    cases["stiff"] = [("p", math.nan, math.nan, 0.2, 0.2)]
+    (line,), _ = said(cases)
+    assert line == (
+        "The median of θmax/α over 3 motions depends most, in 6 cases, on n in 3 (total Sobol index 0.75 to 0.75), on p in 2 "
+        "(total Sobol index 0.80 to 0.90), on none of the inputs in 1."
+    )
