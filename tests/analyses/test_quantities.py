@@ -84,10 +84,15 @@ def test_a_release_test(tmp_path, capsys):
     (fit,) = pd.read_csv(out / "release.csv").to_dict("records")
     value, bounds = f"{fit['value']:.4g}", f"{fit['low']:.4g} to {fit['high']:.4g} (95%)"
     scatter, over = f"{fit['scatter']:.2g}", f"{fit['over_housner']:.3f}"
+    ends, housner = f"{fit['low']:.4g} to {fit['high']:.4g}", f"{fit['value'] / fit['over_housner']:.4g}"
     rows = page.tables["release"]
     assert rows[0] == ["case", "fitted", "value", "interval", "scatter", "of Housner's"]
     assert rows[1] == ["rigid", "restitution", value, bounds, scatter, over]
-    assert f"rigid: restitution = {value}, {bounds}, {over} of Housner's; it scatters by ±{scatter} from" in printed
+    words = (
+        f"rigid: restitution = {value} (95 %: {ends}), Housner's is {housner}; it scatters by ±{scatter} from impact to"
+    )
+    assert words in printed
+    assert words in page.text
     assert fit["remark"] in printed
     assert fit["remark"] in page.text
     times = {"impact": "d", "t_measured_s": ".4f", "t_computed_s": ".4f"}

@@ -1,12 +1,10 @@
 """``rockbatch release``: restitution, or the losses of springs, fitted to a release test."""
 
 import argparse
-from collections.abc import Mapping
-from typing import Any
 
 from rockbatch.analyses.release.analysis import release
-from rockbatch.analyses.release.quantities import FIT, IMPACTS
-from rockbatch.commands.analysis import cell, in_lines, print_files
+from rockbatch.analyses.release.quantities import IMPACTS, in_words
+from rockbatch.commands.analysis import in_lines, print_files
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import folder
 from rockbatch.commands.streams import show
@@ -29,16 +27,5 @@ def shown(fits: "pd.DataFrame", impacts: "pd.DataFrame", varied: tuple[str, ...]
     keys, blocks = ["case", *varied], []
     for (names, rows), fit in zip(impacts.groupby(keys, sort=False, dropna=False), as_dicts(fits), strict=True):
         head = f"{names[0]} {named(varied, names[1:])}".rstrip()
-        blocks.append(f"{head}: {in_words(fit)}\n{in_lines(IMPACTS, as_dicts(rows))}")
+        blocks.append(f"{head}: {in_words(fit)}.\n  {fit['remark']}\n{in_lines(IMPACTS, as_dicts(rows))}")
     return "\n\n".join(blocks)
-
-
-def in_words(fit: Mapping[str, Any]) -> str:
-    """Return what was fitted in a case, in sentences."""
-    parameter, value, interval, scatter, over_housner = (cell(quantity, fit) for quantity in FIT)
-    text = f"{parameter} = {value}, {interval}"
-    if over_housner:
-        text += f", {over_housner} of Housner's"
-    if fit["scatter"] > 1e-3 * fit["value"]:
-        text += f"; it scatters by ±{scatter} from impact to impact"
-    return f"{text}.\n  {fit['remark']}"

@@ -12,6 +12,17 @@ def interval(fit: Mapping[str, Any]) -> str:
     return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
 
 
+def in_words(fit: Mapping[str, Any]) -> str:
+    """Return what was fitted: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118"."""
+    value, low, high = (number(fit[name], ".4g") for name in ("value", "low", "high"))
+    text = f"{fit['parameter']} = {value} ({100.0 * fit['confidence']:g} %: {low} to {high})"
+    if fit["over_housner"] > 0.0:
+        text += f", Housner's is {fit['value'] / fit['over_housner']:.4g}"
+    if fit["scatter"] > 1e-3 * fit["value"]:
+        text += f"; it scatters by ±{fit['scatter']:.2g} from impact to impact"
+    return text
+
+
 FIT = (
     Head("fitted", value="parameter"),
     Head("value", ".4g", value="value"),

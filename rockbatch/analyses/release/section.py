@@ -1,10 +1,13 @@
 """A release test in the report: what was fitted, and the measured impacts and amplitudes on the computed rotation."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import Contents, named, of_files
-from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
 from rockbatch.results.labelled import as_dicts
@@ -12,11 +15,13 @@ from rockbatch.results.labelled import as_dicts
 FIT = ("case", "parameter", "value", "low", "high", "confidence", "scatter", "over_housner", "remark")
 IMPACTS = ("case", "impact", "t_measured_s", "t_amplitude_computed_s", "amplitude_measured_rad", "restitution_measured")
 HISTORY = ("case", "t_s", "theta_rad")
+CAPTION = "Line: computed with the fitted value. Markers: measured, amplitudes at the time of the computed ones."
+METHOD = "The value that makes the measured times and amplitudes likeliest, and its interval. "
 
 
 @of_files("release")
 def section(contents: Contents) -> Markup:
-    """Show the fit of each case and its picture; empty without a release test."""
+    """Say what was fitted in each case, and draw it; empty without a release test."""
     analysis = contents.analysis("release")
     if analysis is None:
         return Markup("")
@@ -25,21 +30,29 @@ def section(contents: Contents) -> Markup:
     if fits is None or impacts is None or history is None:
         return Markup("")
     varied = analysis.info["varied"]
-    keys = ["case", *varied]
+    keys, rows = ["case", *varied], as_dicts(fits)
+    heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
+    computed = [tag("p", METHOD, *(f"{named(fit, keys)}: {fit['remark']}. " for fit in rows)), analysis.provenance()]
+    return join(
+        *(_answer(fit, keys) for fit in rows),
+        figure(drawn(rotations(impacts, history, varied)), CAPTION),
+        listed(heads, rows, name="Fitted to the release test"),
+        tag("details", tag("summary", "How this was computed"), *computed),
+        *_impacts(impacts, keys),
+    )
+
+
+def _answer(fit: Mapping[str, Any], keys: Sequence[str]) -> Markup:
+    """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
+    doubt = fit["remark"].rpartition("; ")[0]
+    words = join("; ", tag("span", doubt, class_="undecided")) if doubt else ""
+    return tag("p", f"{named(fit, keys)}: {quantities.in_words(fit)}", words, ".", class_="lead")
+
+
+def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
+    """Return a folded table of the impacts of each case."""
     tables = []
     for names, of_case in impacts.groupby(keys, sort=False, dropna=False):
         title = f"Impacts of {named(dict(zip(keys, names, strict=True)), keys)}, measured and computed"
-        tables.append(listed(quantities.IMPACTS, as_dicts(of_case), name=title))
-    lead = (
-        "What the pier loses, fitted to the measured times and amplitudes, and the interval of the fit. In the pictures a "
-        "measured amplitude stands at the time of the computed one."
-    )
-    pictures = tag("figure", drawn(rotations(impacts, history, varied)), class_="whole")
-    return join(tag("p", lead), _fits(fits, keys), pictures, *tables, analysis.provenance())
-
-
-def _fits(fits: "pd.DataFrame", keys: list[str]) -> Markup:
-    """Return the table of what was fitted."""
-    heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
-    notes = (f"{named(fit, keys)}: {fit['remark']}." for fit in as_dicts(fits))
-    return join(listed(heads, as_dicts(fits), name="Fitted to the release test"), *(tag("p", words) for words in notes))
+        tables.append(tag("details", tag("summary", title), listed(quantities.IMPACTS, as_dicts(of_case), name=title)))
+    return tables

@@ -263,3 +263,20 @@ def test_half_cycles_on_stiff_springs_tend_to_those_of_the_block():
     ).half_cycles
     assert stiff.t[1] == pytest.approx(quarter(START), abs=2e-3)
     assert (np.sign(stiff.omega_before[1:4]) == [-1.0, 1.0, -1.0][: len(stiff) - 1]).all()
+
+
+def test_the_page_opens_with_the_value_and_marks_what_puts_it_in_doubt(tmp_path):
+    """A test that no value describes, beside one that the model made."""
+    exact, wild = lists(passages([0.9] * IMPACTS)), {"amplitude_rad": [0.09, 0.02, 0.07, 0.01, 0.06, 0.005]}
+    for name, measured, doubt in (
+        ("exact", exact, ""),
+        ("wild", wild, "poor: no value describes the test; check size, "),
+    ):
+        result = rb.release(study_of(measured), tmp_path / name)
+        (row,) = result.release.to_dict("records")
+        page = (tmp_path / name / "analyses.html").read_text(encoding="utf-8")
+        first = page.split('<section id="release">')[1].split("<figure", 1)[0]
+        ends = f"(95 %: {row['low']:.4g} to {row['high']:.4g})"
+        assert f'<p class="lead">rigid: restitution = {row["value"]:.4g} {ends}, ' in first
+        assert ('<span class="undecided">' + doubt in first) == bool(doubt)
+        assert ("undecided" in first) == bool(doubt)
