@@ -1,7 +1,9 @@
 """Error against time in the report."""
 
+from collections.abc import Iterator
+
 from rockbatch.analyses.accuracy.figures import error_and_time
-from rockbatch.analyses.accuracy.levels import chosen, read
+from rockbatch.analyses.accuracy.levels import Level, chosen, read
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.markup import Markup
@@ -15,8 +17,20 @@ def section(contents: Contents) -> Markup:
     levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
     if not levels:
         return Markup("")
+    own, last_change = chosen(levels), max((level.reference_change or 0.0 for level in levels), default=0)
     return render(
-        "analyses/accuracy/section.html", levels=levels, own=chosen(levels), picture=drawn(error_and_time(levels)),
-        last_change=max((level.reference_change or 0.0 for level in levels), default=0),
-        table=listed(QUANTITIES, rows(levels)),
+        "analyses/accuracy/section.html", levels=levels, own=own, picture=drawn(error_and_time(levels)), last_change=last_change,
+        remarks=list(_remarks(own, last_change)) if own else [], table=listed(QUANTITIES, rows(levels)),
     )  # fmt: skip
+
+
+def _remarks(own: Level, last_change: float) -> Iterator[str]:
+    """Yield what the error of the study's own setting does not say."""
+    error, differing = own.error_max or 0.0, int(own.status_differs or 0)
+    if own.tolerance and error > own.tolerance:
+        yield "that is more than the tolerance"
+    if differing:
+        end, have = ("ends", "has") if differing == 1 else ("end", "have")
+        yield f"{differing} of these runs {end} otherwise than the reference, and {have} no error"
+    if last_change > error:
+        yield f"the references themselves are known to {last_change:.0e} only"

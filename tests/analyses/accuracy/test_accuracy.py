@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -12,11 +13,13 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch.analyses.accuracy.error_and_time
 from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, measure, reference, references, spread
 from rockbatch.analyses.accuracy.levels import COLUMNS
+from rockbatch.analyses.accuracy.section import section
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import YieldingBase
+from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.simulation import run_fixed
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -237,3 +240,35 @@ def test_runs_that_never_settle_are_counted(study_file, tmp_path, capsys, monkey
     assert main(["accuracy", str(study_file), "--out", str(tmp_path / "out"), "--runs", "1"]) == 2
     assert "settles" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+OWN = {
+    "method": "study", "substeps": "", "tolerance": "1e-5", "runs": "4", "error_median": "1e-7", "error_95": "2e-6",
+    "error_max": "3e-6", "seconds_per_run": "0.002", "status_differs": "0", "reference_change": "1e-10", "machine": "here",
+    "study": "x",
+}  # fmt: skip
+FIXED = OWN | {"method": "located", "substeps": "2", "tolerance": "", "error_max": "1e-3"}
+
+
+@pytest.mark.parametrize(
+    ("change", "words", "marked"),
+    [
+        ({}, "(tolerance 1e-05) the peak θmax/α is off by 3.0e-06 at most over 4 runs, and a run takes 2 ms.", []),
+        ({"tolerance": "", "substeps": "8"}, "(8 steps per sample) the peak", []),
+        ({"error_max": "2e-5"}, "off by 2.0e-05 at most", ["that is more than the tolerance"]),
+        ({"status_differs": "1"}, "", ["1 of these runs ends otherwise than the reference, and has no error"]),
+        ({"status_differs": "2"}, "", ["2 of these runs end otherwise than the reference, and have no error"]),
+        ({"reference_change": "1e-5"}, "", ["the references themselves are known to 1e-05 only"]),
+        ({"error_max": ""}, "", ["no run was measured with it that stands as its reference does"]),
+    ],
+)
+def test_the_page_opens_with_error_and_time_of_the_study_and_marks_what_they_leave_out(tmp_path, change, words, marked):
+    with open(tmp_path / "accuracy.csv", "w", encoding="utf-8", newline="") as file:
+        rows = csv.DictWriter(file, COLUMNS)
+        rows.writeheader()
+        rows.writerows([FIXED, OWN | change])
+    first = section(Contents(tmp_path, {"sha256": "x"})).split("<figure", 1)[0]
+    spans = [" ".join(span.split()) for span in re.findall(r'<span class="undecided">(.*?)</span>', first, re.DOTALL)]
+    assert words in " ".join(re.sub("<.*?>", "", first).split())
+    assert len(spans) == len(marked)
+    assert all(part in span for part, span in zip(marked, spans, strict=True))
