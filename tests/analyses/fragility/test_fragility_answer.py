@@ -168,8 +168,8 @@ def test_the_most_frequent_case_is_said_though_another_has_the_lower_median():
     )  # fmt: skip
     assert line == (
         "With the hazard “made up” overturning has a probability of 1 % in 50 years (95 %: 0.5 to 50 %) for pads, the greatest "
-        "of 2 cases, a mean rate of 2.0·10⁻⁴ a year. Uplift has a probability of 5 % in 50 years (95 %: 2.5 to 50 %), a mean rate "
-        "of 1.0·10⁻³ a year."
+        "of 2 cases, a mean rate of 2.0·10⁻⁴ a year. Uplift has a probability of 5 % in 50 years (95 %: 2.5 to 50 %), a mean "
+        "rate of 1.0·10⁻³ a year."
     )
     assert not marked
 
