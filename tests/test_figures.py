@@ -257,4 +257,4 @@ def test_the_page_and_every_plot_show_figures_of_the_same_functions(tmp_path):
     for name, plot in plots.items():
         of_plot = makers(plot) - {"rockbatch.results.figures.peaks_of_all"}  # which gives the panels of `peaks` a title
         assert [maker.rpartition(".")[2] for maker in of_plot] == [name]
-        assert of_plot <= of_page
+        assert name == "peaks" or of_plot <= of_page  # on the page, peaks are rows of dots

@@ -9,13 +9,12 @@ from typing import Any, NamedTuple
 from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.scorecard import percent
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.toml.kinds import shown
 
-MOST_NAMES, MOST_ENDS = 6, 3
-"""Names of cases that are listed, and of those with how many of their runs do not end standing."""
+MOST_NAMES, MOST_FILES = 3, 6
+"""Most names of cases that are listed, since the scorecard has all of them, and of files."""
 MOST_CHECKS = 3
 """Greatest number of checks that fail or are not decided with a line each in the answer."""
 
@@ -64,11 +63,11 @@ def answer(
     failing = [name for name, of_case in kinds.items() if FAIL in of_case]
     open_ = [name for name, of_case in kinds.items() if NOT_DECIDED in of_case and FAIL not in of_case]
     meeting = [name for name in cases if name not in {*failing, *open_, *every.unchecked}]
-    free = {name: _unlimited(cases[name], worst) for name in meeting}
-    passing = every.passing([name for name in meeting if not free[name]])
+    free = without_limits({name: cases[name] for name in meeting}, worst)
+    passing = every.passing([name for name in meeting if name not in free])
     lines = [
         passing,
-        every.without_limit({name: free[name] for name in meeting if free[name]}),
+        every.without_limit(free),
         every.failing(failing),
         every.undecided(open_, failing),
         None if passing or not of_cases else every.unchecked_alone(),
@@ -106,7 +105,7 @@ def missing_stations(stations: Stations) -> Line | None:
     details = [f"{_listed(of_reason, ', ')}: {reason}." for reason, of_reason in reasons.items()]
     more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
     keys = [*whole, *(file["name"] for files in parts.values() for file in files)]
-    listed = ", ".join([*map(shown, keys[:MOST_NAMES]), *("…" for _ in keys[MOST_NAMES : MOST_NAMES + 1])])
+    listed = ", ".join([*map(shown, keys[:MOST_FILES]), *("…" for _ in keys[MOST_FILES : MOST_FILES + 1])])
     remedy = f"To leave them out on purpose: leave_out = [{listed}] under [motions]."
     if len(details) == 1:
         return Line(NOT_DECIDED, text, next(iter(reasons)), (remedy,))
@@ -125,11 +124,14 @@ def _wholly_or_in_part(stations: Mapping[str, Sequence[Any]], used: Collection[s
     return [name for name in stations if name not in used] + parts
 
 
-def _unlimited(verdicts: Sequence[Verdict], worst: Sequence[Worst]) -> list[Worst]:
-    key = _key(verdicts[0].case, verdicts[0].columns)
-    return unlimited(
-        [response for response in worst if _key(response.case["case"], response.case["columns"]) == key], verdicts
-    )
+def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
+    """Return the responses that govern a case and that none of its checks bounds, by the names of cases that have any."""
+    by_case = grouped(worst, lambda response: _key(response.case["case"], response.case["columns"]))
+    of_cases = {
+        name: unlimited(by_case.get(_key(of_case[0].case, of_case[0].columns), []), of_case)
+        for name, of_case in cases.items()
+    }
+    return {name: responses for name, responses in of_cases.items() if responses}
 
 
 def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
@@ -171,16 +173,17 @@ class _Cases:
         details: tuple[str, ...] = ()
         if closest is not None:
             place = f"{self.case_of(closest)}, {closest.check}" if len(self.every) > 1 else closest.check
-            details = (f"Closest to its limit: {place} at {percent(closest.ratio)}.",)
+            details = (f"Closest to its limit: {place} at {wording.percent(closest.ratio)}.",)
         details = (*details, *self._cut_short(names), *self._left_out())
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
             return Line(verdict, f"Every check passes in {self._among(names)}", "", details)
         passes = f"{self._among(names)} pass{'es' * (len(names) == 1)}"
         if not self.unchecked:
-            return Line(verdict, f"{passes} every check", _listed(names), details)
+            return Line(verdict, f"{passes} every check", _few(names), details)
         rest = f"{len(self.unchecked)} {'is' if len(self.unchecked) == 1 else 'are'} not checked"
-        lists = f"Not checked: {self._with_ends(self.unchecked)}.", f"Passes: {_listed(names)}."
+        passed = (f"Passes: {_few(names)}.",) if _few(names) else ()
+        lists = f"Not checked: {self._with_ends(self.unchecked)}.", *passed
         return Line(verdict, f"{passes}; {rest}", "", (*lists, *details))
 
     def unchecked_alone(self) -> Line | None:
@@ -196,9 +199,8 @@ class _Cases:
         ends = {name: self.runs[name].in_words if name in self.runs else "" for name in names}
         order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
         words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
-        most = MOST_ENDS if any(ends.values()) else MOST_NAMES
-        more = sum(bool(ends[name]) for name in order[most:])
-        return _listed(words, most=most) + (f", {more} of them with runs that do not end standing" if more else "")
+        more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
+        return _listed(words, most=MOST_NAMES) + (f", {more} of them with runs that do not end standing" if more else "")
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return which of these cases have runs that do not end standing, in a sentence."""
@@ -219,7 +221,7 @@ class _Cases:
         text = f"{self._among(free)} meet{'s' * (len(free) == 1)} the limits, but none is set on {names}"
         values = ", ".join(f"{RESPONSES[name].words} {in_words(response)}" for name, response in worst.items())
         details = f"Without a limit, at most: {values}.", *self._cut_short(list(free))
-        return Line(NOT_DECIDED, _capital(text), _listed(list(free)), details)
+        return Line(NOT_DECIDED, _capital(text), _few(list(free)), details)
 
     def failing(self, names: Sequence[str]) -> Line | None:
         """Return the line on cases that fail a check, with the one that is nearest to passing."""
@@ -227,12 +229,12 @@ class _Cases:
             return None
         near = min((max(self._of([name], FAIL), key=_excess) for name in names), key=_excess)
         place = f"{self.case_of(near)}, {near.check}" if len(self.every) > 1 else near.check
-        details = f"Nearest to passing: {place} at {percent(near.ratio)} of its limit."
+        details = f"Nearest to passing: {place} at {wording.percent(near.ratio)} of its limit."
         text = f"{self._among(names)} fail{'s' * (len(names) == 1)}"
         return Line(
             FAIL,
             _capital(text),
-            "" if len(names) == len(self.every) else _listed(names),
+            "" if len(names) == len(self.every) else _few(names),
             (details,) * math.isfinite(_excess(near)),
         )
 
@@ -247,7 +249,7 @@ class _Cases:
             details.append(f"and {len(verdicts) - MOST_CHECKS} more.")
         if idle:
             details.append(f"{idle}: not decided in cases that fail anyway.")
-        return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _listed(names), tuple(details))
+        return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
 
     def _doubt(self, verdict: Verdict) -> str:
         case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
@@ -276,6 +278,11 @@ def _capital(words: str) -> str:
     return words[0].upper() + words[1:]
 
 
-def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_NAMES) -> str:
+def _few(names: Sequence[str]) -> str:
+    """Return a few names; none of many, which the scorecard lists."""
+    return "; ".join(names) if len(names) <= MOST_NAMES else ""
+
+
+def _listed(names: Sequence[str], comma: str = "; ", most: int = MOST_FILES) -> str:
     more = len(names) - most
     return comma.join(names[:most]) + (f"{comma}and {more} more" if more > 0 else "")

@@ -5,7 +5,9 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from rockbatch.checks import wording
+from rockbatch.checks.answer import without_limits
 from rockbatch.checks.coverage import CaseRuns
+from rockbatch.checks.responses import RESPONSES, Worst
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 
@@ -14,6 +16,10 @@ SMALL = {"m": ("mm", 1e3), "rad": ("mrad", 1e3), "m/s": ("mm/s", 1e3)}
 VERBS = {PASS: "passes", FAIL: "fails"}
 _ORDER = (PASS, NOT_DECIDED, FAIL, DOES_NOT_APPLY)
 """Cases in the order of a scorecard."""
+
+
+ROUNDING = 1e-6
+"""Of a limit: smaller demands are shown as zero."""
 
 
 class Column(NamedTuple):
@@ -35,12 +41,14 @@ class Cell(NamedTuple):
 class Row(NamedTuple):
     """A case: its name, the verdict on it, and a cell for each column, None where the check says nothing of it.
 
-    The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing.
+    The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing;
+    "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words.
     """
 
     name: str
     verdict: str
     cells: list[Cell | None]
+    unlimited: Sequence[str] = ()
 
     def count(self, *kinds: str) -> int:
         """Return the number of its verdicts of these kinds."""
@@ -51,6 +59,8 @@ class Row(NamedTuple):
         """Return what becomes of the case: "fails 2 checks", "passes 5 checks", "2 checks not decided", "not checked"."""
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
+        if self.unlimited:
+            return f"no limit on {', '.join(self.unlimited)}"
         number = self.count(self.verdict)
         checks = f"{number} check{'s' * (number != 1)}"
         return f"{checks} not decided" if self.verdict == NOT_DECIDED else f"{VERBS[self.verdict]} {checks}"
@@ -72,20 +82,29 @@ class Scorecard(NamedTuple):
 
 
 def scorecard(
-    verdicts: Sequence[Verdict], case_of: Callable[[Verdict | CaseRuns], str], runs: Sequence[CaseRuns] = ()
+    verdicts: Sequence[Verdict],
+    case_of: Callable[[Verdict | CaseRuns], str],
+    runs: Sequence[CaseRuns] = (),
+    worst: Sequence[Worst] = (),
 ) -> Scorecard:
-    """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any; ``case_of`` names one."""
+    """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any.
+
+    ``case_of`` names a case, and ``worst`` are the worst responses of all cases, checked or not.
+    """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)
     checks = sorted(by_check, key=lambda name: max(map(_badness, by_check[name])), reverse=True)
     columns = [_column(by_check[name]) for name in checks]
     fallen = {case_of(case) for case in runs if sum(case.ended.values()) >= case.runs}
     rows: list[tuple[tuple[int, float], Row]] = []
-    for name, of_case in grouped(of_cases, case_of).items():
+    by_case = grouped(of_cases, case_of)
+    free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
+    for name, of_case in by_case.items():
         own = {verdict.check: verdict for verdict in of_case}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
-        rows.append((max(map(_badness, of_case)), Row(name, kind, cells)))
+        words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
+        rows.append((max(map(_badness, of_case)), Row(name, NOT_DECIDED if words else kind, cells, words)))
     named = {row.name for _, row in rows}
     rows += [
         ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns))) for name in map(case_of, runs) if name not in named
@@ -123,21 +142,15 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
         return Cell(verdict, wording.demanded(verdict), "")
     bound = "≥\u00a0" if math.isinf(verdict.high) and math.isfinite(verdict.value) else ""
     value = _number(verdict.value * column.factor, verdict.limit * column.factor)
-    return Cell(verdict, bound + value, f"{bound}{percent(verdict.ratio)}")
-
-
-def percent(ratio: float) -> str:
-    """Return a share of the limit as "115 %", with decimals where it would otherwise look like the limit itself."""
-    if not math.isfinite(ratio):
-        return "∞" if ratio > 0 else ""
-    digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)
-    return f"{100 * ratio:,.{digits}f}\u00a0%"
+    return Cell(verdict, bound + value, f"{bound}{wording.percent(verdict.ratio)}")
 
 
 def _number(value: float, limit: float = math.nan) -> str:
     """Return a value in three significant digits, in more if it would look the same as a limit that it is not."""
     if not math.isfinite(value):
         return wording.number(value)
+    if abs(value) < ROUNDING * abs(limit):
+        return "0"
     digits = next((n for n in range(3, 10) if value == limit or f"{value:.{n}g}" != f"{limit:.{n}g}"), 10)
     rounded = float(f"{value:.{digits}g}")
     return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"

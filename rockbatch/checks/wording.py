@@ -99,6 +99,14 @@ def ratio(verdict: Verdict) -> str:
     return f"{verdict.ratio:.4f}" if 0.995 <= verdict.ratio < 1.005 and verdict.ratio != 1 else f"{verdict.ratio:.2f}"
 
 
+def percent(ratio: float) -> str:
+    """Return a share of the limit as "115 %", with decimals where it would otherwise look like the limit itself."""
+    if not math.isfinite(ratio):
+        return "∞" if ratio > 0 else ""
+    digits = next((n for n in range(3) if ratio == 1 or f"{100 * ratio:.{n}f}" != f"{100:.{n}f}"), 3)
+    return f"{100 * ratio:,.{digits}f}\u00a0%"
+
+
 def margin(verdict: Verdict) -> str:
     """Return the distance to the limit, without its unit."""
     if math.isnan(verdict.margin) or verdict.is_ban:

@@ -138,6 +138,7 @@ def named(
     digits = {name: digits_that_tell(constants_of.get(name) for constants_of in constants.values()) for name in shown}
     names = [key[0] for key in cases if key not in rigid]
     short = len(set(names)) == len(names) and all(len(str(name)) <= 3 for name in names)
+    alone = len({key[0] for key in cases}) == 1  # a name that all share tells nothing apart
     series: dict[Key, Series] = {}
     count = {True: 0, False: 0}
     for key in cases:
@@ -146,7 +147,7 @@ def named(
         words = [quantity(name, constants[key][name], digits[name]) for name in distinguishing]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
-        label = f"{case}: {', '.join(words)}" if words else case
+        label = ", ".join(words) if words and alone else f"{case}: {', '.join(words)}" if words else case
         tick = case if short else chr(ord("a") + index) if index < 26 else str(index + 1)
         series[key] = Series(label, tick, kind, index)
     return series

@@ -7,7 +7,7 @@ import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import MOST_ENDS, answer
+from rockbatch.checks.answer import MOST_NAMES, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
@@ -84,7 +84,7 @@ def test_a_ban_on_overturning_alone_limits_no_rotation():
     assert [line.verdict for line in lines([ban], rocking)] == [NOT_DECIDED]
 
 
-def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case():
+def test_of_cases_that_fail_the_nearest_to_passing_is_named_with_its_worst_check():
     drift = {"check": "drift", "demand": "top_drift_m", "unit": "m", "limit": 0.5}
     failing = [
         verdict("pads", "fail", **drift, value=1.24, ratio=2.48, record="TAK000"),
@@ -92,27 +92,35 @@ def test_the_failing_checks_come_with_demand_limit_record_and_the_nearest_case()
         verdict("rock", "fail", check="soil", value=5.0, limit=4.0, ratio=1.25, record="ERZ"),
     ]
     (line,) = lines(failing)
-    assert (line.verdict, line.text, line.cases) == (FAIL, "Both cases fail", "pads; rock")
-    assert [words.replace("\u00a0", " ") for words in line.details] == [
-        "drift: 1.24 m > 0.5 m, record TAK000, in pads and 1 more case.",
-        "soil: 5 > 4, record ERZ, in rock.",
-        "Nearest to passing: rock, drift at 2.00 × its limit.",
-    ]
+    assert (line.verdict, line.text, line.cases) == (FAIL, "Both cases fail", "")
+    assert line.details == ("Nearest to passing: rock, drift at 200\u00a0% of its limit.",)
+    (line, _) = lines([*failing, verdict("free", "pass")])
+    assert (line.verdict, line.cases) == (PASS, "free")
+    ban = verdict("a", "fail", check="stands", demand="overturned", statistic="max", limit=0.0, value=1.0, record="TAK")
+    assert lines([ban])[0].details == ()
 
 
-def test_what_is_not_asked_of_a_case_is_reported_beside_its_passing_or_failing():
-    """Rigid ground neither settles nor yields: that it passes, or is nearest to passing, is no merit there."""
+def test_names_of_cases_stand_in_the_sentence_while_they_are_few():
+    passing = [verdict(f"c{i}", "pass") for i in range(3)]
+    failing = [verdict(f"d{i}", "fail", value=0.6, ratio=1.2) for i in range(5)]
+    found = [(line.text, line.cases) for line in lines([*passing, *failing])]
+    assert found == [("3 of 8 cases pass every check", "c0; c1; c2"), ("5 of 8 cases fail", "")]
+
+
+def test_a_limit_that_is_lacking_is_found_case_by_case():
+    """What governs a case is bounded by its own checks, whatever is asked of others."""
+    both = [*worst(**YIELDED), *worst_of_cases(runs(name="rigid"), [RIGID])]
+    checks = [verdict("pads", "pass"), verdict("rigid", "pass")]
+    found = without_limits({one.case: [one] for one in checks}, both)
+    assert {name: [response.demand for response in responses] for name, responses in found.items()} == {
+        "pads": ["settlement_m", "base_tilt_rad", "ductility"]
+    }
+
+
+def test_of_cases_that_pass_the_closest_to_its_limit_is_named():
     none = [verdict("rock", "does not apply", check=name) for name in ("settlement", "ductility")]
-    passing = lines([verdict("rock", "pass"), *none, verdict("pads", "pass", value=0.45, ratio=0.9)])
-    assert [words.replace("\u00a0", " ") for words in passing[0].details] == [
-        "Closest to its limit: margin, 0.45 ≤ 0.5, in pads.",
-        "Not asked of rock: settlement, ductility, which do not apply there.",
-    ]
-    failing = [verdict("rock", "fail", value=0.55, ratio=1.1), *none[:1], verdict("pads", "fail", value=0.6, ratio=1.2)]
-    assert lines(failing)[0].details[-2:] == (
-        "Nearest to passing: rock, margin at 1.10 × its limit.",
-        "Not asked of rock: settlement, which does not apply there.",
-    )
+    (line,) = lines([verdict("rock", "pass"), *none, verdict("pads", "pass", value=0.45, ratio=0.9)])
+    assert line.details == ("Closest to its limit: pads, margin at 90\u00a0%.",)
 
 
 def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
@@ -150,7 +158,7 @@ def test_a_case_that_is_not_checked_is_reported_where_another_fails():
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     first, last = lines([failed], runs=all_runs(a={}, b={"flight": 2}))
     assert (first.verdict, first.text) == (FAIL, "1 of 2 cases fails")
-    assert first.details == ("margin: 0.6\u00a0>\u00a00.5, in a.",)
+    assert first.details == ("Nearest to passing: a, margin at 120\u00a0% of its limit.",)
     assert (last.text, last.cases) == ("1 of 2 cases is not checked", "b, 2 of 10 runs ended by flight")
 
 
@@ -159,9 +167,9 @@ def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted(
     fallen = {f"c{i}": {"overturned": 1 + i % 2} for i in range(90, 100)}
     (line,) = lines([verdict("c0", "pass")], runs=all_runs(**{f"c{i}": {} for i in range(90)}, **fallen))
     assert line.text == "1 of 100 cases passes; 99 are not checked"
-    assert line.details[0].count("2 of 10 runs overturned") == MOST_ENDS
-    rest = len(fallen) - MOST_ENDS
-    assert line.details[0].endswith(f"and {99 - MOST_ENDS} more, {rest} of them with runs that do not end standing.")
+    assert line.details[0].count("2 of 10 runs overturned") == MOST_NAMES
+    rest = len(fallen) - MOST_NAMES
+    assert line.details[0].endswith(f"and {99 - MOST_NAMES} more, {rest} of them with runs that do not end standing.")
 
 
 def test_overturning_that_checks_leave_out_is_reported_beside_the_green_and_takes_it_if_nothing_stands():
@@ -219,18 +227,6 @@ def test_a_component_that_is_left_out_of_a_station_in_use_is_listed_too():
     found = stations_of({"records": [{"record": "CHAN15", "station": "1336"}], "unusable": [], "left_out": [dropped]})
     (line,) = lines([verdict("a", "pass")], stations=found)
     assert (line.verdict, line.details[-1]) == (PASS, "Left out by name: 1 file of 1336.")
-
-
-def test_of_a_mean_the_record_is_the_one_with_the_largest_demand_and_says_so():
-    mean = verdict("pads", "fail", check="drift", value=0.6, ratio=1.2, record="TAK000", governing=0.9, unit="m")
-    assert lines([mean])[0].details == ("drift: 0.6\u00a0m\u00a0>\u00a00.5\u00a0m, at most 0.9 m in record TAK000.",)
-
-
-def test_a_ban_that_fails_names_who_breaks_it():
-    ban = verdict(
-        "pads", "fail", check="stands", demand="overturned", statistic="max", limit=0.0, value=1.0, record="TAK"
-    )
-    assert lines([ban])[0].details == ("stands: record TAK overturns the pier.",)
 
 
 def test_what_passes_comes_first_then_what_fails_then_what_is_open():

@@ -294,7 +294,7 @@ def test_on_paper_stands_the_motion_that_is_shown_and_every_one_if_all_is_asked_
         tmp_path, [response(record, *FOUNDATIONS[1]) for record in ("ERZ-NS", "RRS228", "SYL360", "CPM000")]
     )
     sheets = []
-    for words in ('<html lang="en">', '<html lang="en" class="all">'):
+    for words in ('<html lang="en">', '<html lang="en" class="whole">'):
         page.write_text(page.read_text(encoding="utf-8").replace('<html lang="en">', words), encoding="utf-8")
         chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
         sheets.append(len(re.findall(rb"/MediaBox", (tmp_path / "report.pdf").read_bytes())))

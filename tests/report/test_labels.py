@@ -47,7 +47,10 @@ def test_a_foundation_is_called_by_the_keys_of_its_study(tmp_path):
 def test_with_a_mass_but_beta_and_eta_it_is_called_by_these(tmp_path):
     soft = {"name": "pads", "base": "yielding", "beta": [30.0, 40.0], "eta": 2.5}
     names = labels(tmp_path, soft)
-    assert [label.replace("\u00a0", " ") for label in names] == ["pads: β = 30", "pads: β = 40"]
+    assert [label.replace("\u00a0", " ") for label in names] == [
+        "β = 30",
+        "β = 40",
+    ]  # a name that all share tells nothing apart
 
 
 def test_each_case_is_called_in_its_own_way(tmp_path):

@@ -33,7 +33,7 @@ def report(tmp_path_factory):
 
 
 def part(report: str, anchor: str) -> str:
-    return report.split(f'<section id="{anchor}">')[1].split("</section>")[0]
+    return report.split(f'<section id="{anchor}"')[1].partition(">")[2].split("</section>")[0]
 
 
 def test_masses_deck_and_heights_stand_in_the_units_of_the_study(report):

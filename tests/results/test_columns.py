@@ -190,13 +190,20 @@ def test_demands_read_columns_of_the_table_only():
         assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1
 
 
-def test_the_page_shows_every_column_with_its_name_and_meaning(tmp_path):
-    """All but which image a row is, for the page has no mirror images, and the peak in motion, which stands in the cell of a
-    peak that failed later. Those that belong together stand side by side."""
+UNSHOWN = {
+    "mirror_of", "theta_max_in_motion_over_alpha", "theta_max_in_motion_error", "station", "impacts", "separations", "flight_s",
+    "flights", "flight_duration_s", "substeps", "t_end_s", "residual_s", "theta_res_error", "theta_res_drift_per_s",
+    "settlement_drift_m_s", "settlement_error_m", "dissipated_left_J_kg", "dissipated_right_J_kg",
+}  # fmt: skip
+"""Columns that stand in peaks.csv alone: counts, times and details of the method."""
+
+
+def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):
+    """Those that belong together stand side by side."""
     shown = names([*report_columns(), *report_columns("forces")])
     assert len(shown) == len(set(shown))
-    assert set(shown) == {*COLUMNS} - {"mirror_of", "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"}
-    for together in (["theta_res_over_alpha", "theta_res_error", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
+    assert set(shown) == {*COLUMNS} - UNSHOWN
+    for together in (["theta_res_over_alpha", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])
         assert shown[start : start + len(together)] == together
     write_results(tmp_path)

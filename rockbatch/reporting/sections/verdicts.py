@@ -66,7 +66,7 @@ def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
 
 def scorecard(finished: Finished) -> Markup:
     """Return a row for each case and a column for each check: demand, its share of the limit, and a bar up to twice that."""
-    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites)
+    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst)
     columns = card.open_columns(MOST_COLUMNS)
     open_rows = MOST_ROWS if len(card.rows) <= MOST_ROWS else OPEN_ROWS
     folded = len(card.columns) - len(columns)
@@ -82,7 +82,7 @@ def scorecard(finished: Finished) -> Markup:
     ]
     head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
     drawn = tag("table", head, tag("tbody", *rows), class_="card")
-    rest = tag("p", f"The {open_rows} nearest to passing of {len(card.rows)} cases.", class_="legend rest")
+    rest = tag("p", f"{open_rows} of {len(card.rows)} cases, the best first.", class_="legend rest")
     return join(tag("div", drawn, class_="wide"), rest if open_rows < len(card.rows) else "")
 
 
