@@ -19,7 +19,7 @@ from pathlib import Path
 from statistics import median
 
 from rockbatch.batch.groups import groups
-from rockbatch.batch.plan import Plan
+from rockbatch.batch.plan import Plan, simulations
 from rockbatch.motions.fema_p695 import stations
 from rockbatch.simulation import Stop, run_all_fixed, run_all_to_tolerance
 from rockbatch.study import load_study
@@ -103,7 +103,7 @@ def alone(file: Path) -> float:
     """Processor time of the kernels of a study, called as a batch on one thread calls them."""
     loaded = load_study(file)
     plan, numerics = Plan(loaded, ground_motions(loaded)), loaded.numerics
-    members = [[each.run for each in plan[group.start : group.stop]] for group in groups(plan, numerics, 1)]
+    members = [simulations(group.values()) for group in groups(plan, numerics, 1)]
 
     def run(runs):
         if numerics.substeps is not None:

@@ -18,10 +18,10 @@ from interleaved import interleaved, machine, ratio
 from tower import TOWER, foundations, record
 
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import Threads, cores
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
+from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Numerics
 
 SMALL = Pier(alpha=0.13, p=2.5)  # some 2 m high: overturns within 4 s of the same record
@@ -29,19 +29,19 @@ TO_TOLERANCE = Numerics(tolerance=1e-4)
 FIXED = Numerics(tolerance=None, substeps=2)  # where a longer record shall not ask for smaller steps
 
 
-def many(runs: int, motion: Motion, pier: Pier = TOWER) -> list[PlannedRun]:
+def many(runs: int, motion: Motion, pier: Pier = TOWER) -> list[StudyRun]:
     """``runs`` foundations under one motion; springs as stiff, in frequency, for every pier."""
     same = TOWER.p / pier.p
     bases = [replace(base, beta=base.beta * same) for base in foundations(runs)]
-    return [PlannedRun(motion, "+", 1.0, Case("", pier, base, {})) for base in bases]
+    return [StudyRun(motion, "+", 1.0, Case("", pier, base, {})) for base in bases]
 
 
-def all_of(runs: list[PlannedRun], jobs: int) -> list[str]:
+def all_of(runs: list[StudyRun], jobs: int) -> list[str]:
     """Run them in ``jobs`` threads; how each ended."""
-    return [outcome.status for group in Threads(jobs).outcomes(runs, TO_TOLERANCE) for _, outcome in group]
+    return [run.outcome.status for group in Threads(jobs).outcomes(runs, TO_TOLERANCE) for run in group.values()]
 
 
-def one_group(runs: list[PlannedRun], numerics: Numerics = TO_TOLERANCE) -> list[str]:
+def one_group(runs: list[StudyRun], numerics: Numerics = TO_TOLERANCE) -> list[str]:
     """Run them side by side in this thread; how each ended."""
     return ["stopped" if outcome is None else outcome.status for outcome in outcomes_of(runs, numerics)]
 
@@ -98,7 +98,7 @@ def mixed(motion: Motion, repeats: int, runs: int) -> list[str]:
         "all of these": [many(runs, motion), many(runs, half), many(runs, finer), many(runs, motion, SMALL)],
     }
 
-    def apart(groups: list[list[PlannedRun]]) -> None:
+    def apart(groups: list[list[StudyRun]]) -> None:
         for group in groups:
             one_group(group)
 

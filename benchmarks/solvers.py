@@ -19,9 +19,9 @@ from peers import Rocking, Solve, cvode, heyoka, scipy
 from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.analyses.accuracy.error_and_time import reference
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.motions import Motion
 from rockbatch.pier import YieldingBase
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case
@@ -46,7 +46,7 @@ class Contender:
 
 def truth(motion: Motion, base: YieldingBase) -> float:
     """θ_max [rad] of the pier on ``base``, converged."""
-    found = reference(PlannedRun(motion, "+", 1.0, Case("", TOWER, base, {})), QUIET_S)
+    found = reference(StudyRun(motion, "+", 1.0, Case("", TOWER, base, {})), QUIET_S)
     if found is None or found.outcome.status != "ok":
         raise SystemExit("this run does not converge: there is nothing to measure errors against")
     return found.outcome.theta_max

@@ -13,14 +13,14 @@ import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import cores
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions import Motion
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.compilation import kernel_of, load_numba, on_compilation
 from rockbatch.study import Numerics, Output, Study
 
-Task = tuple[PlannedRun, Numerics, Output]
+Task = tuple[StudyRun, Numerics, Output]
 """A short run that needs a kernel."""
 
 
@@ -56,7 +56,7 @@ def _tasks(study: Study) -> list[Task]:
     still = Motion("still", 1e-3, np.zeros(2))
     numerics = replace(study.numerics, quiet_s=0.0)
     kernels = {kernel_of(case.pier, case.base): case for case in study.cases}
-    return [(PlannedRun(still, "+", 1.0, case), numerics, study.output) for case in kernels.values()]
+    return [(StudyRun(still, "+", 1.0, case), numerics, study.output) for case in kernels.values()]
 
 
 def _next_task(take: Callable[[], Task]) -> Task | None:

@@ -6,19 +6,18 @@ import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from functools import cache
 from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rockbatch.batch.digests import program
-from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
-from rockbatch.batch.plan import PlannedRun, scaled
-from rockbatch.batch.threads import Outcomes, cores, finished
+from rockbatch.batch.groups import NOTHING_MORE, Group, groups, outcomes_of
+from rockbatch.batch.threads import cores, finished
 from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.motions import Motion
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.outcome import Outcome
-from rockbatch.study import Case, Numerics, Output
+from rockbatch.study import Numerics, Output
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -132,8 +131,8 @@ class Dask:
         return self._threads
 
     def outcomes(
-        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Outcomes, None, None]:
+        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Group, None, None]:
         """See :class:`rockbatch.batch.threads.Engine`."""
         from distributed import CancelledError
         from distributed.scheduler import KilledWorker
@@ -142,12 +141,12 @@ class Dask:
         assert self._client is not None
         assert records is not None, "an engine is a context"
         waiting = groups(runs, numerics, max(self.jobs, 1), MOST_RUNS_OF_A_TASK)
-        pending: dict[Future, range] = {}
+        pending: dict[Future, Group] = {}
 
         def hand_out() -> None:
             most = AHEAD * max(self.jobs, 1)
             while len(pending) < most and (group := next(waiting, None)):
-                pending[records.submit(runs[group.start : group.stop], numerics, output)] = group
+                pending[records.submit(group.values(), numerics, output)] = group
 
         try:
             hand_out()
@@ -165,7 +164,7 @@ class Dask:
         except KilledWorker as error:
             yield from _finished_groups(pending)
             raise InputError(
-                f"runs {group.start + 1} to {group.stop} of those that were left: several workers died at them in turn, the "
+                f"runs {min(group) + 1} to {max(group) + 1} of those that were left: several workers died at them in turn, the "
                 f"last {error.last_worker.address}; look at its log and memory, and give the same command again"
             ) from error
         except (CancelledError, OSError) as error:
@@ -226,19 +225,15 @@ def _able(workers: dict[str, dict[str, Any]]) -> set[str]:
     return {address for address, worker in workers.items() if worker.get("status") != "paused"}
 
 
-def _finished_groups(pending: "dict[Future, range]") -> Iterator[Outcomes]:
+def _finished_groups(pending: "dict[Future, Group]") -> Iterator[Group]:
     """Yield those of the groups that were handed out that are finished."""
     for future, group in pending.items():
         if future.status == "finished":
             yield finished(group, future.result())
 
 
-Member = tuple[int, str, float, Case]
-"""A run of a group without its motion: the number of its record in the group, polarity, scale and case."""
-
-
 class Records:
-    """The records on a cluster, from the first batch that needs one to the last; what is no record, for its group only.
+    """The records on a cluster, from the first batch that needs one to the last.
 
     Each is the result of a task of its own, which the workers hand on to each other, and which the scheduler repeats
     when all that had it have died.
@@ -248,27 +243,22 @@ class Records:
         self.client = client
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
-    def submit(self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output) -> "Future":
-        """Hand out a group of runs."""
-        records: dict[int, Future] = {}
+    def submit(self, runs: Iterable[StudyRun], numerics: Numerics, output: Output) -> "Future":
+        """Hand out a group of runs, whose records come by their places in it."""
+        places: dict[int, int] = {}
+        records = []
         members = []
         for run in runs:
-            if run.recorded is not None:
-                motion, polarity, scale = run.recorded, run.polarity, run.scale
-            else:
-                motion, polarity, scale = run.motion, "+", 1.0
-            if id(motion) not in records:
-                records[id(motion)] = self._record(motion, keep=run.recorded is not None)
-            members.append((list(records).index(id(motion)), polarity, scale, run.case))
-        return self.client.submit(simulate, list(records.values()), members, numerics, output, program(), pure=False)
+            if id(run.record) not in places:
+                places[id(run.record)] = len(places)
+                records.append(self._record(run.record))
+            members.append((places[id(run.record)], *run[1:]))
+        return self.client.submit(simulate, records, members, numerics, output, program(), pure=False)
 
-    def _record(self, motion: Motion, keep: bool) -> "Future":
-        if id(motion) in self._sent:
-            return self._sent[id(motion)][1]
-        future = self.client.submit(_unchanged, motion, pure=False)
-        if keep:  # with the motion, whose id must not become another's
-            self._sent[id(motion)] = motion, future
-        return future
+    def _record(self, motion: Motion) -> "Future":
+        if id(motion) not in self._sent:  # kept with the motion, whose id must not become another's
+            self._sent[id(motion)] = motion, self.client.submit(_unchanged, motion, pure=False)
+        return self._sent[id(motion)][1]
 
 
 @contextmanager
@@ -303,13 +293,11 @@ def _unchanged(motion: Motion) -> Motion:
 
 
 def simulate(
-    records: Sequence[Motion], members: Sequence[Member], numerics: Numerics, output: Output, expected: str
+    records: Sequence[Motion], members: Iterable[tuple[Any, ...]], numerics: Numerics, output: Output, expected: str
 ) -> list[Outcome | None]:
     """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``expected``."""
     if program() != expected:
         raise InputError(
             f"a worker runs another rockbatch or another Numba ({program()}, not {expected}): install the same everywhere"
         )
-    moved = cache(lambda record, sign, scale: scaled(records[record], scale, sign))
-    runs = [PlannedRun(moved(record, sign, scale), sign, scale, case) for record, sign, scale, case in members]
-    return outcomes_of(runs, numerics, output)
+    return outcomes_of([StudyRun(records[place], *rest) for place, *rest in members], numerics, output)

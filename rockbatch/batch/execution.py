@@ -8,15 +8,14 @@ from typing import Any
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Advance, silent
-from rockbatch.batch.plan import MOST_RUNS, PlannedRun, Runs, some_of
+from rockbatch.batch.plan import MOST_RUNS, Runs, some_of
 from rockbatch.batch.threads import Engine
 from rockbatch.common.errors import InputError
-from rockbatch.results.columns import cells, row
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.results.columns import StudyRun, cells
 from rockbatch.study import Numerics, Output
 
-RowOf = Callable[[PlannedRun, Outcome], Mapping[str, Any]]
-"""From a run and its outcome to its row of a table."""
+RowOf = Callable[[StudyRun], Mapping[str, Any]]
+"""From a finished run to its row of a table."""
 
 
 class InMemory(dict[int, Mapping[str, Any]]):
@@ -58,7 +57,7 @@ def execute_runs(
     among : range, optional
         Indices of the runs that are wanted, if not all.
     row : function, optional
-        The row of a run with its outcome, where that is not a row of peaks.csv.
+        The row of a finished run, where that is not a row of peaks.csv.
     progress : function, optional
         Called with the number of simulations of each group that is finished.
     """
@@ -66,13 +65,12 @@ def execute_runs(
     remaining = to_simulate(runs, requested, journal, first)
     with closing(engine.outcomes(some_of(runs, remaining), numerics, output)) as groups:
         for group in groups:
-            images = (image for place, outcome in group for image in _images(runs, remaining[place], outcome))
-            missing = [image for image in images if image[0] in requested and first + image[0] not in journal]
+            finished = _with_images(runs, {remaining[place]: run for place, run in group.items()})
+            missing = {first + i: run for i, run in finished if i in requested and first + i not in journal}
             if row is not None:
-                journal.add_all({first + i: row(run, outcome) for i, run, outcome in missing})
+                journal.add_all({number: row(run) for number, run in missing.items()})
             elif missing:
-                columns = cells([run.ran(outcome) for _, run, outcome in missing], journal.columns)
-                journal.add_columns([first + i for i, _, _ in missing], columns)
+                journal.add_columns(list(missing), cells(list(missing.values()), journal.columns))
             progress(len(group))
 
 
@@ -98,13 +96,11 @@ def to_simulate(runs: Runs, requested: range, journal: Container[int] = (), firs
     )  # else in its own turn
 
 
-def _images(runs: Runs, index: int, outcome: Outcome) -> Iterator[tuple[int, PlannedRun, Outcome]]:
-    """Yield index, run and outcome of a run that was simulated, and of its mirror image."""
-    for image in runs.images(index):
-        run = runs[image]
-        yield image, run, outcome.mirrored() if run.mirror_of else outcome
-
-
-def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
-    """Return the row of peaks.csv of a run that is finished."""
-    return row(run.ran(outcome))
+def _with_images(runs: Runs, simulated: Mapping[int, StudyRun]) -> Iterator[tuple[int, StudyRun]]:
+    """Yield the finished runs that were ``simulated``, by their indices in ``runs``, each followed by its mirror image."""
+    for index, run in simulated.items():
+        yield index, run
+        for image in runs.images(index):
+            if image != index:
+                assert run.outcome is not None
+                yield image, runs[image]._replace(outcome=run.outcome.mirrored())

@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from rockbatch.batch.compiling import make_ready
-from rockbatch.batch.execution import row_of, to_simulate
-from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.execution import to_simulate
+from rockbatch.batch.groups import least_steps, outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
-from rockbatch.batch.plan import Plan, PlannedRun, some_of
+from rockbatch.batch.plan import Plan, some_of
 from rockbatch.batch.running import described
 from rockbatch.common.errors import starting_threads
-from rockbatch.results.columns import columns
-from rockbatch.simulation.models import first_substeps
+from rockbatch.results.columns import StudyRun, columns, row
 from rockbatch.simulation.outcome import Outcome
-from rockbatch.simulation.runs import Stop, steps_of
+from rockbatch.simulation.runs import Stop
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
 
@@ -67,13 +66,14 @@ def expected(study: Study, jobs: int, listener: Listener) -> Expected:
     listener.motions(motions)
     plan = Plan(study, motions)
     simulated = some_of(plan, to_simulate(plan, range(len(plan))))
-    steps = [_steps(study, run) for run in simulated]
+    steps = [least_steps(run, study.numerics) for run in simulated]
     make_ready(study, listener)
     started = time.perf_counter()
     tried = _tried(study, simulated, _spread(steps), jobs, listener)
     took = time.perf_counter() - started
     seconds = took * sum(steps) / max(sum(steps[i] for i in tried), 1.0)
-    size = sum(history_bytes(simulated[i], row_of(simulated[i], tried[i])) for i in tried) / max(len(tried), 1)
+    ended = [simulated[i]._replace(outcome=outcome) for i, outcome in tried.items()]
+    size = sum(history_bytes(run, row(run)) for run in ended) / max(len(tried), 1)
     histories = {"none": 0.0, "all": len(plan) * size}.get(
         study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )
@@ -81,14 +81,8 @@ def expected(study: Study, jobs: int, listener: Listener) -> Expected:
     return Expected(described(study, motions), len(simulated), len(tried), seconds, jobs, table, histories)
 
 
-def _steps(study: Study, run: PlannedRun) -> float:
-    """Return the steps of a run that converges at once."""
-    substeps = study.numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.motion.dt)
-    return steps_of(run.motion, substeps, study.numerics.quiet_s)
-
-
 def _tried(
-    study: Study, runs: Sequence[PlannedRun], chosen: Sequence[int], jobs: int, listener: Listener
+    study: Study, runs: Sequence[StudyRun], chosen: Sequence[int], jobs: int, listener: Listener
 ) -> dict[int, Outcome]:
     """Return outcomes of ``chosen`` runs by their indices: first a run for each thread, then twice as many, until time is up."""
     outcomes: dict[int, Outcome | None] = {}

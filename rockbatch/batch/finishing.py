@@ -4,7 +4,7 @@ import datetime
 import json
 import math
 import platform
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from rockbatch.checks.checking import verdicts
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import legible, read_text
+from rockbatch.common.files import is_plain, legible, read_text
 from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
 from rockbatch.reporting import REPORT, write_report
@@ -38,6 +38,9 @@ from rockbatch.study import Study
 
 OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
+
+_OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
+"""Entries of run.json that tell of the command, and not of what its results are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +106,27 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
     return cost
 
 
+def unchanged(
+    directory: Path, study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any]
+) -> FinishedBatch | None:
+    """Return what is in ``directory`` if nothing would change by finishing its runs again, those of ``info``; else None."""
+    saved = open_results(directory)
+    described = json.loads(json.dumps(info))
+    if any(saved.info.get(name) != value for name, value in described.items() if name not in _OF_COMMAND):
+        return None
+    kept = len(to_keep(study, runs, saved.peaks.iloc[: len(runs)]).numbers)
+    try:
+        histories = [HISTORIES] if len(saved.responses) else []
+        if len(saved.responses) < kept:
+            return None
+    except (InputError, OSError):  # damaged, or those of an earlier run
+        return None
+    judged = _judged(saved, study)
+    names = (PEAKS, INFO, *_beside_peaks(study, motions), *histories, *([CHECKS] if judged else []), REPORT)
+    files = tuple(directory / name for name in names)
+    return FinishedBatch(saved, motions, judged, files, None) if all(map(is_plain, files)) else None
+
+
 def to_be_replaced(directory: Path, study: Study) -> str | None:
     """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
 
@@ -150,53 +174,52 @@ def finish(
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
+    (directory / REPORT).unlink(missing_ok=True)  # it comes last: where it is, the others are there
     with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = open_results(directory)
     histories, refusal = _keep_histories(saved, study, runs, listener, records)
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
-        judged = verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
+        judged = _judged(saved, study)
         checks = write_verdicts(directory, judged) if judged else None
-    tables = [
-        *_beside_peaks(saved, study, motions),
-        *_shocks(saved, study, motions, runs, listener),
-        *_half_cycles(saved, study, runs, listener),
-    ]
+    tables = [write(directory / name, rows) for name, rows in _tables(saved, study, motions, runs, listener)]
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *tables, histories, checks, report)
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), refusal)
 
 
-def _beside_peaks(saved: Saved, study: Study, motions: MotionSet) -> list[Path]:
-    """Write the intensity measures if the study asks for them beside the peaks, and take away those of another time."""
-    path = saved.directory / INTENSITY
-    if not study.output.intensity:
-        path.unlink(missing_ok=True)
-        return []
-    return [write(path, intensities(saved.peaks, study, motions.motions))]
+def _judged(saved: Saved, study: Study) -> list[Verdict]:
+    """Return the verdicts of the study's checks and of its target spectrum, if it has them."""
+    return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
 
 
-def _shocks(saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener) -> list[Path]:
-    """Write the table of shocks if some motions are sequences, and take away that of another time."""
-    path = saved.directory / SHOCKS
-    if not any(motion.shocks for motion in motions.motions):
-        path.unlink(missing_ok=True)
-        return []
-    with listener.progress(len(sequences_of(runs))) as progress:
-        jobs = min(int(saved.info["jobs"]) or cores(), cores())
-        return [write(path, rows_by_shock(study, runs, saved.peaks, jobs, progress))]
+def _beside_peaks(study: Study, motions: MotionSet) -> list[str]:
+    """Return the tables that stand beside peaks.csv: those that the study asks for, and that of the shocks of sequences."""
+    asked = {
+        INTENSITY: study.output.intensity,
+        SHOCKS: any(motion.shocks for motion in motions.motions),
+        HALF_CYCLES: study.output.half_cycles,
+    }
+    return [name for name, is_asked in asked.items() if is_asked]
 
 
-def _half_cycles(saved: Saved, study: Study, runs: Plan, listener: Listener) -> list[Path]:
-    """Write the table of half cycles if the study asks for it, and take away that of another time."""
-    path = saved.directory / HALF_CYCLES
-    if not study.output.half_cycles:
-        path.unlink(missing_ok=True)
-        return []
-    with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-        jobs = min(int(saved.info["jobs"]) or cores(), cores())
-        return [write(path, rows_of_half_cycles(study, runs, saved.peaks, jobs, progress))]
+def _tables(
+    saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener
+) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
+    """Yield name and rows of the tables beside the peaks, and take away those of another time."""
+    asked = _beside_peaks(study, motions)
+    for name in {INTENSITY, SHOCKS, HALF_CYCLES}.difference(asked):
+        (saved.directory / name).unlink(missing_ok=True)
+    jobs = min(int(saved.info["jobs"]) or cores(), cores())
+    if INTENSITY in asked:
+        yield INTENSITY, intensities(saved.peaks, study, motions.motions)
+    if SHOCKS in asked:
+        with listener.progress(len(sequences_of(runs))) as progress:
+            yield SHOCKS, rows_by_shock(study, runs, saved.peaks, jobs, progress)
+    if HALF_CYCLES in asked:
+        with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
+            yield HALF_CYCLES, rows_of_half_cycles(study, runs, saved.peaks, jobs, progress)
 
 
 def _keep_histories(

@@ -1,10 +1,11 @@
 """Groups of runs that are simulated side by side, and their outcomes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.error_control import run_all_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, with_observed
 from rockbatch.simulation.models import first_substeps
@@ -27,30 +28,40 @@ STEPS_OF_A_GROUP = 2e7
 NOTHING_MORE = Output(both_laws=False)
 
 
-def groups(runs: Sequence[PlannedRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[range]:
+Group = dict[int, StudyRun]
+"""Runs by their indices."""
+
+
+def groups(runs: Sequence[StudyRun], numerics: Numerics, jobs: int, most: int = MOST_GROUP) -> Iterator[Group]:
     """Yield consecutive runs to simulate side by side, in order: a share for every thread, a second's work at most.
 
     ``most`` is the greatest number of runs in a group.
     """
     share = len(runs) // (3 * jobs)
     most = min(max(share, LEAST_GROUP), most)
-    first, work = 0, 0.0
+    group, work = Group(), 0.0
     for i, run in enumerate(runs):
-        substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.motion.dt)
-        work += steps_of(run.motion, substeps, numerics.quiet_s)
-        if i + 1 - first == most or work >= STEPS_OF_A_GROUP:
-            yield range(first, i + 1)
-            first, work = i + 1, 0.0
-    if first < len(runs):
-        yield range(first, len(runs))
+        group[i] = run
+        work += least_steps(run, numerics)
+        if len(group) == most or work >= STEPS_OF_A_GROUP:
+            yield group
+            group, work = Group(), 0.0
+    if group:
+        yield group
+
+
+def least_steps(run: StudyRun, numerics: Numerics) -> float:
+    """Return the steps of a run that converges at once."""
+    substeps = numerics.substeps or 3 * first_substeps(run.case.pier, run.case.base, run.record.dt)
+    return steps_of(run.record, substeps, numerics.quiet_s)
 
 
 def outcomes_of(
-    runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
+    runs: Iterable[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
 ) -> list[Outcome | None]:
     """Simulate a group of runs with the results of ``output``; ``None`` for those that ``stop`` has stopped."""
     stop = stop or Stop()
-    simulated = [planned.run for planned in runs]
+    simulated = simulations(runs)
     outcomes = _run_all(simulated, numerics, stop)
     if output.both_laws:
         outcomes = _with_other_law(simulated, outcomes, numerics, stop)

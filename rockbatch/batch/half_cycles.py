@@ -5,9 +5,10 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from rockbatch.batch.listening import Advance
-from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS, apparent_restitution
 from rockbatch.simulation.histories import cycles_of, written
 from rockbatch.simulation.runs import run_fixed
@@ -17,7 +18,7 @@ HALF_CYCLES = "half_cycles.csv"
 
 
 def rows_of_half_cycles(
-    study: Study, runs: Sequence[PlannedRun], peaks: "pd.DataFrame", jobs: int, progress: Advance
+    study: Study, runs: Sequence[StudyRun], peaks: "pd.DataFrame", jobs: int, progress: Advance
 ) -> Iterator[dict[str, Any]]:
     """Yield the rows of half_cycles.csv of finished ``runs``, whose rows of peaks.csv are the first of ``peaks``.
 
@@ -26,9 +27,10 @@ def rows_of_half_cycles(
     quiet_s = study.numerics.quiet_s
 
     def rows_of(number: int) -> list[dict[str, Any]]:
-        row, run = peaks.iloc[number], runs[number].run
+        row = peaks.iloc[number]
         if row["status"] == "failed":
             return []
+        (run,) = simulations([runs[number]])
         outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
         try:
             cycles = cycles_of(run.base, written(run, outcome, quiet_s, every_step=False))

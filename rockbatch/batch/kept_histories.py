@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
-from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.pier import Base, Pier, places, vertical_frequency
 from rockbatch.quantities.demands import FORCES
+from rockbatch.results.columns import StudyRun
 from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
@@ -35,7 +36,7 @@ BYTES_OF_AN_EVENT = 56.0
 def keep_histories(
     saved: Saved,
     study: Study,
-    runs: Sequence[PlannedRun],
+    runs: Sequence[StudyRun],
     progress: Advance = silent,
     records: Collection[str] = (),
 ) -> Path | None:
@@ -91,7 +92,7 @@ class Kept:
     left_out: int = 0
 
 
-def to_keep(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
+def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", records: Collection[str] = ()) -> Kept:
     """Return the runs whose histories the study asks for, and all of ``records``; one that was refused has none.
 
     ``table`` has a row for each of ``runs``. With "worst", the greatest rotations go first, and what would make the file
@@ -116,7 +117,7 @@ def to_keep(study: Study, runs: Sequence[PlannedRun], table: "pd.DataFrame", rec
     return Kept(sorted(every, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
 
 
-def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> float:
+def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
     """Return the bytes that the history of a run takes on disk, up to a third too many: eight for each number of each sample
     and side of an event.
     """
@@ -128,7 +129,7 @@ def history_bytes(run: PlannedRun, row: "Mapping[str, Any] | pd.Series") -> floa
     if _has_value(row, FORCES):
         columns += len(FORCE_UNITS)
     events = row["impacts"] + row["separations"] + _reversals(pier, base) * row["t_end_s"]
-    rows = row["t_end_s"] / run.motion.dt + 2.0 * events
+    rows = row["t_end_s"] / run.record.dt + 2.0 * events
     return columns * (BYTES_OF_A_DATASET + 8.0 * rows) + BYTES_OF_AN_EVENT * events
 
 
@@ -162,8 +163,9 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     return [int(cases * of_case[case] + case) for case in np.flatnonzero(fell | stood)]
 
 
-def _response(study: Study, planned: PlannedRun, row: "pd.Series") -> Response:
-    case, run, quiet_s = planned.case, planned.run, study.numerics.quiet_s
+def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
+    case, quiet_s = planned.case, study.numerics.quiet_s
+    (run,) = simulations([planned])
     # With the same steps it comes to the same bits; of the row only ten digits are on disk
     outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
     outcome = replace(outcome, status=row["status"], reason=row["reason"])

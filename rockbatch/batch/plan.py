@@ -1,41 +1,13 @@
 """Runs of a study, in the order of its table, each made on demand."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import overload
 
 from rockbatch.motions import Motion, MotionSet
-from rockbatch.results.columns import FinishedRun
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.runs import Run
-from rockbatch.study import Case, Study
-
-
-@dataclass(frozen=True)
-class PlannedRun:
-    """A row of the plan: a motion, already scaled and turned, in a case.
-
-    ``recorded`` is the motion before that, if available: a cluster is then sent each record once. ``mirror_of`` is the
-    polarity of the run whose mirror image this one is, if that is in the same table.
-    """
-
-    motion: Motion
-    polarity: str
-    scale: float
-    case: Case
-    recorded: Motion | None = None
-    mirror_of: str = ""
-
-    @property
-    def run(self) -> Run:
-        """Return the simulation: the pier of the case on its base, under the motion."""
-        return Run(self.case.pier, self.case.base, self.motion)
-
-    def ran(self, outcome: Outcome) -> FinishedRun:
-        """Return the run with its outcome."""
-        return FinishedRun(outcome, self.motion, self.polarity, self.scale, self.case, self.mirror_of)
+from rockbatch.study import Study
 
 
 def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
@@ -45,14 +17,26 @@ def scaled(motion: Motion, scale: float, polarity: str) -> Motion:
     return motion.times(scale, reverse=polarity == "-")
 
 
-class Runs(Sequence[PlannedRun]):
+def simulations(runs: Iterable[StudyRun]) -> list[Run]:
+    """Return what is simulated for ``runs``; those with the same scale and polarity of a record share their motion."""
+    motions: dict[tuple[int, float, str], Motion] = {}
+    made = []
+    for run in runs:
+        key = id(run.record), run.scale, run.polarity
+        if key not in motions:
+            motions[key] = scaled(run.record, run.scale, run.polarity)
+        made.append(Run(run.case.pier, run.case.base, motions[key]))
+    return made
+
+
+class Runs(Sequence[StudyRun]):
     """Runs made on demand, so that memory does not grow with their number."""
 
     mirrored = False
     """True if some are mirror images of others."""
 
     @abstractmethod
-    def run(self, number: int) -> PlannedRun:
+    def run(self, number: int) -> StudyRun:
         """Return run ``number``, from 0."""
 
     def images(self, number: int) -> Sequence[int]:
@@ -60,19 +44,19 @@ class Runs(Sequence[PlannedRun]):
         return (number,)
 
     @overload
-    def __getitem__(self, index: int) -> PlannedRun: ...
+    def __getitem__(self, index: int) -> StudyRun: ...
 
     @overload
-    def __getitem__(self, index: slice) -> list[PlannedRun]: ...
+    def __getitem__(self, index: slice) -> list[StudyRun]: ...
 
-    def __getitem__(self, index: int | slice) -> PlannedRun | list[PlannedRun]:
+    def __getitem__(self, index: int | slice) -> StudyRun | list[StudyRun]:
         if isinstance(index, slice):
             return [self.run(i) for i in range(*index.indices(len(self)))]
         if not -len(self) <= index < len(self):
             raise IndexError(index)
         return self.run(index % len(self))
 
-    def __iter__(self) -> Iterator[PlannedRun]:
+    def __iter__(self) -> Iterator[StudyRun]:
         return map(self.run, range(len(self)))
 
 
@@ -85,7 +69,7 @@ class Plan(Runs):
 
     Pier and foundation are symmetric: of both polarities one is the mirror image of the other.
 
-    Nothing is held but the study and its motions; runs beside each other share the same scaled motion.
+    Nothing is held but the study and its motions.
     """
 
     def __init__(self, study: Study, motions: MotionSet) -> None:
@@ -97,21 +81,18 @@ class Plan(Runs):
         self._of_one = len(self.scale) * len(self.cases)  # runs of a motion in one polarity
         self._simulated_first = sorted(range(len(self.polarity)), key=lambda i: self.polarity[i] != self.simulated)
         self._length = len(self.motions) * len(self.polarity) * self._of_one
-        self._moved = lru_cache(maxsize=2)(
-            lambda motion, scale, sign: scaled(self.motions[motion], self.scale[scale], sign)
-        )
 
     def __len__(self) -> int:
         return self._length
 
-    def run(self, number: int) -> PlannedRun:
+    def run(self, number: int) -> StudyRun:
         """See :class:`Runs`."""
         rest, case = divmod(number, len(self.cases))
         rest, scale = divmod(rest, len(self.scale))
         motion, polarity = divmod(rest, len(self.polarity))
         sign = self.polarity[polarity]
-        moved, mirror_of = self._moved(motion, scale, sign), "" if sign == self.simulated else self.simulated
-        return PlannedRun(moved, sign, self.scale[scale], self.cases[case], self.motions[motion], mirror_of)
+        mirror_of = "" if sign == self.simulated else self.simulated
+        return StudyRun(self.motions[motion], sign, self.scale[scale], self.cases[case], mirror_of)
 
     def images(self, number: int) -> Sequence[int]:
         """See :class:`Runs`."""
@@ -125,17 +106,17 @@ class Plan(Runs):
 class Made(Runs):
     """``length`` runs, the i-th of which is ``make(i)``."""
 
-    def __init__(self, length: int, make: Callable[[int], PlannedRun]) -> None:
+    def __init__(self, length: int, make: Callable[[int], StudyRun]) -> None:
         self._length, self._make = length, make
 
     def __len__(self) -> int:
         return self._length
 
-    def run(self, number: int) -> PlannedRun:
+    def run(self, number: int) -> StudyRun:
         """See :class:`Runs`."""
         return self._make(number)
 
 
-def some_of(runs: Sequence[PlannedRun], indices: Sequence[int]) -> Made:
+def some_of(runs: Sequence[StudyRun], indices: Sequence[int]) -> Made:
     """Return some of ``runs``, by their ``indices``."""
     return Made(len(indices), lambda number: runs[indices[number]])

@@ -16,6 +16,7 @@ from rockbatch.batch.finishing import (
     cost_of_finished,
     finish,
     to_be_replaced,
+    unchanged,
     what_was_run,
     write_peaks,
 )
@@ -156,6 +157,8 @@ def run_into(
         if cost is not None:
             state = f"{described(study, motions)} are finished in {directory}"
             listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
+            if not records and (finished := unchanged(directory, study, motions, runs, info)):
+                return finished
             return finish(directory, study, motions, runs, info | cost, listener, records)
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:

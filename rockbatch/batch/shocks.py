@@ -5,9 +5,10 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from rockbatch.batch.listening import Advance
-from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.results.columns import StudyRun
 from rockbatch.results.shocks import shock_rows
 from rockbatch.simulation.outcome import ShockOutcome
 from rockbatch.simulation.runs import run_fixed
@@ -15,29 +16,28 @@ from rockbatch.simulation.shocks import by_shock
 from rockbatch.study import Study
 
 
-def sequences_of(runs: Sequence[PlannedRun]) -> list[int]:
+def sequences_of(runs: Sequence[StudyRun]) -> list[int]:
     """Return the numbers of the runs under a sequence, without mirror images."""
-    return [number for number, run in enumerate(runs) if run.motion.shocks and not run.mirror_of]
+    return [number for number, run in enumerate(runs) if run.record.shocks and not run.mirror_of]
 
 
 def rows_by_shock(
-    study: Study, runs: Sequence[PlannedRun], peaks: "pd.DataFrame", jobs: int, progress: Advance
+    study: Study, runs: Sequence[StudyRun], peaks: "pd.DataFrame", jobs: int, progress: Advance
 ) -> Iterator[dict[str, Any]]:
     """Yield the rows of shocks.csv of finished ``runs``, whose rows of peaks.csv are the first of ``peaks``."""
     quiet_s, error = study.numerics.quiet_s, study.numerics.substeps is None
 
     def rows_of(number: int) -> list[dict[str, Any]]:
-        planned, row = runs[number], peaks.iloc[number]
+        (run,), row = simulations([runs[number]]), peaks.iloc[number]
         names = {name: row[name] for name in ("record", "case", "polarity", "scale", *study.varied)}
-        run, motion = planned.run, planned.motion
-        outcomes = [ShockOutcome("failed")] * len(motion.shocks)
+        outcomes = [ShockOutcome("failed")] * len(run.motion.shocks)
         if row["status"] != "failed":  # with the same steps it comes to the same bits
             outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
             try:
                 outcomes = by_shock(run, outcome, quiet_s, error=error)
             except InputError:  # too long to be held in memory
-                outcomes = [ShockOutcome("not read")] * len(motion.shocks)
-        return [names | shock_row for shock_row in shock_rows(motion, run.pier, outcomes)]
+                outcomes = [ShockOutcome("not read")] * len(run.motion.shocks)
+        return [names | shock_row for shock_row in shock_rows(run.motion, run.pier, outcomes)]
 
     pool = ThreadPoolExecutor(max(1, jobs))
     try:

@@ -9,7 +9,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
-from rockbatch.results.columns import FinishedRun, as_series, row
+from rockbatch.results.columns import StudyRun, as_series, row
 from rockbatch.results.shocks import as_table, shock_rows
 from rockbatch.simulation.error_control import run_to_tolerance
 from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
@@ -106,9 +106,8 @@ def simulate(
     if motion.shocks:
         outcomes = by_shock(run, outcome, numerics.quiet_s, error=numerics.substeps is None, wait=wait)
         response = replace(response, shocks=as_table(shock_rows(motion, pier, outcomes)))
-    return replace(
-        response, row=as_series(row(FinishedRun(outcome, motion, "+", 1.0, Case(name, pier, foundation, {}))))
-    )
+    finished = StudyRun(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome=outcome)
+    return replace(response, row=as_series(row(finished)))
 
 
 def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:

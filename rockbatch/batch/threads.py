@@ -7,18 +7,15 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
 
-from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
-from rockbatch.batch.plan import PlannedRun
+from rockbatch.batch.groups import NOTHING_MORE, Group, groups, outcomes_of
 from rockbatch.common.errors import InputError, starting_threads
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Numerics, Output
 
 AHEAD = 2
 """Groups handed to each thread beforehand, so that none waits."""
-
-Outcomes = list[tuple[int, Outcome]]
-"""Index and outcome of the runs of a group."""
 
 
 @runtime_checkable
@@ -36,9 +33,9 @@ class Engine(Protocol):
     ) -> None: ...
 
     def outcomes(
-        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Outcomes, None, None]:
-        """Index and outcome of every run, group by group, as they finish.
+        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Group, None, None]:
+        """Every run with its outcome, group by group, as they finish.
 
         Results depend neither on the engine nor on the others of a group, only their order does. After
         Ctrl-C come the results finished by then, and ``KeyboardInterrupt``.
@@ -79,19 +76,18 @@ class Threads:
         """Release nothing: threads live as long as a batch."""
 
     def outcomes(
-        self, runs: Sequence[PlannedRun], numerics: Numerics, output: Output = NOTHING_MORE
-    ) -> Generator[Outcomes, None, None]:
+        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+    ) -> Generator[Group, None, None]:
         """See :class:`Engine`."""
         waiting = groups(runs, numerics, self.jobs)
-        pending: dict[Future[list[Outcome | None]], range] = {}
+        pending: dict[Future[list[Outcome | None]], Group] = {}
         stop = Stop()
         pool = ThreadPoolExecutor(self.jobs)
         try:
             while True:
                 while len(pending) < AHEAD * self.jobs and (group := next(waiting, None)):
-                    members = runs[group.start : group.stop]
                     with starting_threads(", or write --jobs 1" * (self.jobs > 1)):
-                        pending[pool.submit(outcomes_of, members, numerics, output, stop)] = group
+                        pending[pool.submit(outcomes_of, group.values(), numerics, output, stop)] = group
                 if not pending:
                     return
                 done, _ = wait(pending, return_when=FIRST_COMPLETED)
@@ -110,6 +106,7 @@ class Threads:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def finished(group: range, outcomes: Sequence[Outcome | None]) -> Outcomes:
+def finished(group: Group, outcomes: Sequence[Outcome | None]) -> Group:
     """The runs of a group with their outcomes, but for those that were stopped."""
-    return [(i, outcome) for i, outcome in zip(group, outcomes, strict=True) if outcome is not None]
+    ended = zip(group.items(), outcomes, strict=True)
+    return {i: run._replace(outcome=outcome) for (i, run), outcome in ended if outcome is not None}

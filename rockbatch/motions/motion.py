@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from copy import copy
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -401,13 +402,17 @@ class Motion(Shown):
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """Return the motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
         along = -factor if reverse else factor
-        return replace(
-            self,
-            horizontal=self.horizontal * along,
-            vertical=None if self.vertical is None else self.vertical * factor,
-            across=None if self.across is None else self.across * factor,
-            initial=None if self.initial is None else self.initial.times(along),
-        )
+        times = copy(self)  # these samples were checked; the product can be no number only where it is too large
+        vars(times).pop("pga", None)
+        for name, by in (("horizontal", along), ("vertical", factor), ("across", factor)):
+            if (samples := getattr(self, name)) is not None:
+                vars(times)[name] = samples * by
+                vars(times)[name].flags.writeable = False
+        if self.initial is not None:
+            vars(times)["initial"] = self.initial.times(along)
+        if not math.isfinite(times.pga + (times.pga_vertical or 0.0)):
+            times.__post_init__()
+        return times
 
 
 @dataclass(frozen=True)

@@ -323,7 +323,7 @@ TRAILING = (
     ),
     Quantity(
         "pga_g", "peak horizontal ground acceleration of the motion as it was run, over g",
-        lambda run: run.motion.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="scale"),
+        lambda run: run.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="scale"),
     ),
     Quantity(
         "flights", "how often both pivots left the ground at one time", "flights",

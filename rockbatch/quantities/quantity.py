@@ -38,8 +38,8 @@ class Run(Protocol):
         """Its :class:`rockbatch.simulation.outcome.Outcome`."""
 
     @property
-    def motion(self) -> Any:
-        """Its motion, as it was run."""
+    def pga(self) -> float:
+        """Peak horizontal acceleration of its motion, as it was run [m/s²]."""
 
     @property
     def pier(self) -> Pier:

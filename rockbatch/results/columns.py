@@ -21,23 +21,28 @@ JOURNAL = f"{PEAKS}.part"
 STATUSES = ("ok", "overturned", "flight", "failed")
 
 
-class FinishedRun(NamedTuple):
-    """A finished run: its outcome, its case, and its motion as it was run.
+class StudyRun(NamedTuple):
+    """A run of a study: a record, what it is scaled and turned by, and a case; with its outcome once it is finished.
 
-    ``mirror_of`` is the polarity of the run whose mirror image it is; None if the study has one polarity.
+    ``mirror_of`` is the polarity of the run whose mirror image it is, if that is in the same table.
     """
 
-    outcome: Outcome
-    motion: Motion
+    record: Motion
     polarity: str
     scale: float
     case: Case
     mirror_of: str | None = None
+    outcome: Outcome | None = None
 
     @property
     def pier(self) -> Pier:
         """The pier of its case."""
         return self.case.pier
+
+    @property
+    def pga(self) -> float:
+        """Peak horizontal acceleration of its motion [m/s²], to the bit that of the scaled record."""
+        return self.record.pga * self.scale
 
 
 _FIELDS = {column.name: column.source for column in COLUMNS.values() if isinstance(column.source, str)}
@@ -46,14 +51,14 @@ _OVER_ALPHA = tuple(column.name for column in COLUMNS.values() if column.over_al
 _read_fields = attrgetter(*_FIELDS.values())
 
 
-def cells(runs: Sequence[FinishedRun], requested: Container[str] = COLUMNS) -> dict[str, list[Any]]:
-    """Return the columns of peaks.csv of ``runs``, each shape (n,): their names, and their outcomes over α.
+def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict[str, list[Any]]:
+    """Return the columns of peaks.csv of finished ``runs``, each shape (n,): their names, and their outcomes over α.
 
     Numbers that functions give are only those of ``requested`` columns. None where a column does not apply.
     """
     table: dict[str, list[Any]] = {
-        "record": [run.motion.name for run in runs],
-        "station": [run.motion.of_station for run in runs],
+        "record": [run.record.name for run in runs],
+        "station": [run.record.of_station for run in runs],
         "case": [run.case.name for run in runs],
         "polarity": [run.polarity for run in runs],
         "scale": [run.scale for run in runs],
@@ -69,8 +74,8 @@ def cells(runs: Sequence[FinishedRun], requested: Container[str] = COLUMNS) -> d
     return table
 
 
-def row(run: FinishedRun) -> dict[str, Any]:
-    """Return the row of peaks.csv of a run."""
+def row(run: StudyRun) -> dict[str, Any]:
+    """Return the row of peaks.csv of a finished run."""
     return {name: values[0] for name, values in cells([run]).items()}
 
 

@@ -18,7 +18,7 @@ from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.groups import NOTHING_MORE, groups
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
-from rockbatch.batch.plan import Plan
+from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.results.columns import columns
@@ -162,15 +162,18 @@ def plan_of(study):
 
 
 def test_a_plan_makes_each_run_when_it_is_asked_for(study):
-    """Counted and indexed like a list; runs beside each other share the arrays of their motion."""
+    """Counted and indexed like a list; each scaled motion is made once for all of them."""
     _, runs = plan_of(study)
     assert len(runs) == 24
-    table = [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs]
-    assert [(run.motion.name, run.polarity, run.scale, run.case.columns) for run in runs[5:9]] == table[5:9]
-    assert runs[-1].motion.name == "one-cosine"
-    assert runs[0].motion is runs[2].motion
-    assert runs[3].motion is not runs[2].motion
-    assert runs[9].motion.horizontal == pytest.approx(-runs[3].motion.horizontal)
+    table = [(run.record.name, run.polarity, run.scale, run.case.columns) for run in runs]
+    assert [(run.record.name, run.polarity, run.scale, run.case.columns) for run in runs[5:9]] == table[5:9]
+    assert runs[-1].record.name == "one-cosine"
+    motions = [run.motion for run in simulations(runs)]
+    assert motions[0] is motions[2]
+    assert motions[3] is not motions[2]
+    assert len({id(motion) for motion in motions}) == 8
+    assert (motions[9].horizontal == -motions[3].horizontal).all()
+    assert [run.pga for run in runs] == [motion.pga for motion in motions]
     with pytest.raises(IndexError):
         runs[24]
 
@@ -203,7 +206,7 @@ def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study,
         for wanted in (range(5, 9), range(7, 12), range(7, 12)):
             execute_runs(runs, loaded.numerics, journal, Watched(2), first=100, among=wanted, progress=calls.append)
         assert list(journal) == list(range(105, 112))
-        assert journal[108]["record"] == runs[8].motion.name
+        assert journal[108]["record"] == runs[8].record.name
         assert float(journal[108]["beta"]) == runs[8].case.columns["beta"]
     assert simulated == [4, 3, 0]
     assert sum(calls) == 7

@@ -22,7 +22,7 @@ from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import silent
-from rockbatch.batch.plan import Plan, PlannedRun
+from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -66,13 +66,13 @@ def table(folder, study, runs, engine, progress=silent):
 @pytest.mark.parametrize("jobs", [1, 2, 7])
 def test_threads_yield_every_run_once(study, runs, jobs):
     with Threads(jobs) as engine:
-        found = [index for group in engine.outcomes(runs, study.numerics) for index, _ in group]
+        found = [index for group in engine.outcomes(runs, study.numerics) for index in group]
     assert sorted(found) == list(range(RUNS))
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
 def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs, monkeypatch, error):
-    monkeypatch.setattr(rockbatch.batch.threads, "groups", lambda runs, *_: iter([range(i, i + 1) for i in range(6)]))
+    monkeypatch.setattr(rockbatch.batch.threads, "groups", lambda runs, *_: iter([{i: runs[i]} for i in range(6)]))
     handed = []
 
     def third_interrupts(*asked):
@@ -85,7 +85,7 @@ def test_after_ctrl_c_or_an_error_come_the_groups_that_are_finished(study, runs,
     found = []
     with pytest.raises(error):  # noqa: PT012
         for group in Threads(1).outcomes(runs, study.numerics):
-            found += [index for index, _ in group]
+            found += group
     assert sorted(found[:2]) == [0, 1]  # groups come as they finish, and two may have by the time they are asked for
     assert 2 not in found
 
@@ -362,18 +362,8 @@ def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study
     assert max(len(pickle.dumps(given)) for given in groups) < 5000  # a record is 3 kB and more, a run 100 bytes
 
 
-def test_a_motion_that_is_no_record_is_sent_with_each_group_that_needs_it(study, runs):
-    client = Notebook()
-    records = Records(client)
-    made = PlannedRun(runs[5].motion, "+", 0.5, runs[5].case)
-    for _ in range(2):
-        records.submit([made, made], study.numerics, study.output)
-    assert [function is simulate for function, _ in client.tasks] == [False, True, False, True]
-
-
 def test_a_worker_rebuilds_the_very_runs(study, runs):
-    """Also those whose motion was made elsewhere: it is then the record."""
-    ours = [*runs[:12], *runs[-12:], PlannedRun(runs[5].motion, "-", 0.5, runs[5].case)]
+    ours = [*runs[:12], *runs[-12:]]
     client = Notebook()
     Records(client).submit(ours, study.numerics, study.output)
     (_, (futures, members, *rest)) = client.tasks[-1]

@@ -9,14 +9,14 @@ import pytest
 from studies import COSINE, PADS, SINE, study_text
 
 import rockbatch as rb
-from rockbatch.batch.execution import execute_runs, row_of, to_simulate
+from rockbatch.batch.execution import execute_runs, to_simulate
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.plan import Plan
+from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.results.columns import columns
+from rockbatch.results.columns import columns, row
 from rockbatch.results.rows import simulated
 from rockbatch.results.suite_statistics import suite
 from rockbatch.simulation import run_to_tolerance
@@ -61,7 +61,7 @@ class Watched(Threads):
         object.__setattr__(self, "simulated", [])
 
     def outcomes(self, runs, numerics, output=NOTHING_MORE):
-        self.simulated.extend((run.motion.name, run.polarity, run.scale, run.case.columns["beta"]) for run in runs)
+        self.simulated.extend((run.record.name, run.polarity, run.scale, run.case.columns["beta"]) for run in runs)
         return super().outcomes(runs, numerics, output)
 
 
@@ -217,6 +217,7 @@ def test_analyses_simulate_one_polarity_and_say_so(study, tmp_path, capsys):
 def test_the_row_of_a_run_that_was_simulated_names_no_mirror(study):
     loaded = load_study(study())
     runs = Plan(loaded, ground_motions(loaded))
-    outcome = run_to_tolerance(runs[0].case.pier, runs[0].case.base, runs[0].motion, 1e-4, 2.0)
-    assert row_of(runs[0], outcome)["mirror_of"] == ""
-    assert row_of(runs[4], outcome.mirrored())["mirror_of"] == "+"
+    (run,) = simulations([runs[0]])
+    outcome = run_to_tolerance(run.pier, run.base, run.motion, 1e-4, 2.0)
+    assert row(runs[0]._replace(outcome=outcome))["mirror_of"] == ""
+    assert row(runs[4]._replace(outcome=outcome.mirrored()))["mirror_of"] == "+"

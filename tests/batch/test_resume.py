@@ -240,10 +240,10 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     out = finished
     command = ["run", str(study), "--out", str(out)]
     cost = json.loads((out / "run.json").read_text())["wall_s"]
+    write(study, title="Renamed")
     with monkeypatch.context() as patch:  # killed on its way: it stays finished
         patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
-    write(study, title="Renamed")
     study.write_text(study.read_text().replace('histories = "none"', 'histories = "worst"'))
     capsys.readouterr()
     assert main(command) == 0
@@ -255,6 +255,35 @@ def test_in_a_finished_folder_nothing_is_left_to_run_and_the_rest_is_made_again(
     assert main([*command, "--fresh"]) == 0
     assert "nothing is left" not in capsys.readouterr().err
     assert (out / "peaks.csv").read_bytes() == undisturbed
+
+
+def test_a_finished_study_that_is_run_again_does_nothing_again(study, tmp_path, capsys):
+    """What is not there, or of another state of the study, is made again; a comment changes run.json too."""
+    write(study)
+    study.write_text(study.read_text().replace('histories = "none"', 'histories = "worst"\nintensity = true'))
+    out = tmp_path / "out"
+    command = ["run", str(study), "--out", str(out)]
+
+    def written():
+        capsys.readouterr()
+        assert main(command) == 0
+        return {file.name: (file.stat().st_mtime_ns, file.stat().st_ino) for file in out.iterdir()}, capsys.readouterr()
+
+    first, printed = written()
+    again, repeated = written()
+    assert again == first
+    assert {"peaks.csv", "run.json", "histories.h5", "intensity.csv", "report.html"} == {*first}
+    assert "nothing is left to run" in repeated.err
+    assert repeated.out == printed.out
+    assert all(str(out / name) in repeated.err for name in first)
+    for name in ("histories.h5", "intensity.csv", "report.html"):
+        (out / name).unlink()
+        made, _ = written()
+        assert {*made} == {*first}
+        assert made["run.json"] != first["run.json"]
+        first = made
+    study.write_text(f"# a comment\n{study.read_text()}")
+    assert written()[0]["report.html"] != first["report.html"]
 
 
 def without_the_tail(text):

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, measures
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration
@@ -107,6 +108,15 @@ def test_a_motion_times_a_factor_has_all_of_it_times_that_factor():
         assert made.vertical is not None
         assert made.vertical.tolist() == [6.0, 8.0]
         assert made.initial == Initial(0.5 * along, 0.25 * along)
+        assert made.pga == 2 * abs(along) != m.pga
+        assert not made.horizontal.flags.writeable
+        assert not made.vertical.flags.writeable
+
+
+def test_a_motion_times_too_large_a_factor_names_the_sample_that_is_no_number():
+    m = Motion("m", 0.01, np.array([1.0, 200.0]), np.array([3.0, 4.0]))
+    with np.errstate(over="ignore"), pytest.raises(InputError, match=r'"m": horizontal sample 1 .* is inf'):
+        m.times(1e307)
 
 
 def test_a_baseline_is_left_alone():

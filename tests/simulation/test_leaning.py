@@ -8,7 +8,6 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.checks.judging import judge
 from rockbatch.commands.summary import summary, warnings
 from rockbatch.common.errors import InputError
@@ -16,7 +15,7 @@ from rockbatch.core.types import SAMPLE
 from rockbatch.motions import Motion
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.reporting.sections.peaks import outcome
-from rockbatch.results.columns import FinishedRun, as_table, row
+from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, written
@@ -37,7 +36,7 @@ def pulse_and_vibration(vertical):
 
 
 def outcome_of(base, motion, **output):
-    planned = PlannedRun(motion, "+", 1.0, Case("case", PIER, base, {}))
+    planned = StudyRun(motion, "+", 1.0, Case("case", PIER, base, {}))
     (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), Output(both_laws=False, **output))
     return outcome
 
@@ -132,7 +131,7 @@ def test_a_check_of_rocking_is_not_decided_within_its_error(tmp_path):
     outcome = outcome_of(study.cases[0].base, motion, rocking=True)
     for near, verdict in ((0.5, "not decided"), (1.5, "pass"), (-1.5, "fail")):
         limit = (outcome.theta_rocking + near * outcome.theta_rocking_error) / study.cases[0].pier.alpha
-        runs = as_table([row(FinishedRun(outcome, motion, "+", 1.0, study.cases[0]))], study)
+        runs = as_table([row(StudyRun(motion, "+", 1.0, study.cases[0], outcome=outcome))], study)
         (told,) = judge([replace(study.checks[0], at_most=limit)], runs, [describe_case(study.cases[0])])
         assert told.verdict == verdict
 
@@ -146,7 +145,8 @@ def test_a_check_may_ask_for_the_rocking_and_the_tables_mark_the_lean(tmp_path):
     study = load_study(write_study(tmp_path, text))
     (one,) = study.cases
     motion = pulse_and_vibration(0.5)
-    runs = as_table([row(FinishedRun(outcome_of(one.base, motion, rocking=True), motion, "+", 1.0, one))], study)
+    finished = StudyRun(motion, "+", 1.0, one, outcome=outcome_of(one.base, motion, rocking=True))
+    runs = as_table([row(finished)], study)
     verdicts = judge(study.checks, runs, [describe_case(one)])
     assert [verdict.verdict for verdict in verdicts] == ["fail", "pass"]
     assert verdicts[1].value == runs["theta_rocking_over_alpha"][0]

@@ -11,8 +11,8 @@ from reference_forces import greatest_forces
 
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.pier import offsets
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.forces import with_error
 from rockbatch.study import Case, Numerics, Output
 
@@ -56,7 +56,7 @@ EVERY_BASE = pytest.mark.parametrize(
 
 
 def outcome_of(pier, base, motion, *, forces=True, **numerics):
-    run = PlannedRun(motion, "+", 1.0, Case("case", pier, base, {}))
+    run = StudyRun(motion, "+", 1.0, Case("case", pier, base, {}))
     (outcome,) = outcomes_of([run], Numerics(**numerics), Output(both_laws=False, forces=forces))
     return outcome
 
@@ -558,7 +558,7 @@ def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
 @pytest.mark.parametrize("share", [0.05, 0.5])
 def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     """The less has to press, the more is asked, and |V| there is the demand times that share of the weight at most."""
-    run = PlannedRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
+    run = StudyRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
     output = Output(both_laws=False, forces=True, least_normal_share=share)
     (outcome,) = outcomes_of([run], Numerics(), output)
     usual = outcome_of(PIER, BASES["elastic"], shaken()).forces

@@ -14,11 +14,12 @@ import numpy as np
 from rockbatch.analyses.accuracy.levels import COLUMNS
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener, count
-from rockbatch.batch.plan import Plan, PlannedRun
+from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
@@ -39,7 +40,7 @@ REFERENCES = 0.5
 """Share of the time by which the references are to be finished; the rest is for the settings."""
 
 Setting = dict[str, Any]
-Simulate = Callable[[Sequence[PlannedRun]], list[tuple[str, float]]]
+Simulate = Callable[[Sequence[StudyRun]], list[tuple[str, float]]]
 """From runs to their status and θ_max [rad]."""
 
 
@@ -58,30 +59,31 @@ class Clock:
 class Reference:
     """A run, its converged outcome, and what the last halving changed [θ_max/α]."""
 
-    run: PlannedRun
+    run: StudyRun
     outcome: Outcome
     change: float
 
 
-def spread(runs: Sequence[PlannedRun], most: int) -> list[PlannedRun]:
+def spread(runs: Sequence[StudyRun], most: int) -> list[StudyRun]:
     """Return at most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
     if len(runs) <= most:
         return list(runs)
     return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
-def reference(run: PlannedRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
+def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
     """Halve the step until the outcome converges; None for a run that does not, or not in ``seconds``."""
-    pier, base = run.case.pier, run.case.base
+    (simulation,) = simulations([run])
+    pier, base, motion = simulation.pier, simulation.base, simulation.motion
     clock, took = Clock(seconds), 0.0
-    substeps = 2 * first_substeps(pier, base, run.motion.dt)
-    outcome, change = run_fixed(pier, base, run.motion, substeps, quiet_s), math.inf
+    substeps = 2 * first_substeps(pier, base, motion.dt)
+    outcome, change = run_fixed(pier, base, motion, substeps, quiet_s), math.inf
     for _ in range(HALVINGS):
         if 2 * took > clock.remaining():  # half the step takes twice the time
             break
         started = time.monotonic()
         substeps *= 2
-        fine = run_fixed(pier, base, run.motion, substeps, quiet_s)
+        fine = run_fixed(pier, base, motion, substeps, quiet_s)
         took = time.monotonic() - started
         # The greatest rotation of a pier that overturns is where its run ended: only the outcome counts
         moved = 0.0 if fine.status == "overturned" else abs(fine.theta_max - outcome.theta_max) / pier.alpha
@@ -162,9 +164,8 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
     numerics = study.numerics
 
     def fixed(substeps: int, locate: bool) -> Simulate:
-        def simulate(runs: Sequence[PlannedRun]) -> list[tuple[str, float]]:
-            simulated = [planned.run for planned in runs]
-            return _ends(run_all_fixed(simulated, [substeps] * len(simulated), numerics.quiet_s, Stop(), locate))
+        def simulate(runs: Sequence[StudyRun]) -> list[tuple[str, float]]:
+            return _ends(run_all_fixed(simulations(runs), [substeps] * len(runs), numerics.quiet_s, Stop(), locate))
 
         return simulate
 

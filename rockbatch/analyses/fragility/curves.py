@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,13 +26,14 @@ from rockbatch.analyses.fragility.stripes import members
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, samples, windows
 from rockbatch.batch.listening import count
-from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.batch.plan import Made
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.results.columns import StudyRun
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.rules import Rule
@@ -59,12 +59,10 @@ class ScaledRuns(Made):
         polarity: str,
     ) -> None:
         self.points = points
-        moved = lru_cache(maxsize=1)(lambda motion, scale: scaled(motions[motion], scale, polarity))  # of neighbours
 
-        def make(number: int) -> PlannedRun:
+        def make(number: int) -> StudyRun:
             motion, intensity, case = points[number]
-            scale = intensity / unscaled[motion]
-            return PlannedRun(moved(motion, scale), polarity, scale, cases[case], motions[motion])
+            return StudyRun(motions[motion], polarity, intensity / unscaled[motion], cases[case])
 
         super().__init__(len(points), make)
 

@@ -7,7 +7,6 @@ Comput. Phys. Commun. 181, 259–270).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,10 +14,10 @@ import numpy.typing as npt
 
 from rockbatch.analyses.sensitivity.quantities import SOBOL
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, applying, own_values, varied
-from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.batch.plan import Made
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Study
 
 RUNS = "sensitivity_runs.csv"
@@ -80,22 +79,18 @@ class Design:
         polarity = "+" if turned else study.motions.simulated
         self.members = [(number, polarity, scale) for number in range(len(motions)) for scale in study.motions.scale]
         self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
-        self._moved = lru_cache(maxsize=8)(
-            lambda number, polarity, scale, vertical: scaled(self._motions[vertical][number], scale, polarity)
-        )
 
     def runs(self) -> Made:
         """Return every motion at every point, the points running fastest: neighbours share their motion."""
         return Made(len(self.members) * len(self.points), self._run)
 
-    def _run(self, index: int) -> PlannedRun:
+    def _run(self, index: int) -> StudyRun:
         member, place = divmod(index, len(self.points))
         point = self.points.all[place]
         number, polarity, scale = self.members[member]
         polarity = str(point.values.get("polarity", polarity))
         vertical = bool(point.values.get("vertical", True))
-        motion = self._moved(number, polarity, scale, vertical)
-        return PlannedRun(motion, polarity, scale, self.case(point), self._motions[vertical][number])
+        return StudyRun(self._motions[vertical][number], polarity, scale, self.case(point))
 
     def case(self, point: Point) -> Case:
         """Return the case at a point."""
@@ -106,10 +101,12 @@ class Design:
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
 
 
-def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
+def row_of(run: StudyRun) -> dict[str, Any]:
     """Return a row of the table of runs: how the run ended, and its peak."""
+    outcome = run.outcome
+    assert outcome is not None
     return {
-        "record": run.motion.name,
+        "record": run.record.name,
         "polarity": run.polarity,
         "scale": run.scale,
         "status": outcome.status,

@@ -11,11 +11,12 @@ from typing import Any
 
 from rockbatch.analyses.spectrum.map_search import End, Point, Points, Region, Search, regions
 from rockbatch.analyses.spectrum.study import MapSpec
-from rockbatch.batch.plan import Made, PlannedRun, scaled
+from rockbatch.batch.plan import Made
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
 from rockbatch.pier import Base
+from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case
 
 FILE = "overturning_map.csv"
@@ -56,10 +57,9 @@ class Maps:
     def runs(self, points: Sequence[Point]) -> Made:
         """Return the runs at ``points``, (number of the case, ω_p/p, amplitude); their scale is the amplitude a_p/(g tan α)."""
 
-        def make(index: int) -> PlannedRun:
+        def make(index: int) -> StudyRun:
             case, frequency, amplitude = points[index]
-            unit = self._unit(case, frequency)
-            return PlannedRun(scaled(unit, amplitude, "+"), "+", amplitude, self.cases[case], unit)
+            return StudyRun(self._unit(case, frequency), "+", amplitude, self.cases[case])
 
         return Made(len(points), make)
 

@@ -12,17 +12,15 @@ self-similar spectrum has these for axes, with a_g = PGA and ω_g = PGA/PGV of e
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from functools import lru_cache
 from typing import Any
 
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
-from rockbatch.batch.plan import Made, Plan, PlannedRun, Runs, scaled
+from rockbatch.batch.plan import Made, Plan, Runs
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet, measures
-from rockbatch.results.columns import row
+from rockbatch.results.columns import StudyRun, row
 from rockbatch.results.suite_statistics import suite
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Study
 
 FILE = "spectrum.csv"
@@ -62,16 +60,15 @@ def _self_similar(polarity: str, spectrum: SpectrumSpec, motions: Sequence[Motio
     Raises ``InputError`` for a motion without acceleration.
     """
     frequencies = [_frequency(motion) for motion in motions]
-    moved = lru_cache(maxsize=2)(lambda number, scale: scaled(motions[number], scale, polarity))
 
-    def make(number: int) -> PlannedRun:
+    def make(number: int) -> StudyRun:
         rest, place = divmod(number, len(spectrum.cases))
         of_motion, level = divmod(rest, len(spectrum.intensities))
         case, intensity, motion = spectrum.cases[place], spectrum.intensities[level], motions[of_motion]
         pier = replace(case.pier, p=case.pier.p * frequencies[of_motion])
         scale = intensity * pier.gravity * math.tan(pier.alpha) / motion.pga
         scaled_case = replace(case, pier=pier, columns=case.columns | {INTENSITY: intensity})
-        return PlannedRun(moved(of_motion, scale), polarity, scale, scaled_case, motion)
+        return StudyRun(motion, polarity, scale, scaled_case)
 
     return Made(len(motions) * len(spectrum.intensities) * len(spectrum.cases), make)
 
@@ -94,11 +91,11 @@ def groups(varied: Sequence[str]) -> list[str]:
     return [name for name in (*GROUP, *varied) if name != "scale" or SELF_SIMILAR not in varied]
 
 
-def row_of(run: PlannedRun, outcome: Outcome) -> dict[str, Any]:
+def row_of(run: StudyRun) -> dict[str, Any]:
     """Return the row of spectrum.csv of a run that is finished."""
     pier = run.case.pier
     size = {"p": pier.p, "two_pi_over_p_s": 2 * math.pi / pier.p, "size_m": pier.size}
-    return size | row(run.ran(outcome))
+    return size | row(run)
 
 
 def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":

@@ -87,7 +87,7 @@ def test_a_fixed_number_of_substeps_is_its_own_setting(measured):
     assert row["substeps"] == 4
     assert math.isnan(row["tolerance"])
     expected = [
-        abs(run_fixed(r.run.case.pier, r.run.case.base, r.run.motion, 4).theta_max - r.outcome.theta_max) / 0.15
+        abs(run_fixed(r.run.case.pier, r.run.case.base, r.run.record, 4).theta_max - r.outcome.theta_max) / 0.15
         for r in references[:2]
     ]
     assert row["error_max"] == pytest.approx(max(expected), abs=1e-15)
@@ -112,7 +112,7 @@ def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
 def test_steps_that_are_too_long_to_be_run_have_neither_error_nor_time(measured):
     study, _, _ = measured
     run = Plan(study, ground_motions(study))[1]
-    stiff = replace(run, case=replace(run.case, base=YieldingBase(beta=500.0, eta=2.5)))
+    stiff = run._replace(case=replace(run.case, base=YieldingBase(beta=500.0, eta=2.5)))
     table = measure(study, [reference(stiff, 2.0)]).set_index(["method", "substeps"])
     assert table.loc[("located", 1), "status_differs"] == 1  # ω_v h = 10
     assert table.loc[("located", 1), ["error_max", "seconds_per_run"]].isna().all()

@@ -20,6 +20,7 @@ from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import described, points
 from rockbatch.batch.digests import digests
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.plan import simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.batch.waves import Waves
 from rockbatch.checks import Rule
@@ -79,7 +80,7 @@ class Interrupted(Threads):
     def outcomes(self, runs, numerics, output):
         for group in super().outcomes(runs, numerics, output):
             if self.left[0] == 0:
-                yield group[: len(group) // 2]
+                yield dict(list(group.items())[: len(group) // 2])
                 raise KeyboardInterrupt
             yield group
         self.left[0] -= 1
@@ -110,12 +111,12 @@ def test_every_run_has_the_intensity_of_its_level(tmp_path, fragility, measure):
 
     def simulate(runs):
         assert isinstance(runs, ScaledRuns)
-        for run, point in zip(runs, runs.points, strict=True):
-            assert measure(run.motion.horizontal) == pytest.approx(point.intensity, rel=1e-12)
-            assert run.motion.horizontal == pytest.approx(
-                run.scale * run.recorded.horizontal * (1 if run.polarity == "+" else -1)
+        for run, moved, point in zip(runs, simulations(runs), runs.points, strict=True):
+            assert measure(moved.motion.horizontal) == pytest.approx(point.intensity, rel=1e-12)
+            assert moved.motion.horizontal == pytest.approx(
+                run.scale * run.record.horizontal * (1 if run.polarity == "+" else -1)
             )
-            seen.append((run.motion.name, run.polarity, point.intensity, run.case.name))
+            seen.append((run.record.name, run.polarity, point.intensity, run.case.name))
         raise StopIteration
 
     with pytest.raises(StopIteration):

@@ -16,6 +16,7 @@ from rockbatch.analyses.sensitivity.analysis import answers, counted_as, tornado
 from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design, indices, low_base_high
 from rockbatch.analyses.sensitivity.section import section
 from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity, varied
+from rockbatch.batch.plan import simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable, InputError
@@ -158,12 +159,11 @@ def test_the_suite_has_every_motion_turned_and_stripped_as_its_point_says(study)
     suite = Design(study, points, [motion])
     runs = suite.runs()
     assert len(runs) == len(points) == (1 + 2 * 5) + 8 * 7 + (1 + 2 * 6) + 8 * 8
-    for run, point in zip(runs, points.all, strict=True):
+    for run, moved, point in zip(runs, simulations(runs), points.all, strict=True):
         sign = -1.0 if point.values["polarity"] == "-" else 1.0
-        assert (run.motion.horizontal == sign * motion.horizontal).all()
-        assert (run.motion.vertical is not None) is point.values["vertical"]
-        assert run.case.pier.p == point.values["p"]
-        assert (run.recorded.vertical is None) is (run.motion.vertical is None)
+        assert (moved.motion.horizontal == sign * motion.horizontal).all()
+        assert (moved.motion.vertical is not None) is point.values["vertical"]
+        assert run.case.pier.p == moved.pier.p == point.values["p"]
 
 
 def test_a_restitution_that_is_not_given_starts_from_housners(tmp_path):

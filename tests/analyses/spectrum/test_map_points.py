@@ -12,13 +12,12 @@ import rockbatch as rb
 from rockbatch.analyses.spectrum.map_regions import strips
 from rockbatch.analyses.spectrum.overturning_map import SAMPLES, Maps, columns, ending
 from rockbatch.analyses.spectrum.study import MapSpec
-from rockbatch.batch.execution import row_of
 from rockbatch.batch.groups import NOTHING_MORE
-from rockbatch.batch.plan import Made, PlannedRun
+from rockbatch.batch.plan import Made
 from rockbatch.batch.threads import Threads
 from rockbatch.motions.pulses import pulse_length
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.results.columns import as_table
+from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 
@@ -41,8 +40,7 @@ class Shown:
 
     def __post_init__(self):
         def execute(runs):
-            found = outcomes(runs)
-            return as_table([row_of(runs[i], found[i]) for i in range(len(runs))], STUDY)
+            return as_table(map(row, finished(runs)), STUDY)
 
         maps = Maps(self.spec, (CASE,))
         self.strips = strips(pd.DataFrame(maps.rows(maps.find(execute)), columns=columns(())))
@@ -52,8 +50,9 @@ class Shown:
         return own.outcome(*point)
 
 
-def outcomes(runs):
-    return dict(pair for group in Threads(2).outcomes(runs, NUMERICS) for pair in group)
+def finished(runs):
+    by_index = dict(pair for group in Threads(2).outcomes(runs, NUMERICS) for pair in group.items())
+    return [by_index[i] for i in range(len(runs))]
 
 
 def simulated(spec, points):
@@ -66,10 +65,10 @@ def simulated(spec, points):
             spec.shape, name="pulse", amplitude=amplitude * PIER.gravity * math.tan(PIER.alpha), period=period,
             dt=period / SAMPLES, duration=pulse_length(spec.shape, period, spec.gamma), gamma=spec.gamma, nu=spec.nu,
         )  # fmt: skip
-        return PlannedRun(motion, "+", 1.0, CASE)
+        return StudyRun(motion, "+", 1.0, CASE)
 
-    found = outcomes(Made(len(points), run))
-    return [ending(found[i].status, found[i].impacts, CASE.base).outcome for i in range(len(points))]
+    outcomes = [one.outcome for one in finished(Made(len(points), run))]
+    return [ending(outcome.status, outcome.impacts, CASE.base).outcome for outcome in outcomes]
 
 
 def wrong(shown, points):

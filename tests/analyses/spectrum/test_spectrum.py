@@ -9,11 +9,11 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
 from rockbatch.analyses.spectrum.study import read_spectrum
-from rockbatch.batch.plan import PlannedRun
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.results.columns import StudyRun
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -113,7 +113,8 @@ def test_a_spectrum_runs_over_p_or_over_the_size_as_well(tmp_path, axis, values)
     found = [case.pier.p if spectrum.axis == "p" else case.pier.size for case in first]
     assert found == pytest.approx(values)
     motion = ground_motions(load_study(written(tmp_path, text))).motions[0]
-    row = row_of(PlannedRun(motion, "+", 1.0, first[1]), run_to_tolerance(first[1].pier, RigidBase(), motion, 1e-4))
+    outcome = run_to_tolerance(first[1].pier, RigidBase(), motion, 1e-4)
+    row = row_of(StudyRun(motion, "+", 1.0, first[1], outcome=outcome))
     assert row["two_pi_over_p_s"] * row["p"] == pytest.approx(2 * math.pi)
     assert row["size_m"] * row["p"] ** 2 == pytest.approx(0.75 * 9.81)
 

@@ -13,12 +13,11 @@ from studies import RIGID, SINE, study_text, write_study
 from rockbatch.analyses.spectrum.map_search import End, Search, regions
 from rockbatch.analyses.spectrum.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
 from rockbatch.analyses.spectrum.study import MapSpec
-from rockbatch.batch.execution import row_of
 from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, RigidBase
-from rockbatch.results.columns import as_table
+from rockbatch.results.columns import as_table, row
 from rockbatch.study import Case, Numerics, Study
 from rockbatch.study.spec import MotionSpec
 
@@ -32,8 +31,8 @@ def found(spec, pier, base):
     study = Study("", "", None, "", MotionSpec(), numerics, (case,), (), (), NOTHING_MORE)
 
     def execute(runs):
-        outcomes = dict(pair for group in Threads(2).outcomes(runs, numerics) for pair in group)
-        return as_table([row_of(runs[i], outcomes[i]) for i in range(len(runs))], study)
+        finished = dict(pair for group in Threads(2).outcomes(runs, numerics) for pair in group.items())
+        return as_table([row(finished[i]) for i in range(len(runs))], study)
 
     (columns,) = Maps(spec, (case,)).find(execute)
     return {frequency: regions(points, spec.tolerance) for frequency, points in columns.items()}
