@@ -16,10 +16,9 @@ PAGE = HERE / "pages" / "formats.md"
 _HEAD = """\
 # Formats of records
 
-Every layout below is written as a file by `tests/helpers/layouts.py`, and read as a folder with only that file in it.
-*Read* means that all of its components are known, with their unit, step and direction; *asked for*, that a manifest or the
-study has to say or confirm something. What else is to be known about a format is under
-[Ground motions](reference/motions.md).
+Tests write every layout below as a file (`tests/helpers/layouts.py`) and read it on its own. *Read* means that unit, step and direction of all
+components are recognised; *asked for*, that a manifest or the study has to state or confirm something. [Ground motions](reference/motions.md) has more
+on each format.
 
 """
 

@@ -200,7 +200,9 @@ class _Cases:
         order = sorted(names, key=lambda name: -sum(self.runs[name].ended.values()) if ends[name] else 0)
         words = [f"{name}, {ends[name]}" if ends[name] else name for name in order]
         more = sum(bool(ends[name]) for name in order[MOST_NAMES:])
-        return _listed(words, most=MOST_NAMES) + (f", {more} of them with runs that do not end standing" if more else "")
+        return _listed(words, most=MOST_NAMES) + (
+            f", {more} of them with runs that do not end standing" if more else ""
+        )
 
     def _cut_short(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return which of these cases have runs that do not end standing, in a sentence."""

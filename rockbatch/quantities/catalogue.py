@@ -197,8 +197,8 @@ _TILTS = (
 )  # fmt: skip
 
 FIXED = (
-    Quantity("record", "ground motion: its file's name, or its channel's", kind="text", page=ReportFormat("record")),
-    Quantity("case", "foundation, as the study calls it", kind="text", page=ReportFormat("case")),
+    Quantity("record", "ground motion, named after its file or channel", kind="text", page=ReportFormat("record")),
+    Quantity("case", "name of the foundation in the study", kind="text", page=ReportFormat("case")),
     Quantity(
         "polarity", "+ as recorded, - horizontal component reversed", kind="text", page=ReportFormat("polarity")
     ),
@@ -210,7 +210,7 @@ FIXED = (
     ),
     Quantity(
         "theta_max_over_alpha", "greatest rotation over α", "theta_max",
-        more="; the run goes on until nothing later can exceed it", page=ReportFormat("θ_max/α", ".5f"), over_alpha=True,
+        more="; the run continues until nothing later can exceed it", page=ReportFormat("θ_max/α", ".5f"), over_alpha=True,
         suite=OfSuite("Largest rotation θ_max/α", ".4f"),
         error="theta_max_error",
         limits=(
@@ -220,8 +220,8 @@ FIXED = (
     ),
     Quantity(
         "theta_max_error",
-        "estimated error of the greatest rotation over α: what halving the step, or a motion 10⁻⁸ stronger or weaker, still "
-        "changed; empty where it is chaotic, and with a fixed step",
+        "estimated error of the greatest rotation over α: its change when the step was halved, or under a motion 10⁻⁸ stronger "
+        "or weaker; empty if it is chaotic, and with a fixed step",
         "theta_max_error", page=ReportFormat("±", ".5f"), over_alpha=True, stood=True,
     ),
     Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t [s]", ".2f")),
@@ -242,7 +242,7 @@ FIXED = (
     Quantity("impacts", "number of impacts", "impacts", kind="count", limits=(Limit(),)),
     Quantity("separations", "number of separations", "separations", kind="count", limits=(Limit(),)),
     Quantity(
-        "flight_s", "first time with both pivots off the ground, also where the run went on", "t_flight",
+        "flight_s", "time at which both pivots first left the ground, also if the run continued", "t_flight",
         "s", sometimes=True,
     ),
     Quantity("substeps", "integration steps per sample", "substeps", kind="count"),
@@ -255,20 +255,19 @@ _DISSIPATED = "plastic work of each support, per unit mass"
 TRAILING = (
     Quantity(
         "theta_res_error",
-        "estimated error of the residual rotation over α, including its drift while it was read; empty where it is chaotic, "
+        "estimated error of the residual rotation over α, including its drift between readings; empty if it is chaotic, "
         "and with a fixed step",
         "theta_res_error", over_alpha=True, bases=TILTS,
         stood=True,
     ),
-    Quantity("t_end_s", "when the analysis ended", "t_end", "s"),
+    Quantity("t_end_s", "end of the run", "t_end", "s"),
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
         ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
         limits=_TILTS,
     ),
     Quantity(
-        "ductility_left", _DUCTILITY.format("each"), "ductility_left",
-        page=ReportFormat("demand L", ".2f", behind="settlement_m"),
+        "ductility_left", _DUCTILITY.format("each"), "ductility_left", page=ReportFormat("demand L", ".2f", behind="settlement_m"),
         bases=YIELDING,
     ),
     Quantity(
@@ -277,28 +276,30 @@ TRAILING = (
         bases=YIELDING, limits=_greater("ductility", _DUCTILITY, Limit(ceiling=_SPENT)),
     ),
     Quantity(
-        "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg", bases=YIELDING,
+        "dissipated_left_J_kg", _DISSIPATED, "dissipated_left", "J/kg",
+        bases=YIELDING,
     ),
     Quantity(
-        "dissipated_right_J_kg", _DISSIPATED, "dissipated_right", "J/kg", bases=YIELDING,
+        "dissipated_right_J_kg", _DISSIPATED, "dissipated_right", "J/kg",
+        bases=YIELDING,
     ),
     Quantity(
         "residual_s",
-        "when residual rotation, tilt and settlement were read: the pier had stopped stepping, or 40/p were over",
+        "time at which residual rotation, tilt and settlement were read: the pier had stopped rocking, or 40/p had passed",
         "t_read", "s", bases=YIELDING, stood=True,
     ),
     Quantity(
         "theta_res_drift_per_s",
-        "how fast the residual rotation over α went on changing when it was read: undamped vibration goes on",
+        "rate of change of the residual rotation over α when it was read, as undamped vibration continues",
         "theta_res_drift", "1/s", over_alpha=True, bases=YIELDING,
         stood=True,
     ),
     Quantity(
-        "settlement_drift_m_s", "how fast the settlement went on changing when it was read",
-        "settlement_drift", "m/s", bases=YIELDING, stood=True,
+        "settlement_drift_m_s", "rate of change of the settlement when it was read", "settlement_drift", "m/s",
+        bases=YIELDING, stood=True,
     ),
     Quantity(
-        "reason", "why a run failed, or what made the pier fly", "reason", kind="text", page=ReportFormat("reason"),
+        "reason", "why a run failed, or why the pier flew", "reason", kind="text", page=ReportFormat("reason"),
         sometimes=True,
     ),
     Quantity(
@@ -307,34 +308,33 @@ TRAILING = (
     ),
     Quantity(
         "station",
-        "what the components of one station in one earthquake share, which checks count as one record; a pulse is its own",
+        "station and earthquake; checks count its components as one record; a pulse is a station of its own",
         kind="text",
     ),
     Quantity(
         "top_drift_m", "greatest drift of the top",
         lambda run: run.pier.top * run.outcome.theta_max, "m", ReportFormat("top drift [mm]", ".1f", 1000, "t_max_s"),
-        ": the height at which it is read, times the greatest rotation", limits=_displacements("top_drift", top),
+        ": its height times the greatest rotation", limits=_displacements("top_drift", top),
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
         lambda run: 2.0 * run.pier.half_width * run.outcome.theta_max, "m",
         ReportFormat("heel uplift [mm]", ".1f", 1000, "top_drift_m"),
-        ": the width between the pivots, times the greatest rotation", limits=_displacements("heel_uplift", width),
+        ": the width between the pivots times the greatest rotation", limits=_displacements("heel_uplift", width),
     ),
     Quantity(
-        "pga_g", "peak horizontal ground acceleration of the motion as it was run, over g",
+        "pga_g", "peak horizontal acceleration of the scaled motion, over g",
         lambda run: run.pga / run.pier.gravity, "standard_gravity", ReportFormat("PGA [g]", ".3f", behind="scale"),
     ),
     Quantity(
-        "flights", "how often both pivots left the ground at one time", "flights",
-        kind="count", more="; a flight that ended the run counts",
+        "flights", "number of flights, with both pivots off the ground", "flights",
+        kind="count", more="; includes a flight that ended the run",
         limits=(Limit(evaluate=in_flight("flights")),),
     ),
     Quantity(
         "flight_duration_s", "time with both pivots in the air",
         lambda run: run.outcome.flight_duration or None, "s",
-        more=", in all flights together that were followed", sometimes=True,
-        limits=(Limit(evaluate=in_flight("flight_duration_s")),),
+        more=", in all flights together", sometimes=True, limits=(Limit(evaluate=in_flight("flight_duration_s")),),
     ),
     Quantity(
         "flight_height_m", "greatest height of the lower pivot above the ground",
@@ -345,22 +345,22 @@ TRAILING = (
     ),
     Quantity(
         "theta_max_is",
-        '"lean" where the greatest rotation is mostly that of a base that has yielded, about which the pier has rocked twice as '
-        "far before; empty where it rocks",
+        '"lean" if the greatest rotation is mostly the tilt of a base that has yielded, and rocking about it was twice as large '
+        "before; otherwise empty",
         "theta_max_is", kind="text", page=ReportFormat("θ_max is", behind="theta_max_error"), bases=YIELDING, sometimes=True,
     ),
     Quantity(
         IN_MOTION,
-        "greatest rotation over α until the record's last sample: of a run that failed later, a lower bound of its peak",
+        "greatest rotation over α until the record's last sample; for a run that failed later, a lower bound of its peak",
         "theta_max_in_motion", over_alpha=True,
     ),
     Quantity(
-        IN_MOTION_ERROR, "estimated error of it over α; empty where it has not converged, and with a fixed step",
+        IN_MOTION_ERROR, "estimated error of it over α; empty if it has not converged, and with a fixed step",
         "theta_max_in_motion_error", over_alpha=True, sometimes=True,
     ),
     Quantity(
         "settlement_error_m",
-        "estimated error of the settlement, including its drift while it was read; empty where it is chaotic, and with a "
+        "estimated error of the settlement, including its drift between readings; empty if it is chaotic, and with a "
         "fixed step",
         "settlement_error", "m", bases=YIELDING, stood=True, sometimes=True,
     ),
@@ -400,7 +400,7 @@ def _device_force_in_kilonewtons(device: str, symbol: str) -> Quantity:
     limit = Limit(times=weight, columns=(over_weight,))
     return _device(
         "force_kN", f"greatest force of a {kind}", value, "kN", f"{kind} {symbol} [kN]", ".0f", 1, limit, device=device,
-        more=", where the mass is known", behind=over_weight, weighed=True,
+        more=", if mass_t is given", behind=over_weight, weighed=True,
     )  # fmt: skip
 
 
@@ -412,15 +412,15 @@ DEVICES = (
     ),
     _device("speed_m_s", "greatest speed of a damper", "damper_speed", "m/s", "damper speed [m/s]", ".3f", device="damper"),
     _device(
-        "energy_J_kg", "energy that all dampers take, per unit mass of the pier", "damper_energy", "J/kg",
+        "energy_J_kg", "energy dissipated by all dampers, per unit mass of the pier", "damper_energy", "J/kg",
         "dampers [J/kg]", ".4f", device="damper",
     ),
     _device_force("tendon", "T"),
     _device(
-        "yield_m", "by how much the tendon that yielded most is longer for good", "tendon_yield", "m", "tendon yield [mm]", ".2f",
+        "yield_m", "largest permanent elongation of a tendon", "tendon_yield", "m", "tendon yield [mm]", ".2f",
         1000, Limit(ceiling=_WIDER), device="tendon",
     ),
-    _device("slack", "how often tendons went slack", "tendon_slack", "1", "slack", ".0f", device="tendon", kind="count"),
+    _device("slack", "number of times tendons went slack", "tendon_slack", "1", "slack", ".0f", device="tendon", kind="count"),
     _device_force_in_kilonewtons("damper", "F"),
     _device_force_in_kilonewtons("tendon", "T"),
     _device_force("stop", "F"),
@@ -428,9 +428,9 @@ DEVICES = (
         "deflection_m", "greatest deflection of a stop beyond its gap", "stop_depth", "m", "stop deflection [mm]", ".1f", 1000,
         *_LENGTHS, device="stop",
     ),
-    _device("blows", "how often stops were met", "stop_blows", "1", "blows", ".0f", device="stop", kind="count"),
+    _device("blows", "number of contacts with stops", "stop_blows", "1", "blows", ".0f", device="stop", kind="count"),
     _device(
-        "energy_J_kg", "energy that all stops take and do not give back, per unit mass of the pier", "stop_energy", "J/kg",
+        "energy_J_kg", "energy dissipated by all stops, per unit mass of the pier", "stop_energy", "J/kg",
         "stops [J/kg]", ".4f", device="stop",
     ),
     _device_force_in_kilonewtons("stop", "F"),
@@ -440,11 +440,11 @@ DEVICES = (
         "deck spring deflection [mm]", ".1f", 1000, *_LENGTHS, device="deck_spring",
     ),
     _device(
-        "blows", "how often gaps beside the deck closed", "deck_spring_blows", "1", "closures", ".0f", device="deck_spring",
+        "blows", "number of times gaps at the deck closed", "deck_spring_blows", "1", "closures", ".0f", device="deck_spring",
         kind="count",
     ),
     _device(
-        "energy_J_kg", "energy that all deck springs take and do not give back, per unit mass of the pier", "deck_spring_energy",
+        "energy_J_kg", "energy dissipated by all deck springs, per unit mass of the pier", "deck_spring_energy",
         "J/kg", "deck springs [J/kg]", ".4f", device="deck_spring",
     ),
     _device_force_in_kilonewtons("deck_spring", "F"),
@@ -452,9 +452,9 @@ DEVICES = (
 """Quantities of devices."""
 
 _PIVOT = "greatest force of {} support over half the weight"
-_PIVOT_MORE = ", its dashpot's included; of a rigid base, where it bears all of N"
+_PIVOT_MORE = ", including its dashpot; of a rigid base, when it carries all of N"
 _GAP, _GAP_MORE = (
-    "heel gap: greatest height of {} pivot above where its support waits",
+    "heel gap: greatest height of {} pivot above its support",
     ", the stroke of a key or damper",
 )
 _SPEED = "greatest speed at which the heel gap opens or closes"
@@ -463,8 +463,8 @@ _FORCES = (
     *_over_mass("base_shear", "greatest base shear V", "base_shear", "m/s^2", "V", more=", without the impulses of impacts"),
     *_over_mass("normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise"),
     _force(
-        "friction_demand", "greatest V over N at one time", "friction_demand", "1", "V/N", ".4f", unbounded=True, limits=_SLIDES,
-        more=", while N is above [output] least_normal_share of the weight, 0.1 unless given",
+        "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,
+        limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given",
     ),
     _force("pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE),
     _force(
@@ -491,7 +491,7 @@ _FORCES = (
         "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
     ),
     _force(
-        "landing_velocity_m_s", "speed of the pivot that lands, at the hardest impact", "landing_velocity", "m/s",
+        "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
         "landing [m/s]", ".3f", sometimes=True, limits=(Limit(),),
     ),
     *_over_mass("impulse", "vertical impulse of the hardest impact", "impulse", "m/s", "impulse", sometimes=True),
@@ -500,7 +500,7 @@ _FORCES = (
         "V/N at impact", ".4f", sometimes=True, limits=_SLIDES,
     ),
     _force(
-        "first_uplift_s", "when a pivot first leaves its support", "first_uplift", "s", "first uplift [s]", ".3f",
+        "first_uplift_s", "time at which a pivot first leaves its support", "first_uplift", "s", "first uplift [s]", ".3f",
         sometimes=True,
     ),
     _force(
@@ -510,20 +510,20 @@ _FORCES = (
     _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),)),
     *_over_mass(
         "key_shear", "greatest base shear on shear keys", "key_shear", "m/s^2", "V of keys",
-        more=": V while N is not above that share, as in flight", sometimes=True,
+        more=": V while N is below that share, as in flight", sometimes=True,
     ),
     _force(
-        "flight_longest_s", "the longest of the flights that were followed", "flight_longest", "s",
+        "flight_longest_s", "duration of the longest flight", "flight_longest", "s",
         "longest flight [s]", ".3f", sometimes=True, limits=(Limit(),),
     ),
     _force(
         "forces_error", "largest relative error among the force columns", "error", "1", "±", ".1g", sometimes=True,
-        more=": what halving the step still changed; empty with a fixed step",
+        more=": the change when the step was halved; empty with a fixed step",
     ),
     *_over_mass(
         "base_moment", "greatest moment about the middle of the base", "base_moment", "m^2/s^2", "base moment", ".2f",
-        "; of the vertical forces of supports, dampers and tendons; of a frame, of each column's about its own middle, all "
-        "together",
+        "; of the vertical forces of supports, dampers and tendons; for a frame the sum over the columns, each about its own "
+        "middle",
         "base_shear_kN",
     ),
 )  # fmt: skip
@@ -542,7 +542,7 @@ def _energy(term: str, form: str = ".4f") -> Quantity:
 
 
 _ROCKING_ERROR = (
-    "estimated error of rocking, and of lean, over α: what halving the step still changed; empty with a fixed step"
+    "estimated error of rocking, and of lean, over α: the change when the step was halved; empty with a fixed step"
 )
 
 OPTIONAL = (
@@ -552,7 +552,7 @@ OPTIONAL = (
     ),
     Quantity(
         OTHER_LAW,
-        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law: the other end of its range; unless [output] "
+        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; unless [output] "
         "both_laws = false",
         "settlement_other_law", "m", ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
@@ -560,12 +560,12 @@ OPTIONAL = (
     ),
     Quantity(
         ROCKING,
-        "greatest rotation over α about where the pier would rest on its base as it then is",
+        "greatest rotation over α about the current position of rest on the base",
         "theta_rocking", page=ReportFormat("rocking/α", ".5f", behind="theta_max_is"), over_alpha=True, needs="rocking",
         error="theta_rocking_error", limits=(_rotation("theta_rocking", ROCKING, "", ONE),),
     ),
     Quantity(
-        "theta_lean_over_alpha", "rotation over α at which it would rest at the time of the greatest rotation, to its side",
+        "theta_lean_over_alpha", "rotation over α of that position at the time of the greatest rotation, positive to its side",
         "theta_lean", page=ReportFormat("lean/α", ".5f", behind=ROCKING), over_alpha=True, bases=YIELDING,
         stood=True, needs="rocking",
     ),
@@ -586,9 +586,8 @@ OPTIONAL = (
     ),
     Quantity(
         "devices_error",
-        "estimated error of that column of devices, but for counts, whose error is the largest, as a share of it or of 1 % "
-        "of its scale: "
-        "what halving the step still changed; empty with a fixed step",
+        "largest relative error among the columns of devices, other than counts (relative to 1 % of the scale of small ones): "
+        "the change when the step was halved; empty with a fixed step",
         "devices_error", page=ReportFormat("devices ±", ".0e", behind="deck_spring_energy_J_kg"), stood=True,
         requested=lambda study: any(case.base.restraints for case in study.cases),
     ),

@@ -159,7 +159,7 @@ class Quantity:
     def applies(self) -> str:
         """Runs to which it applies, in words; empty for all."""
         base = BASES_IN_WORDS[self.bases]
-        run = "where the pier stood" if self.stood else "if it occurs" if self.sometimes else ""
+        run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))
 
     def requested_by(self, study: Any) -> bool:
