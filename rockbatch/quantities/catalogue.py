@@ -267,8 +267,8 @@ TRAILING = (
         limits=_TILTS,
     ),
     Quantity(
-        "ductility_left", _DUCTILITY.format("each"), "ductility_left", page=ReportFormat("demand L", ".2f", behind="settlement_m"),
-        bases=YIELDING,
+        "ductility_left", _DUCTILITY.format("each"), "ductility_left",
+        page=ReportFormat("demand L", ".2f", behind="settlement_m"), bases=YIELDING,
     ),
     Quantity(
         "ductility_right", _DUCTILITY.format("each"), "ductility_right",
