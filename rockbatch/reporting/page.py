@@ -57,6 +57,9 @@ def _of_analyses() -> Iterator[Part]:
 
 
 def _of_analysis(name: str, function: str, contents: Contents) -> Markup:
+    """Return a part that an analysis brings; without its files its modules are not loaded."""
+    if not any((contents.directory / f"{name}.{kind}").exists() for kind in ("json", "csv")):
+        return Markup("")
     content: Markup = from_analysis(name, function)(contents)
     return content
 

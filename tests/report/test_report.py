@@ -554,7 +554,8 @@ def test_the_report_never_loads_the_compiler_nor_what_it_does_not_need(tmp_path)
     code = (
         "import sys; from pathlib import Path; from rockbatch.reporting import write_report;"
         f"write_report(Path({str(tmp_path)!r}));"
-        "print([m for m in ('numba', 'rockbatch.core', 'matplotlib', 'scipy', 'obspy', 'h5py') if m in sys.modules])"
+        "print([m for m in ('numba', 'rockbatch.core', 'matplotlib', 'scipy', 'obspy', 'h5py') if m in sys.modules]"
+        " + [m for m in sys.modules if m.startswith('rockbatch.analyses.') and m.endswith('section')])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -1,0 +1,128 @@
+"""The scorecard: cases by checks, in an order by which they are chosen, and never another answer than the sentence above it."""
+
+import math
+import random
+import re
+
+import pytest
+from check_samples import RIGID, runs, verdict
+
+from rockbatch.checks import wording
+from rockbatch.checks.answer import answer
+from rockbatch.checks.coverage import CaseRuns
+from rockbatch.checks.responses import worst_of_cases
+from rockbatch.checks.scorecard import scorecard
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+
+
+def name_of(one):
+    return one.case
+
+
+def test_the_worst_check_is_the_first_column_and_the_best_case_the_first_row():
+    card = scorecard(
+        [
+            verdict("a", "fail", check="drift", ratio=2.0), verdict("a", "pass", check="tilt", ratio=0.9),
+            verdict("b", "fail", check="drift", ratio=1.1), verdict("b", "pass", check="tilt", ratio=0.2),
+            verdict("c", "not decided", check="drift", ratio=1.0), verdict("c", "pass", check="tilt", ratio=0.1),
+            verdict("d", "pass", check="drift", ratio=0.8), verdict("d", "fail", check="soil", ratio=3.0),
+            verdict("e", "pass", check="drift", ratio=0.7),
+        ],
+        name_of,
+    )  # fmt: skip
+    assert [column.check for column in card.columns] == ["soil", "drift", "tilt"]
+    assert [(row.name, row.verdict) for row in card.rows] == [
+        ("e", PASS), ("c", NOT_DECIDED), ("b", FAIL), ("a", FAIL), ("d", FAIL),
+    ]  # fmt: skip
+    assert [row.in_words for row in card.rows] == [
+        "passes 1 check", "1 check not decided", "fails 1 check", "fails 1 check", "fails 1 check",
+    ]  # fmt: skip
+    assert card.rows[0].cells[0] is None  # soil says nothing of it
+
+
+def test_columns_that_fail_or_are_open_always_stand_and_others_up_to_a_number():
+    failing = [verdict("a", "fail", check=f"f{i}", ratio=2.0) for i in range(5)]
+    passing = [verdict("a", "pass", check=f"p{i}", ratio=0.1 * i) for i in range(5)]
+    card = scorecard([*passing, *failing], name_of)
+    assert [card.columns[i].check for i in card.open_columns(3)] == [f"f{i}" for i in range(5)]
+    assert [card.columns[i].check for i in card.open_columns(7)][5:] == ["p4", "p3"]
+    assert len(card.open_columns(20)) == 10
+
+
+@pytest.mark.parametrize(
+    ("unit", "limit", "sense", "shown"),
+    [("m", 0.05, "at most", "≤ 50 mm"), ("m", 1.5, "at most", "≤ 1.5 m"), ("rad", 0.01, "at most", "≤ 10 mrad"),
+     ("", 2.0, "at least", "≥ 2"), ("kN", 300_000.0, "at most", "≤ 300,000 kN")],
+)  # fmt: skip
+def test_limits_stand_in_units_of_their_size(unit, limit, sense, shown):
+    card = scorecard([verdict("a", "pass", unit=unit, limit=limit, sense=sense, value=0.5 * limit)], name_of)
+    assert card.columns[0].limit.replace("\u00a0", " ") == shown
+    assert float(card.rows[0].cells[0].value.replace(",", "")) == pytest.approx(0.5 * limit * card.columns[0].factor)
+
+
+@pytest.mark.parametrize(
+    ("value", "ratio", "high", "cell"),
+    [(0.025, 0.5, 0.025, ("25", "50 %")), (0.0500001, 1.000002, 0.05, ("50.0001", "100.000 %")),
+     (0.05, 1.0, 0.05, ("50", "100 %")),
+     (math.inf, math.inf, math.inf, ("∞", "∞")), (0.04, 0.8, math.inf, ("≥ 40", "≥ 80 %")), (1e-16, 2e-15, 1e-16, ("0", "0 %")),
+     (math.nan, math.nan, math.nan, ("", ""))],
+)  # fmt: skip
+def test_a_cell_never_shows_a_demand_on_the_other_side_of_its_limit(value, ratio, high, cell):
+    one = verdict("a", "fail", unit="m", limit=0.05, value=value, ratio=ratio, high=high)
+    shown = scorecard([one], name_of).rows[0].cells[0]
+    assert (shown.value.replace("\u00a0", " "), shown.percent.replace("\u00a0", " ")) == cell
+
+
+def test_a_ban_stands_in_words():
+    ban = {"demand": "overturned", "statistic": "max", "limit": 0.0, "check": "stands"}
+    card = scorecard([verdict("a", "fail", **ban, value=1.0, high=1.0, ratio=math.inf),
+                      verdict("b", "pass", **ban, value=0.0, high=0.0, ratio=0.0)], name_of)  # fmt: skip
+    assert card.columns[0].limit == "none"
+    assert [(row.name, row.cells[0].value, row.cells[0].percent) for row in card.rows] == [
+        ("b", "none", ""),
+        ("a", "some", ""),
+    ]
+
+
+def test_a_case_without_a_limit_on_what_governs_says_so_instead_of_passing():
+    worst = worst_of_cases(runs(name="rigid"), [RIGID])
+    (row,) = scorecard([verdict("rigid", "pass", demand="static_deflection_m")], name_of, (), worst).rows
+    assert (row.verdict, row.in_words) == (NOT_DECIDED, "no limit on rotation")
+    (row,) = scorecard([verdict("rigid", "pass", demand="theta_max_over_alpha")], name_of, (), worst).rows
+    assert (row.verdict, row.in_words) == (PASS, "passes 1 check")
+
+
+def test_sentence_and_scorecard_count_the_same_on_random_verdicts():
+    """Of some hundred made-up studies: what the lines say of cases is what the rows are."""
+    chance = random.Random(46)
+    kinds = [PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY]
+    for _ in range(300):
+        cases = [f"c{i}" for i in range(chance.randint(1, 6))]
+        found = [
+            verdict(name, chance.choice(kinds), check=f"k{k}", ratio=chance.uniform(0.1, 3.0), note="few")
+            for name in cases
+            for k in range(chance.randint(0, 3))
+        ]
+        counted = [CaseRuns(name, {}, 1.0, 4, {"overturned": 4} if chance.random() < 0.2 else {}) for name in cases]
+        rows = scorecard(found, name_of, counted).rows
+        assert sorted(row.name for row in rows) == cases
+        if not found:
+            continue
+        said = {kind: 0 for kind in (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)}
+        for line in answer(found, (), name_of, str, counted):
+            total = len(cases)
+            among = {"the only case": 1, "both cases": 2, f"all {total} cases": total}
+            number = next((n for words, n in among.items() if words in line.text.lower()), None)
+            number = int(re.match(r"(\d+) of", line.text)[1]) if number is None and line.text[0].isdigit() else number
+            if "pass" in line.text:
+                said[PASS] += number
+                if unchecked := re.search(r"; (\d+) (?:is|are) not checked", line.text):
+                    said[DOES_NOT_APPLY] += int(unchecked[1])
+            elif "fail" in line.text and "Left" not in line.text:
+                said[FAIL] += number
+            elif "cannot be decided" in line.text:
+                said[NOT_DECIDED] += number
+            elif "not checked" in line.text:
+                said[DOES_NOT_APPLY] += number
+        assert said == {kind: sum(row.verdict == kind for row in rows) for kind in said}
+    assert wording.percent(1.0).startswith("100")

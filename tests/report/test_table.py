@@ -1,0 +1,66 @@
+"""Tables: numbers below each other by their decimal point, no exponents, and once what is the same in every row."""
+
+import math
+import re
+
+import pytest
+from report_page import Page
+
+from rockbatch.reporting.markup import number
+from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, Head, table
+
+
+@pytest.mark.parametrize(
+    ("value", "form", "written"),
+    [
+        (9.088e-5, ".4g", "0.00009088"), (117_000.0, ".3g", "117,000"), (182_800.0, ".4g", "182,800"),
+        (1550.0, ".3g", "1550"), (123_456.789, ".10g", "123,456.789"), (3e-7, ".1g", "3 × 10⁻⁷"),
+        (-2.5e12, ".3g", "-2.5 × 10¹²"), (2e9, ".3g", "2,000,000,000"), (-0.0001, ".2f", "0.00"),
+        (12_345.0, ",.0f", "12,345"), (20.0, "+.1f", "+20.0"), (math.inf, ".3g", "inf"), (math.nan, ".3g", ""),
+        (None, ".3g", ""), ("words", ".3g", "words"), (7, ".3g", "7"), (0.0, ".3g", "0"),
+    ],
+)  # fmt: skip
+def test_a_number_has_significant_digits_and_no_exponent(value, form, written):
+    assert number(value, form) == written
+
+
+def cells(markup, place):
+    """The cells of a column with all of their spaces."""
+    return [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row)[place] for row in re.findall(r"<tr>(.*?)</tr>", markup)[1:]]
+
+
+def test_decimal_points_stand_below_each_other_whatever_the_digits():
+    """Behind a number stands the room of the decimals that others have: a point's, and a digit's for each."""
+    shown = cells(
+        table(
+            [Head("name"), Head("value", ".4g")], [["a", 1.25], ["b", 20.0], ["c", 300.5], ["d", None], ["e", "none"]]
+        ),
+        1,
+    )
+    assert shown == ["1.25", "20\u2008\u2007\u2007", "300.5\u2007", "", "none"]
+    fixed = cells(table([Head("name"), Head("value", ".2f")], [["a", 1.25], ["b", 20.0]]), 1)
+    assert fixed == ["1.25", "20.00"]
+
+
+def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
+    heads = [Head("name"), Head("status"), Head("scale", ".2f"), Head("peak", ".1f")]
+    rows = [[f"r{i}", "ok", 1.5, float(i)] for i in range(LEAST_COMMON + 1)]
+    shown = Page(f'<section id="x">{table(heads, rows, sortable=True)}</section>')
+    assert "In every row: status ok; scale 1.50." in shown.text
+    assert shown.tables["x"][0] == ["name", "peak"]
+    for unlike in (table(heads, rows), table(heads, rows[:LEAST_COMMON], sortable=True)):
+        assert "In every row" not in unlike
+    one = [*rows[:-1], ["r", "failed", 1.5, 0.0]]
+    assert Page(f'<section id="x">{table(heads, one, sortable=True)}</section>').tables["x"][0] == [
+        "name",
+        "status",
+        "peak",
+    ]
+
+
+def test_columns_by_which_rows_are_chosen_are_marked_and_long_tables_are_folded():
+    rows = [[f"r{i}", i % 2] for i in range(MOST_OPEN + 1)]
+    shown = table([Head("name"), Head("case", filter=True)], rows, name="Every run")
+    assert "data-filter>case</th>" in shown
+    assert f"<summary>Every run: {MOST_OPEN + 1} rows</summary>" in shown
+    assert "<details>" not in table([Head("name"), Head("case")], rows[:-1])
