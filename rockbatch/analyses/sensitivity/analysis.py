@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rockbatch.analyses.sensitivity import sampled
-from rockbatch.analyses.sensitivity.quantities import SOBOL, TORNADO
+from rockbatch.analyses.sensitivity.columns import SOBOL, TORNADO
 from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, indices
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, read_sensitivity
 from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis

@@ -6,12 +6,6 @@ from typing import Any
 from rockbatch.analyses.sensitivity.figures import written
 from rockbatch.reporting.table import Head
 
-TORNADO = ("parameter", "low", "base", "high", "answer_low", "answer_base", "answer_high", "swing")
-"""Columns of sensitivity.csv after those of the case."""
-
-SOBOL = ("parameter", "first", "first_error", "total", "total_error")
-"""Columns of sobol.csv after those of the case."""
-
 _ENDS = {"low": "low", "base": "study", "high": "high"}
 _INDICES = {"first": "first-order", "total": "total"}
 

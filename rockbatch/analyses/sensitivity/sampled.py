@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.analyses.sensitivity.quantities import SOBOL
+from rockbatch.analyses.sensitivity.columns import SOBOL
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, applying, own_values, varied
 from rockbatch.batch.plan import Made
 from rockbatch.common.lazy import pd

@@ -1,8 +1,9 @@
 """Results of ``rockbatch sensitivity``: what matters most, the effect of each input alone, and Sobol's indices."""
 
 from rockbatch.analyses.sensitivity.answer import answer
+from rockbatch.analyses.sensitivity.columns import SOBOL, TORNADO
 from rockbatch.analyses.sensitivity.figures import bars, symbol
-from rockbatch.analyses.sensitivity.quantities import QUANTITIES, SOBOL, TORNADO
+from rockbatch.analyses.sensitivity.quantities import QUANTITIES
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished_analysis import Contents, named, of_files
 from rockbatch.reporting.markup import Markup
