@@ -256,6 +256,34 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
+def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(monkeypatch):
+    """As while kernels are compiled."""
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    from rockbatch.batch import listening
+    from rockbatch.commands import messages
+
+    monkeypatch.setattr(listening, "MOVES_S", 0.1)
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
+    with os.fdopen(theirs, "w") as terminal:
+        monkeypatch.setattr("sys.stderr", terminal)
+        listener = messages.Terminal()
+        with listener.progress(3):
+            time.sleep(2.3)
+            listener.say("compiling")
+        terminal.flush()
+        shown = os.read(ours, 100_000).decode()
+    os.close(ours)
+    assert "0/3 [00:01<" in shown
+    assert "0/3 [00:02<" in shown
+    assert "\rcompiling" in shown.replace(" ", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
 @pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
 def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn, monkeypatch):
     """A terminal without a size gets plain lines, as a file does."""

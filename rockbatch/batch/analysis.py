@@ -158,9 +158,9 @@ class AnalysisFolder:
         if self.has(file, digest):
             self.keep(file, digest)
             return
-        make_ready(replace(self.study, cases=tuple(cases)), self.listener)
         with self.journal(file, columns, digest) as journal:
             with self.listener.progress(len(runs) - len(journal)) as progress:
+                make_ready(replace(self.study, cases=tuple(cases)), self.listener)
                 execute_runs(runs, self.study.numerics, journal, self.engine, row=row, progress=progress)
             journal.write_in_order(self.directory / file)
             self.keep(file, digest)

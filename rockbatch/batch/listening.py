@@ -1,11 +1,12 @@
 """Messages and progress of a batch."""
 
 import sys
+import time
 import warnings
 from collections.abc import Callable
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from threading import Timer
-from typing import TYPE_CHECKING
+from threading import Event, Thread, Timer
+from typing import TYPE_CHECKING, Any
 
 from rockbatch.common.errors import InputError
 
@@ -20,6 +21,9 @@ PATIENCE_S = 1.5
 
 Advance = Callable[[int], object]
 """Called with the number of items finished since the last call."""
+
+MOVES_S = 0.5
+"""Time [s] after which a bar is drawn again, whether something is finished or not."""
 
 SHORT = 1.0
 """Delay [s] before a bar appears, unless one was requested."""
@@ -44,10 +48,14 @@ class Listener:
 
 
 class Bars(Listener):
-    """Listener that shows a bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s]."""
+    """Listener that shows a bar for whatever is under way, in a terminal or a notebook, once it has taken ``delay`` [s].
+
+    Its time goes on where nothing is finished for long, as while kernels are compiled.
+    """
 
     def __init__(self, delay: float = 0.0) -> None:
         self.delay = delay
+        self._bar: Any = None
 
     @contextmanager
     def progress(self, total: int) -> "Iterator[Advance]":
@@ -56,8 +64,30 @@ class Bars(Listener):
             warnings.simplefilter("ignore")  # of a notebook without widgets, which gets a bar in characters
             from tqdm.auto import tqdm
 
+        ended = Event()
+
+        def keep_moving() -> None:
+            while not ended.wait(max(self.delay - time.monotonic() + started, MOVES_S)):
+                with suppress(OSError):  # whoever advances it hears of it
+                    bar.refresh()
+
+        started = time.monotonic()
         with tqdm(total=total, unit="run", leave=False, delay=self.delay, dynamic_ncols=True) as bar:
-            yield bar.update
+            mover = Thread(target=keep_moving, daemon=True)
+            with suppress(RuntimeError):  # no more threads: it moves when something is finished
+                mover.start()
+            self._bar = bar
+            try:
+                yield bar.update
+            finally:
+                self._bar = None
+                ended.set()
+                if mover.is_alive():
+                    mover.join()
+
+    def making_room(self) -> AbstractContextManager[None]:
+        """Return a context in which the bar makes room for lines on stderr."""
+        return nullcontext() if self._bar is None else self._bar.external_write_mode(sys.stderr)
 
 
 class Calls(Listener):

@@ -250,9 +250,9 @@ def _execute_remaining(
     n_finished = every - remaining
     if n_finished:
         listener.say(f"{n_finished} of them are finished already, {remaining} are left (--fresh starts over)")
-    make_ready(study, listener)
     try:
         with listener.progress(remaining) as progress:
+            make_ready(study, listener)
             execute_runs(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
     except KeyboardInterrupt:
         n_done = every - len(to_simulate(runs, requested, journal))

@@ -11,6 +11,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from rockbatch.commands.arguments import COMMANDS
+from rockbatch.commands.interrupts import answered_interrupts
 from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import AboutResults, InputError
 from rockbatch.common.version import __version__
@@ -59,7 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if parsed.command is None:
         root.print_help()
         return 2
-    code = _exit_code(parsed)
+    with answered_interrupts():
+        code = _exit_code(parsed)
     return code or int(is_lost(sys.stdout))
 
 

@@ -18,6 +18,9 @@ SECONDS_BETWEEN_LINES = 2.0
 class Terminal(Listener):
     """Listener that prints on stderr what it hears of a batch."""
 
+    def __init__(self) -> None:
+        self._bars = Bars()
+
     def motions(self, motion_set: MotionSet) -> None:
         """Print which files are not used and why, and how many are left out."""
         for file in motion_set.unusable:
@@ -33,7 +36,8 @@ class Terminal(Listener):
 
     def say(self, text: str) -> None:
         """See :class:`Listener`."""
-        say(text)
+        with self._bars.making_room():
+            say(text)
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Advance]:
@@ -43,7 +47,7 @@ class Terminal(Listener):
         if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
             yield _lines(total, stream)
             return
-        with Bars().progress(total) as advance:
+        with self._bars.progress(total) as advance:
 
             def guarded(runs: int) -> None:
                 try:

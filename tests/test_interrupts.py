@@ -1,0 +1,52 @@
+"""Ctrl-C on the command line: answered at once, whatever the program is in, and over soon."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from studies import RIGID, study_text, write_study
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+
+IN_C_CODE = """
+import hashlib, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
+import rockbatch.batch.running
+from rockbatch.commands import cli, interrupts
+
+def compile_for_minutes(*_):  # as LLVM does: Python hears of no signal meanwhile
+    print("compiling", file=sys.stderr, flush=True)
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)
+
+rockbatch.batch.running.make_ready = compile_for_minutes
+interrupts.GRACE_S = {grace}
+sys.exit(cli.main(["run", {study!r}, "--out", {out!r}]))
+"""
+
+
+@pytest.mark.parametrize(("grace", "times"), [(1.2, 1), (600.0, 2)], ids=["once", "twice"])
+def test_an_interrupt_while_something_is_compiled_is_answered_and_ends_it(tmp_path, grace, times):
+    study, out = write_study(tmp_path, study_text(cases=(RIGID,))), tmp_path / "out"
+    code = IN_C_CODE.format(grace=grace, study=str(study), out=str(out))
+    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        while process.stderr.readline() != "compiling\n":
+            assert process.poll() is None
+        interrupted = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stderr.readline().startswith("stopping, a second at most")
+        assert time.monotonic() - interrupted < 10.0  # half a second, where nothing else runs
+        if times == 2:
+            process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=20.0) == 130
+        assert process.stderr.read() == "rockbatch: interrupted\n"
+
+
+def test_an_interrupt_of_what_ends_at_once_is_not_remarked_upon(capsys):
+    from rockbatch.commands.interrupts import answered_interrupts
+
+    with pytest.raises(KeyboardInterrupt), answered_interrupts():
+        signal.raise_signal(signal.SIGINT)
+    assert capsys.readouterr().err == ""
