@@ -16,9 +16,9 @@ PAGE = HERE / "pages" / "formats.md"
 _HEAD = """\
 # Formats of records
 
-Tests write every layout below as a file (`tests/helpers/layouts.py`) and read it on its own. *Read* means that unit, step and direction of all
-components are recognised; *asked for*, that a manifest or the study has to state or confirm something. [Ground motions](reference/motions.md) has more
-on each format.
+Tests write every layout below as a file (`tests/helpers/layouts.py`) and read it on its own. *Read* means that unit, step and
+direction of all components are recognised; *asked for*, that a manifest or the study has to state or confirm something.
+[Ground motions](reference/motions.md) has more on each format.
 
 """
 
