@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 
 class InputError(ValueError):
-    """Input that cannot be used as it stands.
+    """Input that cannot be used.
 
     ``problems`` holds one message per mistake. Each names the place, what was found, what was expected and
     what to write instead.

@@ -81,7 +81,7 @@ def read_motions(
     offset : Offset
         What is taken off the accelerations; by default what each format needs.
     azimuths : sequence of float
-        Directions [degrees] that each station's pair of horizontal components is turned to; none: as recorded.
+        Directions [degrees] to which each station's pair of horizontal components is rotated; none: as recorded.
     confirmed : sequence of str
         Names of motions, or patterns with * and ?, that are right whatever is odd about them (``plausible``).
     confirmed_pga : sequence of str

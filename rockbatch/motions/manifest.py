@@ -30,7 +30,7 @@ from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
 
 RECORD = Section(("record",), (
-    "What is known about a record that its file does not say, or says wrongly. The file `motions.toml` lies in the folder of "
+    "Facts about a record that its file lacks or states wrongly. The file `motions.toml` lies in the folder of "
     "the records; `rockbatch motions FOLDER --write-manifest` drafts it."
 ), {
     "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"',
@@ -48,8 +48,8 @@ RECORD = Section(("record",), (
     "station": Key(text, '"Rinaldi"', "Name of the station; components that share it belong together."),
     "distance_km": Key(not_negative, "6.5", "Distance to the rupture."),
     "magnitude": Key(number, "6.7", "Magnitude of the earthquake."),
-    "confirm": Key(boolean, "true", "Whether the record is right though something about it is grossly odd."),
-    "confirm_pga": Key(boolean, "true", "Whether its peak acceleration is right though it is far from usual."),
+    "confirm": Key(boolean, "true", "Whether a grossly unusual record is correct."),
+    "confirm_pga": Key(boolean, "true", "Whether an unusual peak acceleration is correct."),
 }, many=True, also=names({
     "file": "filename path record", "station": "site stationname", "azimuth": "angle direction orientation bearing heading",
     "scale": "factor multiplier", "magnitude": "mw mag m", "distance_km": "rrup rjb distance", "component": "channel",

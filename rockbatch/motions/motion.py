@@ -121,7 +121,7 @@ class Motion(Shown):
     factor : float
         What brought the record to the study's target; it is in the components already.
     initial : Initial or None
-        Of the horizontal component, where its file tells it; ``None``: unknown, from rest then.
+        Of the horizontal component, if its file states it; ``None``: unknown, from rest.
     processed : bool or None
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
     findings : tuple of Finding
@@ -129,7 +129,7 @@ class Motion(Shown):
     origin : Origin
         Event, station and direction in words, as far as its header says them.
     lacks_vertical : bool
-        Whether a vertical component was asked for, and there is none.
+        Whether a vertical component was requested and is missing.
     station : str
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
     confirm : sequence of str
@@ -255,7 +255,7 @@ class Motion(Shown):
     @classmethod
     @checked
     def still(cls, duration_s: float, dt: float = 0.005, *, name: str = "still") -> "Motion":
-        """Return ground that does not move for ``duration_s`` [s], sampled every ``dt`` [s]: for a pier that is let go.
+        """Return ground that does not move for ``duration_s`` [s], sampled every ``dt`` [s]: for a release test.
 
         Raises ``InputError`` unless both are above 0 and there are 10 million samples at most.
 
@@ -309,13 +309,13 @@ class Motion(Shown):
 
     @property
     def label(self) -> str:
-        """Its name for people: "Imperial Valley 1979, Meloland, 270"; its file where the header tells nothing."""
+        """Its name in words: "Imperial Valley 1979, Meloland, 270"; its file if the header has no name."""
         by_name = self.source in ("", "pulse") or len(self.shocks) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property
     def named(self) -> str:
-        """Its label, with its name in tables beside it where that is another one."""
+        """Its label, followed by its name in tables if that differs."""
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
 
     @property
@@ -383,7 +383,7 @@ class Motion(Shown):
         Series, length n
             Pseudo-spectral acceleration ``sa_g`` [9.81 m/s²] by ``period_s``.
 
-        Raises ``InputError`` for periods and damping that cannot be.
+        Raises ``InputError`` for impossible periods and damping.
         """
         undamped = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
         sa = spectral_acceleration(self.horizontal, self.dt, undamped, damping) / GRAVITY

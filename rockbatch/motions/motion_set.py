@@ -52,7 +52,7 @@ _AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duratio
 
 @dataclass(frozen=True, repr=False)
 class MotionSet(Shown):
-    """Motions in order, and beside them what could not be used, and what was left out on purpose.
+    """Motions in order, with the files that could not be used and those left out on purpose.
 
     It has a length and is gone through as a list of its motions; one is taken by its place or by its name.
 
@@ -62,7 +62,7 @@ class MotionSet(Shown):
     unusable : list of Unusable
         Files, or components, that could not be used, each with its reason.
     left_out : list of LeftOut
-        Files and records that nobody misses, each with its reason.
+        Other files and records that are not needed, each with its reason.
 
     Examples
     --------

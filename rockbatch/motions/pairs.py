@@ -154,7 +154,7 @@ def pair_spectrum(
         of the sum of their squares; ``geomean_g``, their geometric mean; ``rotd50_g`` and ``rotd100_g``, the median and the
         greatest over all directions (Boore 2010).
 
-    Raises ``InputError`` for components that are no such pair, and periods and damping that cannot be.
+    Raises ``InputError`` for components that are not such a pair, and impossible periods and damping.
 
     Examples
     --------

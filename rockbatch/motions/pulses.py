@@ -70,12 +70,12 @@ def pulse(
     gamma, nu : float
         Number of oscillations γ > 1 and phase ν [rad], for "mavroeidis-papageorgiou" only.
     confirm : collection of str
-        "amplitude" and "dt", if they are right though they are far from usual.
+        "amplitude" and "dt", if unusual values are correct.
 
     Raises
     ------
     InputError
-        With every value that cannot be, or is far from usual and not confirmed.
+        With every impossible value, and every unusual one that is not confirmed.
 
     Examples
     --------

@@ -69,7 +69,7 @@ class ShockSequence:
 _SEQUENCE = {
     "name": Key(text, '"main shock and aftershock"', "Its name in tables.", required=True),
     "records": Key(text, '["CHAN15", "CHAN24"]',
-        "Names of its records, as tables have them, in the order of the shocks; one may come again.", required=True, many=True,
+        "Names of its records, as in tables, in the order of the shocks; repetitions are allowed.", required=True, many=True,
         distinct=False),
     "pause_s": Key(positive, "20.0",
         "Time between the last sample of a shock and the first one of the next, in which the ground is brought to rest.",
@@ -78,12 +78,12 @@ _SEQUENCE = {
         usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
     "polarity": Key(choice("+", "-"), '["+", "-"]',
         'Of each shock, or one for all: "-" reverses its horizontal component.', many=True, distinct=False),
-    "alone": Key(boolean, "true", "Whether its records are run on their own, too."),
+    "alone": Key(boolean, "true", "Whether its records are also run on their own."),
     **CONFIRM,
 }  # fmt: skip
 SEQUENCE = Section(("motions", "sequence"), (
     "Shocks as one motion: a main shock and its aftershocks, one after the other on the same pier. A sequence is selected and "
-    "scaled as one record; what each shock does stands in `shocks.csv` and in the report."
+    "scaled as one record; `shocks.csv` and the report have the results of each shock."
 ), _SEQUENCE, many=True, homes=(ShockSequence,), also=names({
     "records": "motions shocks", "pause_s": "gap interval rest", "factors": "scale scales",
 }))  # fmt: skip
@@ -117,7 +117,7 @@ def sequence(
     Parameters
     ----------
     motions : sequence of Motion
-        The shocks in their order; one may come again.
+        The shocks in their order; repetitions are allowed.
     name : str
         Of the sequence.
     pause : float

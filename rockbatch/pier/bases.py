@@ -169,12 +169,12 @@ class ElasticBase(_Traits):
     flight_limit_mm : float
         Height of the lower pivot in flight [mm] beyond which a run has a note: do the keys reach so far?
     zeta : float or None
-        ζ, 0..1: a dashpot beside each spring, C = ζ M ω_v, by its share of critical damping of the vertical vibration. It
-        takes the place of ε: a pivot that lands on a damped support is borne without an impulse.
+        ζ, 0..1: damping ratio of the vertical vibration, by a dashpot C = ζ M ω_v parallel to each spring. It
+        replaces ε: a pivot lands on a damped support without an impulse.
     friction : float, optional
-        Coefficient of the interface, if known: a run reports where its forces need more, and goes on (THEORY.md, Forces).
+        Coefficient of the interface, if known: a run reports if its forces need more, and continues (THEORY.md, Forces).
     restraints : tuple of Damper and Tendon
-        Devices between the pier and the ground beside its springs (THEORY.md, Dampers and tendons).
+        Devices between the pier and the ground, other than its springs (THEORY.md, Dampers and tendons).
     area_m2 : float, optional
         Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
 
@@ -221,7 +221,7 @@ class ElasticBase(_Traits):
 class YieldingBase(ElasticBase):
     """Two yielding springs that take no tension (Palmeri & Makris 2007).
 
-    Attributes, beside those of :class:`ElasticBase`
+    Attributes, in addition to those of :class:`ElasticBase`
     ----------
     eta : float
         Bearing capacity index η = δ_y/δ_s > 1.

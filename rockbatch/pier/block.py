@@ -135,10 +135,10 @@ class Pier(InNotebook):
     deck_height_m : float, optional
         Height above the pivots of the deck's centre [m], whose acceleration is computed; the top by default.
     initial_rotation_rad : float, default 0
-        θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and let go at the first sample of the
+        θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and released at the first sample of the
         motion, at rest (THEORY.md, Release from a rotation).
     flexural_period_s : float, optional
-        First period of the pier, with its deck, fixed at its base [s]. The pier is rigid whatever it is: it is held against the
+        First period of the pier, with its deck, fixed at its base [s]. It does not affect runs; it is compared with the
         period of rocking (:func:`rockbatch.statics`). ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
 
     Raises ``InputError`` with every impossible value.

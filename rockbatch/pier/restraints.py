@@ -60,7 +60,7 @@ class Damper(InNotebook):
         a of a viscous damper, 0.1 to 2.
     at : float, "left", "right", "deck" or None
         Offset from the centre of the base [m], positive to the right; None: one at each pivot. "deck": a horizontal one between
-        the deck, at ``Pier.deck``, and what stands beside it and goes with the ground; not of friction.
+        the deck, at ``Pier.deck``, and a structure next to it that moves with the ground; not of friction.
     brace : float
         λ = k b²/(M g R0) of the stiffness k of what the damper hangs on, in series with it; infinite if that is rigid. Of a
         viscous damper whose exponent is 1 at most, or a hysteretic one.
@@ -230,7 +230,7 @@ class Stop(InNotebook):
 @checked
 @dataclass(frozen=True)
 class DeckSpring(InNotebook):
-    """A horizontal spring between the deck and what stands beside it and goes with the ground: an abutment, a neighbouring span.
+    """A horizontal spring between the deck and a structure that moves with the ground: an abutment, a neighbouring span.
 
     With a gap, or on one side, the deck meets it as the base does a :class:`Stop`, and it follows the same law. On both sides
     and without a gap and a loss it is linear.
@@ -271,7 +271,7 @@ class DeckSpring(InNotebook):
     @classmethod
     @checked
     def of(cls, pier: Pier, stiffness_kN_m: float, gap_mm: float = 0.0, restitution: float = 1.0, **rest: Any) -> Self:
-        """Return a spring of the stiffness k [kN/m] with a gap [mm] beside the deck of ``pier``.
+        """Return a spring of the stiffness k [kN/m] with a gap [mm] at the deck of ``pier``.
 
         ``rest``: ``side``, ``height_m`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
         """

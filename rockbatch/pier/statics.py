@@ -68,10 +68,10 @@ FACTS = (
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Statics(Shown):
-    """Forces that a pier on its base bears, and its swings: quasi-static, or by the energy of free rocking.
+    """Static strength and rocking periods of a pier on its base: quasi-static, or by the energy of free rocking.
 
-    Of devices that are not alike on both sides the weaker direction counts, ``towards``. Accelerations are steady and horizontal,
-    without a vertical one; forces are over the weight, and moments about the pivot that bears more. Viscous dampers bear nothing.
+    If devices differ from side to side, the weaker direction counts, ``towards``. Accelerations are steady and horizontal; forces
+    are over the weight, and moments about the more heavily loaded pivot. Viscous dampers carry no static force.
 
     Attributes
     ----------
@@ -95,9 +95,9 @@ class Statics(Shown):
         Periods of small vertical vibration and of small rocking on both supports, elastic ones [s]; None on rigid ground. Tendons
         and springs at the deck have a part in the latter.
     stress_at_rest_MPa, stress_on_one_MPa : float or None
-        Bearing stress under a support at rest, and under that which bears all at lift-off; None without ``area_m2`` and a mass.
+        Bearing stress at rest, and of the support that carries everything at lift-off; None without ``area_m2`` and a mass.
     equilibria : Equilibria
-        The pier turned slowly up to overturning: :attr:`curve` as arrays.
+        The pier rotated slowly up to overturning: :attr:`curve` as arrays.
     swings_at : Swings
         Free rocking over its amplitude: :attr:`swings` as arrays.
 

@@ -49,26 +49,26 @@ _ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_sp
 _YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
 BASE_KEYS = {
     "restitution": Key(within(BOUNDS["restitution"]), "0.9",
-        "Factor on the angular velocity at an impact; Housner's, from the geometry, if it is not given.", many=True,
+        "Factor on the angular velocity at an impact; default: Housner's, from the geometry.", many=True,
         only={"base": ("rigid",)}),
     "beta": Key(positive, "40.0",
         "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
         only=_ON_SPRINGS),
     "stiffness_kN_m": Key(positive, "2.0e6",
-        "Stiffness K of one support, for a pier whose mass is known; or give `beta`.", many=True, only=_ON_SPRINGS),
+        "Stiffness K of one support, if the mass is given; or give `beta`.", many=True, only=_ON_SPRINGS),
     "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
         only=_ON_SPRINGS, usual=PIER["mass_t"].usual),
     "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
-        "Restitution ε of the pivot that lands, from 0 (it stays) to 1 (it bounces without loss).", many=True, only=_ON_SPRINGS),
+        "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True, only=_ON_SPRINGS),
     "zeta": Key(within(BOUNDS["zeta"]), "0.05",
-        "Dashpot beside each spring, as a share ζ of the critical damping of the vertical vibration; instead of `epsilon`.",
+        "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`.",
         many=True, only=_ON_SPRINGS),
     "kinematics": Key(choice(*WORDS["kinematics"], called=_CALLED["kinematics"]), '"first-order"',
-        "The paper's equations, \"first-order\", or those that hold for rotations of any size.", many=True, only=_ON_SPRINGS),
+        "The paper's equations, \"first-order\", or equations for rotations of any size.", many=True, only=_ON_SPRINGS),
     "eta": Key(within(BOUNDS["eta"]), "2.5",
         "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS),
     "yield_kN": Key(positive, "4.0e4",
-        "Yield force F_y of one support, for a pier whose mass is known; or give `eta`.", many=True, only=_YIELDS),
+        "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
         'Law of the supports: "bouc-wen", smooth, as in the paper; "epp", elastic and then perfectly plastic; or '
         '"hardening", loaded at first as "bouc-wen", and elastic below the greatest force borne so far.', many=True,
@@ -85,12 +85,12 @@ BASE_KEYS = {
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True),
     "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
-        "Area of one support, for the bearing stresses of the statics sheet; no run depends on it.", many=True,
+        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True,
         usual=Usual(1000.0, "m²: the largest footings of bridge piers have some 500")),
 }  # fmt: skip
 """Keys that describe a base; in a list each value is a case."""
 CASE = Section(("case",), (
-    "What the pier stands on. Write one for each foundation to compare. All keys but `name`, `base` and `confirm` may be "
+    "A foundation. Write one for each foundation to compare. All keys but `name`, `base` and `confirm` may be "
     "lists: every combination is a case."
 ), {
     "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),

@@ -35,7 +35,7 @@ from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 TOP = Section((), "", {
-    "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; the file's name if there is none."),
+    "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),
     "notes": Key(text, '"Soil class C."', "Free text for the report. Blank lines separate paragraphs."),
 }, also=names({
     "pier": "geometry structure column body", "motions": "groundmotion groundmotions records earthquakes accelerograms input",

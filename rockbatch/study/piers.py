@@ -17,7 +17,7 @@ _LENGTH = Usual(400.0, "m: the highest bridge piers reach some 300 m")
 _MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
 PIER = Section(("pier",), (
     "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
-    "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a pier of its own."
+    "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a separate pier."
 ), {
     "alpha": Key(within(BOUNDS["alpha"]), "0.13",
         "Slenderness α: the angle at a lower corner between the vertical and the line to the centre of mass, in radians. It "
@@ -39,11 +39,11 @@ PIER = Section(("pier",), (
     "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
         "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=_MASS),
     "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
-        "Height of the deck's centre above the pivots; `height_m` if it is not given.", many=True, usual=_LENGTH),
+        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=_LENGTH),
     "deck_inertia_t_m2": Key(not_negative, "0.0",
-        "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not turn.", many=True),
+        "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.", many=True),
     "top_m": Key(within(BOUNDS["top_m"]), "31.5",
-        "Height above the pivots at which drift is read; the highest point that is known if it is not given.", many=True,
+        "Height above the pivots at which drift is read; default: the highest known point.", many=True,
         usual=_LENGTH),
     "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
         "First period of the pier with its deck, fixed at its base. The pier is rigid in every run; the statics sheet holds this "
@@ -96,12 +96,12 @@ PIER = Section(("pier",), (
         "top_m: the deck of a frame keeps level, so all of it drifts as the tops of the columns do; leave it out"),
 ))  # fmt: skip
 PART = Section(("pier", "part"), (
-    "A part of a pier that is no uniform shaft, its centre on the axis. Write as many as there are, beside `width_m`."
+    "A part of a non-uniform pier, with its centre on the axis. Write one for each part, in addition to `width_m`."
 ), {
     "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=_MASS),
     "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
         required=True, many=True, usual=_LENGTH),
-    "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; 0 if it is not given.", many=True),
+    "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; default 0.", many=True),
     **CONFIRM,
 }, many=True)  # fmt: skip
 PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))

@@ -31,11 +31,11 @@ _KINDS = names({
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 _ON_BRACE = {"kind": ("viscous", "hysteretic")}
 
-DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write as many as there are.", {
+DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write one for each.", {
     "kind": Key(choice(*DAMPERS, called=_KINDS), '"friction"',
         "What its force depends on: the direction of the motion, a yielding displacement, or the speed.", required=True),
     "force_kN": Key(positive, "450.0",
-        "Force of a friction or hysteretic damper, for a pier whose mass is known; or give `f`.", many=True, only=_FORCE),
+        "Force of a friction or hysteretic damper, if the mass is given; or give `f`.", many=True, only=_FORCE),
     "f": Key(within(BOUNDS["f"]), "0.02", "Force of a friction or hysteretic damper over the weight.", many=True, only=_FORCE),
     "yield_mm": Key(positive, "5.0", "Yield displacement of a hysteretic damper.", many=True, only={"kind": ("hysteretic",)}),
     "coefficient_kN_s_m": Key(not_negative, "900.0",
@@ -43,7 +43,7 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
     "nu": Key(within(BOUNDS["nu"]), "0.5", "Coefficient of a viscous damper as C/(M p).", many=True, only=_VISCOUS),
     "exponent": Key(within(BOUNDS["exponent"]), "0.5", "Exponent of the speed of a viscous damper.", many=True, only=_VISCOUS),
     "brace_kN_m": Key(positive, "2.0e5",
-        "Stiffness of the brace in series with the damper, for a pier whose mass is known; or give `brace`. It is rigid "
+        "Stiffness of the brace in series with the damper, if the mass is given; or give `brace`. It is rigid "
         "if neither is given.", many=True, only=_ON_BRACE),
     "brace": Key(positive, "5.0", "Stiffness of its brace as λ = k b²/(M g R0).", many=True, only=_ON_BRACE),
     "at": Key(_OR_DECK, '"left"',
@@ -68,12 +68,12 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
 TENDON = Section(
     ("case", "tendon"), "An unbonded tendon between the pier and the ground, which takes tension only.", {
     "prestress_kN": Key(not_negative, "5000.0",
-        "Its prestress P0, for a pier whose mass is known; or give `psi`.", many=True),
+        "Its prestress P0, if the mass is given; or give `psi`.", many=True),
     "psi": Key(within(BOUNDS["psi"]), "0.5", "Prestress over the weight.", many=True),
     "stiffness_kN_m": Key(not_negative, "40000.0",
-        "Its stiffness k_t, for a pier whose mass is known; or give `lambda`.", many=True),
+        "Its stiffness k_t, if the mass is given; or give `lambda`.", many=True),
     "lambda": Key(not_negative, "1.0", "Stiffness as λ = k_t b²/(M g R0).", many=True),
-    "yield_kN": Key(positive, "9000.0", "Force at which it yields; it does not yield if this is not given.", many=True),
+    "yield_kN": Key(positive, "9000.0", "Force at which it yields; default: it does not yield.", many=True),
     "at": Key(_PLACE, "0.0",
         "Where it is: a pivot, or an offset [m] from the middle of the base; on the axis if it is not given."),
     **CONFIRM,
@@ -89,11 +89,11 @@ TENDON = Section(
 ))  # fmt: skip
 STOP = Section(
     ("case", "stop"), "A stop that limits how far the base lifts: a spring that is met when its place has risen by a gap.", {
-    "gap_mm": Key(not_negative, "100.0", "By how much its place rises until it is met.", required=True, many=True),
-    "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, for a pier whose mass is known; or give `lambda`.", many=True),
+    "gap_mm": Key(not_negative, "100.0", "Uplift of its position at contact.", required=True, many=True),
+    "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
     "lambda": Key(not_negative, "20.0", "Stiffness as λ = k b²/(M g R0).", many=True),
     "restitution": Key(within(BOUNDS["restitution"]), "0.6",
-        "What it gives back: the speed after a blow over that before, of a mass that hits it alone.", many=True),
+        "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True),
     "at": Key(_PLACE, '"left"',
         "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
     **CONFIRM,
@@ -104,11 +104,11 @@ DECK_SPRING = Section(
     ("case", "deck_spring"),
     "A horizontal spring between the deck and an abutment or a neighbouring span, which go with the ground; a damper there is a "
     '[[case.damper]] with `at = "deck"`.', {
-    "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, for a pier whose mass is known; or give `lambda`.", many=True),
+    "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
     "lambda": Key(not_negative, "0.2", "Stiffness as λ = k b²/(M g R0).", many=True),
-    "gap_mm": Key(not_negative, "50.0", "By how much the deck moves until it is met.", many=True),
+    "gap_mm": Key(not_negative, "50.0", "Displacement of the deck at contact.", many=True),
     "restitution": Key(within(BOUNDS["restitution"]), "0.6",
-        "What it gives back: the speed after a blow over that before, of a mass that hits it alone.", many=True),
+        "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True),
     "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
     "height_m": Key(positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."),
     **CONFIRM,

@@ -20,7 +20,7 @@ SUITE = Section(("suite",), "What holds for every check that does not say otherw
 }, also=names({"checks": "file rules"}))  # fmt: skip
 
 TOP = Section((), "", {
-    "title": Key(text, '"Checks of a stepping pier"', "Heading of the report and its tables; the file's name if there is none."),
+    "title": Key(text, '"Checks of a stepping pier"', "Heading of the report and its tables; default: the file's name."),
     "notes": Key(text, '"Limits as agreed."', "Free text for the report. Blank lines separate paragraphs."),
 })  # fmt: skip
 

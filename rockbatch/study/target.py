@@ -64,10 +64,10 @@ _EUROCODE = {
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
     "ag_g": Key(positive, "0.25", "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
         required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
-    "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; that of the ground type if it is not given."),
-    "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; that of the ground type if it is not given."),
-    "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; that of the ground type if it is not given."),
-    "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; that of the ground type if it is not given."),
+    "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; default: that of the ground type."),
+    "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; default: that of the ground type."),
+    "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; default: that of the ground type."),
+    "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; default: that of the ground type."),
 }  # fmt: skip
 _SHORT_AND_1_S = {
     "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods.",
@@ -80,19 +80,19 @@ _ASCE = {
     "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True),
 }
 _AASHTO = {
-    "as_g": Key(positive, "0.4", "Acceleration A_s of AASHTO at 0 s; this spectrum is not compared with its articles.",
+    "as_g": Key(positive, "0.4", "Acceleration A_s of AASHTO at 0 s; this spectrum has not been checked against its articles.",
         required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g")),
     **_SHORT_AND_1_S,
 }  # fmt: skip
 _NZS = {
     "subsoil": Key(choice(*NZS_1170_5), '"C"',
-        "Site subsoil class of NZS 1170.5; this spectrum is not compared with the standard.", required=True),
+        "Site subsoil class of NZS 1170.5; this spectrum has not been checked against the standard.", required=True),
     "hazard_factor": Key(positive, "0.4", "Hazard factor Z of NZS 1170.5.", required=True,
         usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)")),
     "return_period_factor": Key(positive, "1.3", "Return period factor R of NZS 1170.5, 1 at 500 years.",
         usual=Usual(2.0, "(2,500 years have 1.8)"), default=1.0),
     "fault_km": Key(not_negative, "8.0",
-        "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; beyond 20 km if it is not given."),
+        "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; default: beyond 20 km."),
 }  # fmt: skip
 _VERTICAL = {name: _EUROCODE[name] for name in ("type", "ag_g")} | {
     "avg_over_ag": Key(

@@ -96,7 +96,7 @@ class Clash(NamedTuple):
 
 
 CONFIRM = {
-    "confirm": Key(text, '["height_m"]', "Keys of this table whose values are far from usual and right all the same.", many=True)
+    "confirm": Key(text, '["height_m"]', "Keys of this table with unusual values that are correct.", many=True)
 }  # fmt: skip
 """The key by which a table confirms its values."""
 

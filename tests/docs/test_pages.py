@@ -95,6 +95,13 @@ def test_the_readme_stays_one_page_and_its_links_lead_somewhere():
     assert [link for link in re.findall(r"\]\(([\w./-]+)", text) if not (ROOT / link).exists()] == []
 
 
+def test_the_search_of_the_site_finds_frequent_questions_by_their_words():
+    page = (ROOT / "docs" / "pages" / "faq.md").read_text(encoding="utf-8")
+    headings = " ".join(re.findall(r"^### (.+)$", page, re.MULTILINE)).lower()
+    for word in ("jupyter", "parallel", "cluster", "units", "excel", "not decided", "failed", "cite", "cores"):
+        assert word in headings
+
+
 def test_the_examples_on_the_page_about_records_come_to_what_they_say(tmp_path, monkeypatch):
     (tmp_path / "motions").symlink_to(ROOT / "motions")
     monkeypatch.chdir(tmp_path)

@@ -56,7 +56,7 @@ HAZARD = Section(("fragility", "hazard"), (
         '"points": straight lines between the points in logarithms; "quadratic": one parabola through three points, or by least '
         "squares through more.", default="points"),
     "years": Key(positive, "[50, 100]", "Periods for which probabilities are given.", many=True, default=YEARS),
-    "source": Key(text, '"national model 2020, site class B"', "Where the curve is from, for the report."),
+    "source": Key(text, '"national model 2020, site class B"', "Source of the curve, for the report."),
 }, clashes=(
     Clash(("rate_per_year", "return_period_years"), "rate_per_year and return_period_years are given; keep one"),
     Clash(("file", "levels_g"), "file and levels_g are given; keep one"),
@@ -72,7 +72,7 @@ DISPERSION = Section(("fragility", "dispersion"), (
     "name": Key(text, '"modelling"', "What it is, for table and report.", required=True),
     "value": Key(Number("a number above 0 and at most 2", low=0.0, high=2.0, above=True), "0.3",
         "Standard deviation of the logarithm of the intensity.", required=True),
-    "source": Key(text, '"judgement: good model, no tests"', "Where the value is from, for the report."),
+    "source": Key(text, '"judgement: good model, no tests"', "Source of the value, for the report."),
 }, many=True, homes=(Dispersion,))  # fmt: skip
 
 

@@ -26,7 +26,7 @@ class StripeRecords:
 
 
 STRIPE = Section(("fragility", "stripe"), (
-    "A level with records of its own, as record selection gives them, such as by conditional spectra. Write one for each level, "
+    "A level with its own records, as from a selection by conditional spectra. Write one for each level, "
     "in rising order, in place of levels_g or levels_m_s."
 ), {
     "level_g": Key(positive, "0.4", "Level of PGA or Sa."),

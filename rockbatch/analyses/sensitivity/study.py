@@ -71,10 +71,10 @@ class SensitivitySpec:
 
 
 SENSITIVITY = Section(("sensitivity",), (
-    "What the answer depends on, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
+    "Which inputs matter, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
 ), {
     "statistic": Key(choice(*(name for name, kind in STATISTICS.items() if kind.evaluate and not kind.code)), '"median"',
-        "How the records are summed up."),
+        "Statistic over the records."),
     "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
     "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
         "Size N of the design: N (d + 2) points for d inputs, each under every record."),
@@ -122,10 +122,10 @@ def _choice(keys: Mapping[str, Key], name: str, example: str) -> dict[str, Key]:
 
 SPREADS = {
     "uniform": Section(("sensitivity", "uniform"),
-        "Inputs of which every value in a range is as likely as another: the least and the largest value.", _ranges("")),
+        "Uniform inputs: the smallest and the largest value.", _ranges("")),
     "log_uniform": Section(("sensitivity", "log_uniform"),
-        "Inputs that are as likely to be half as to be twice: the least and the largest value.", _ranges("", positive)),
-    "choice": Section(("sensitivity", "choice"), "Inputs with two values, both as likely.", {
+        "Log-uniform inputs: the smallest and the largest value.", _ranges("", positive)),
+    "choice": Section(("sensitivity", "choice"), "Inputs with two equally likely values.", {
         **_choice(CASE, "kinematics", '["first-order", "finite"]'),
         **_choice(CASE, "spring", '["bouc-wen", "epp"]'),
         "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),

@@ -114,7 +114,7 @@ def _map(regions: "pd.DataFrame", caption: str, note: str) -> Panel:
         if any(outcome in strip.outcomes for strip in shown):
             marks.append(Area(*_together(areas(shown, outcome)), look=Look("filled", colour), label=words))
     boundaries = [*inside(shown), *between(shown)]
-    marks.append(Polyline(*_together(boundaries), label="boundary; where there is no colour the pier stands"))
+    marks.append(Polyline(*_together(boundaries), label="boundary; white: the pier stays upright"))
     x = Axis("ω_p/p", float(shown[0].frequencies[0]), float(shown[-1].frequencies[-1]), about=8)
     y = Axis("a_p/(g tan α)", float(regions["low"].min()), float(regions["high"].max()), about=8)
     return Panel(x, y, marks, caption, note, width=420.0, height=256.0)

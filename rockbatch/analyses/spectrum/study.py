@@ -104,7 +104,7 @@ SPECTRUM = Section(("spectrum",), (
     Clash((INTENSITY,), f"{INTENSITY} = {{value}}: goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
         lacking=(SELF_SIMILAR,)),
 ))  # fmt: skip
-MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write as many as are wanted.", {
+MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write one for each.", {
     "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
     "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
     "gamma": Key(Number("a number above 1", low=1.0, above=True), "1.5",

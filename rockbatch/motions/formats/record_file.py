@@ -37,11 +37,11 @@ class ReadOptions:
         What the columns of text files are: "time", a component such as "000", "NS" or "up", or "-" (leave
         out).
     role : str or None
-        What components are whose direction nothing tells: "horizontal".
+        Role of components of unknown direction: "horizontal".
     sensitivity : float or None
         Counts per ``unit`` (per m/s² where no unit is stated) of MiniSEED and SAC files.
     layout : str or None
-        "wrapped": a text file without columns is one series that goes on from line to line.
+        "wrapped": a text file without columns is one series wrapped over lines.
     instead : frozenset of str
         Which of these a manifest states for this very file, in place of what it says itself.
 
