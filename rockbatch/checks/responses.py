@@ -19,20 +19,27 @@ _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
 
 class Response(NamedTuple):
-    """Name of a response, and the demands whose limits bound it, too."""
+    """Name of a response, the demands whose limits bound it, too, and its unit in tables with the factor to it."""
 
     words: str
     bounded_by: frozenset[str]
+    unit: str = "mm"
+    factor: float = 1e3
+
+    @property
+    def head(self) -> str:
+        """Return its name with the unit: "drift of the top [mm]"."""
+        return f"{self.words} [{self.unit}]" if self.unit else self.words
 
 
 RESPONSES = {
-    "theta_max_over_alpha": Response("rotation", PEAKS),
+    "theta_max_over_alpha": Response("rotation", PEAKS, "θ/α", 1.0),
     "top_drift_m": Response("drift of the top", PEAKS),
     "settlement_m": Response("mean settlement", _SETTLED),
-    "base_tilt_rad": Response("residual tilt", TILTS | {"toe_settlement_m"}),
-    "theta_res_rad": Response("residual rotation", TILTS),
+    "base_tilt_rad": Response("residual tilt", TILTS | {"toe_settlement_m"}, "mrad"),
+    "theta_res_rad": Response("residual rotation", TILTS, "mrad"),
     "heel_uplift_m": Response("uplift of the heel", PEAKS),
-    "ductility": Response("ductility", frozenset(("ductility",))),
+    "ductility": Response("ductility", frozenset(("ductility",)), "", 1.0),
 }
 """By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
 residual rotation follows from the tilt."""

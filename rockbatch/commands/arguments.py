@@ -172,6 +172,7 @@ COMMANDS = {
         {
             "directory": _FOLDER,
             "--rules": value(Path, "RULES.toml", "file with [[check]] tables, instead of the study's own"),
+            "--all": flag("print every verdict with its numbers, and what each check asks"),
         },
         "  checks.csv     a row for each verdict\n  report.html    again, with the verdicts",
     ),

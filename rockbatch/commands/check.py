@@ -12,17 +12,18 @@ from rockbatch.checks.answer import answer
 from rockbatch.checks.checking import verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
-from rockbatch.checks.responses import RESPONSES, in_words, worst_of_all, worst_of_cases
+from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
+from rockbatch.commands import scorecard
 from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
 from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
 from rockbatch.reporting import report as make_report
 from rockbatch.reporting import write_report
+from rockbatch.results.labelled import labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
-from rockbatch.results.rows import simulated, with_case
 
 WIDTH = 100
 WORST = 10
@@ -39,7 +40,7 @@ def main(arguments: argparse.Namespace) -> int:
     """Check results against rules; print and write the verdicts, and rewrite the report if it exists."""
     saved = open_results(arguments.directory)
     results = verdicts(saved, arguments.rules)
-    code = tell(results, write_verdicts(arguments.directory, results), saved)
+    code = tell(results, write_verdicts(arguments.directory, results), saved, arguments.all)
     if is_plain(arguments.directory / "report.html"):
         say(str(write_report(arguments.directory, saved=saved)))
     return code
@@ -56,8 +57,10 @@ def mark(verdict: str) -> str:
     return f"{shown(SIGNS[verdict], _PLAIN[verdict])} {_LOUD.get(verdict, verdict)}"
 
 
-def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
-    """Print the verdicts, which are in ``path``, and the answer; return the exit code.
+def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved, whole: bool = False) -> int:
+    """Print the scorecard and the answer; return the exit code.
+
+    ``path`` has the verdicts with all their numbers, which are printed before it on request, as is what the checks ask.
 
     It is 1 if a check fails or is not decided, if none applies, or if a file could not be used; a case without a check is no
     failed check.
@@ -65,11 +68,12 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
     many = len(verdicts) > wording.MOST
     applicable = [verdict.verdict != DOES_NOT_APPLY for verdict in verdicts if verdict.case]
     idle = bool(applicable) and not any(applicable)
-    show(summed_up(verdicts) if many else table(verdicts))
-    show("\n" + answered(verdicts, saved))
+    if whole:
+        show((summed_up(verdicts) if many else table(verdicts)) + "\n")
+    show(answered(verdicts, saved))
     count = wording.count_of(verdicts)
     say(", ".join(f"{n} {kind}" for kind, n in count.items() if n))
-    say(f"{path}{': all of them' if many else ''}")
+    say(f"{path}{': all of them' if whole and many else ''}")
     if idle:
         say("none of the checks applies to these cases")
     decided = count["pass"] and not (count["fail"] or count["not decided"] or idle)
@@ -77,43 +81,38 @@ def tell(verdicts: Sequence[Verdict], path: Path, saved: Saved) -> int:
 
 
 def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
-    """Return the answer with which the report begins, and the worst responses whether checked or not."""
+    """Return the scorecard, or the greatest responses without checks, and the sentences with which the report begins."""
     labels = {record["record"]: record.get("label") or record["record"] for record in saved.info["records"]}
-    runs = simulated(with_case(saved.peaks))
-    suites = runs_of_cases(runs, saved.info["cases"], len(saved.info["records"]))
-    scaled = len({suite.scale for suite in suites}) > 1
+    results, varied = labelled(saved.peaks, saved.info, saved.directory), saved.info["varied"]
+    suites = runs_of_cases(results.runs, saved.info["cases"], len(saved.info["records"]))
+    checked = any(verdict.case for verdict in verdicts)
 
-    def case_of(verdict: Verdict | CaseRuns) -> str:
-        values = dict(verdict.columns) | ({"scale": verdict.scale} if scaled else {})
-        return f"{verdict.case} {named(values, values.values())}".rstrip()
+    def case_of(row: Verdict | CaseRuns) -> str:
+        return results.named_case(row.case, row.columns, varied, row.scale)
 
-    worst = worst_of_cases(runs, saved.info["cases"])
-    weak, undamped = weak_supports(saved.info["cases"]), undamped_settlement(worst)
-    lines = [_filled(weak, 0, 2)] if weak else []
+    worst = worst_of_cases(results.runs, saved.info["cases"])
+    if checked:
+        table = scorecard.of_checks(verdicts, case_of, suites, worst)
+    else:
+        table = scorecard.of_responses(
+            worst, lambda response: results.named_case(response.case["case"], response.case["columns"], varied)
+        )
+    lines = [table, ""] if table else []
+    lines += [_filled(words, 0, 2) for words in (weak_supports(saved.info["cases"]),) if words]
     stations = stations_of(saved.info)
     for line in answer(
         verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
     ):
-        words = f"{line.text}: {line.cases}." if line.cases else f"{line.text}."
-        lines.append(_coloured(_filled(f"{mark(line.verdict).split()[0]} {words}", 0, 2), line.verdict))
-        lines += [_filled(_plain(detail), 4, 6) for detail in line.details]
-    if not any(verdict.case for verdict in verdicts):
-        lines.append("No limits were set: no response passes or fails.")
-    responses = {RESPONSES[name].words: response for name, response in worst_of_all(worst).items()}
-    longest = max(map(len, responses), default=0)
-    ended = sum(sum(suite.ended.values()) for suite in suites)
-    if ended and responses:
-        planned = sum(suite.runs for suite in suites)
-        lines.append(f"Worst of {planned - ended} of {planned} runs that end standing")
-    for words, response in responses.items():
-        columns = response.case["columns"]
-        hint = (
-            f"{labels.get(response.run['record'], response.run['record'])}, {response.case['case']} "
-            f"{named(columns, columns.values())}"
-        )
-        lines.append(_filled(f"{words:<{longest}}  {in_words(response)}: {hint.rstrip()}", 2, longest + 6))
-    if undamped:
-        lines.append(_filled(undamped, 2, 4))
+        words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
+        filled = _filled(f"{mark(line.verdict).split()[0]} {_plain(words)}", 0, 2)
+        lines.append(_coloured(filled, line.verdict))
+    ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))
+    if not checked:
+        lines.append("No limits were set: no response passes or fails; `rockbatch check --rules FILE` sets some.")
+        if ended:
+            lines.append(f"Greatest of {planned - ended} of {planned} runs that end standing.")
+    if undamped := undamped_settlement(worst):
+        lines.append(_filled(undamped, 0, 2))
     return "\n".join(lines)
 
 

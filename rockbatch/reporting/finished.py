@@ -16,7 +16,6 @@ from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.results.labelled import Labelled, by_pga, foundation, groups_of, labelled, pier_of
-from rockbatch.results.labels import quantity
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
 from rockbatch.results.rows import NOT_RUN, counts_as, simulated
@@ -109,16 +108,6 @@ class Finished(Contents, Labelled):
                 f"{self.saved.directory}: there is a history of case {case} that peaks.csv or run.json does not list; the "
                 "files belong to different runs; start `rockbatch run` again"
             ) from None
-
-    def named_case(self, case: str, columns: Mapping[str, Any], scale: float = 1.0) -> str:
-        """Return the short name of a case on its pier, and the scale of its motions if there are several."""
-        try:
-            series, pier = self.place(case, columns)
-            words = [self.series[series].label, self.piers[pier]]
-        except InputError:  # a case without a run
-            words = [case, *(quantity(key, value) for key, value in columns.items())]
-        scaled = f"motions scaled by {scale:g}" if self.runs["scale"].nunique() > 1 else ""
-        return ", ".join(filter(None, (*words, scaled)))
 
     def by_pga(self, names: Sequence[str]) -> list[str]:
         """Return ``names`` of records in order of peak ground acceleration, the weakest first."""

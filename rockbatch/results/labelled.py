@@ -43,6 +43,18 @@ class Labelled:
     pier_places: dict[Key, int]
     cases: dict[tuple[int, int], dict[str, Any]]
 
+    def named_case(self, case: str, columns: Mapping[str, Any], varied: Sequence[str], scale: float = 1.0) -> str:
+        """Return the short name of a case on its pier, and the scale of its motions if there are several.
+
+        ``columns`` maps the ``varied`` keys to values.
+        """
+        key, pier = foundation(case, columns, varied), pier_of(columns, varied)
+        words = [case, *(quantity(name, value) for name, value in columns.items())]  # a case without a run
+        if key in self.places and pier in self.pier_places:
+            words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
+        scaled = f"motions scaled by {scale:g}" if self.runs["scale"].nunique() > 1 else ""
+        return ", ".join(filter(None, (*words, scaled)))
+
 
 def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) -> Labelled:
     """Return the runs of peaks.csv with their places among the foundations and piers of run.json.

@@ -95,6 +95,7 @@ def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
     seen = python(copied, "-c", LOOK)
     assert "census" in seen.splitlines()[0] + seen
     assert " Census" in seen
+    (copied / "census.json").write_text("{}")
     draw = """
 from pathlib import Path
 from rockbatch.reporting.finished_analysis import Contents

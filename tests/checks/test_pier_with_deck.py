@@ -107,7 +107,7 @@ def test_every_place_counts_ten_records_of_five_stations(out, capsys):
 
 
 def test_the_terminal_says_the_same(out, capsys):
-    assert main(["check", str(out)]) == 1
+    assert main(["check", str(out), "--all"]) == 1
     printed = " ".join(capsys.readouterr().out.split())
     for found in rows(out / "checks.csv"):
         if found["check"] == MEASURED[0] and found["case"] == "pads":

@@ -21,11 +21,6 @@ from rockbatch.results.suite_statistics import reasons_of_failure
 
 LEAST_ERROR = 1e-6
 """Of α: smaller errors are given as this."""
-UNITS = {
-    "theta_max_over_alpha": ("θ/α", 1.0), "top_drift_m": ("mm", 1e3), "settlement_m": ("mm", 1e3), "base_tilt_rad": ("mrad", 1e3),
-    "theta_res_rad": ("mrad", 1e3), "heel_uplift_m": ("mm", 1e3), "ductility": ("", 1.0),
-}  # fmt: skip
-"""Units of the responses in the table, and factors to them."""
 DEVICES = {
     "damper": ("stroke_m", "stroke"), "tendon": ("yield_m", "plastic elongation"), "stop": ("deflection_m", "deflection"),
     "deck_spring": ("deflection_m", "deflection"),
@@ -78,15 +73,14 @@ def _rotation(of_case: "list[Worst]") -> float:
 
 
 def _head(name: str) -> Head:
-    unit, _ = UNITS[name]
     note = DEMANDS[name].words + (", of a rigid shaft" if name == "top_drift_m" else "")
-    return Head(f"{RESPONSES[name].words}{f' [{unit}]' if unit else ''}", ".3g", note)
+    return Head(RESPONSES[name].head, ".3g", note)
 
 
 def _response(finished: Finished, worst: Worst) -> Markup:
     """Return a greatest response, with the value in all its units and its record as a note."""
     said = f"{in_words(worst)}: {finished.place_of(worst.run)}, t = {number(float(worst.run['t_max_s']))} s"
-    return tag("span", number(worst.value * UNITS[worst.demand][1], ".3g"), title=said)
+    return tag("span", number(worst.value * RESPONSES[worst.demand].factor, ".3g"), title=said)
 
 
 def _heads_of(finished: Finished, kind: str) -> list[Head]:

@@ -61,7 +61,9 @@ def _line(line: Line) -> Markup:
 
 
 def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
-    return lambda row: finished.named_case(row.case, row.columns, row.scale) if row.case else wording.SUITE
+    return lambda row: (
+        finished.named_case(row.case, row.columns, finished.info["varied"], row.scale) if row.case else wording.SUITE
+    )
 
 
 def scorecard(finished: Finished) -> Markup:

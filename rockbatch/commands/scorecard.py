@@ -1,0 +1,79 @@
+"""The scorecard on the terminal: cases by checks, or the greatest responses of each case where nothing is checked."""
+
+import textwrap
+from collections.abc import Callable, Sequence
+
+from rockbatch.checks import Verdict
+from rockbatch.checks.coverage import CaseRuns
+from rockbatch.checks.responses import RESPONSES, Worst
+from rockbatch.checks.scorecard import Cell, scorecard
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
+from rockbatch.checks.wording import SIGNS
+from rockbatch.commands.streams import in_width, shown
+from rockbatch.common.grouping import grouped
+from rockbatch.reporting.markup import number
+
+MOST_COLUMNS, MOST_ROWS, OPEN_ROWS = 5, 12, 6
+"""Checks that stand though they pass in every case; cases that all stand, and of more those that do."""
+PLAIN = dict(zip(SIGNS.values(), "+x?-", strict=True)) | {"≤": "<=", "≥": ">=", "α": "alpha", "θ": "theta", "∞": "inf"}
+"""What stands for signs and letters that the terminal cannot show."""
+_WRAPPED = 13  # letters of a head before it goes on below
+
+Names = Callable[[Verdict | CaseRuns], str]
+
+
+def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRuns], worst: Sequence[Worst]) -> str:
+    """Return the scorecard as text: value, sign and share of the limit, a line for each case."""
+    card = scorecard(verdicts, case_of, runs, worst)
+    columns = card.open_columns(MOST_COLUMNS)
+    rest = [i for i in range(len(card.columns)) if i not in columns]
+    heads = [_head(card.columns[i].check, card.columns[i].limit) for i in columns]
+    told = any(row.verdict == DOES_NOT_APPLY or row.unlimited for row in card.rows)
+    rows = []
+    for row in card.rows:
+        passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in (row.cells[i] for i in rest))
+        cells = [_written(row.cells[i]) for i in columns]
+        more = [f"{SIGNS[PASS]} {passing} more" if passing else ""] if rest else []
+        rows.append([row.name, *cells, *more, *([row.in_words] if told else [])])
+    more_heads = [[""]] * (bool(rest) + told)
+    return _table([*heads, *more_heads], rows)
+
+
+def of_responses(worst: Sequence[Worst], case_of: Callable[[Worst], str]) -> str:
+    """Return the greatest responses of each case as text, the case with the least rotation first."""
+    names = [name for name in RESPONSES if any(response.demand == name for response in worst)]
+    rows = []
+    for case, of_case in grouped(worst, case_of).items():
+        values = {response.demand: response.value * RESPONSES[response.demand].factor for response in of_case}
+        cells = [number(values[name], ".3g") if name in values else "-" for name in names]
+        rows.append((values.get("theta_max_over_alpha", 0.0), [case, *cells]))
+    rows.sort(key=lambda row: row[0])
+    return _table([_head(RESPONSES[name].head, "") for name in names], [row for _, row in rows])
+
+
+def _head(words: str, limit: str) -> list[str]:
+    """Return the lines of a head: its words, and the limit below them."""
+    return [*textwrap.wrap(words, _WRAPPED, break_long_words=False), *filter(None, [limit])]
+
+
+def _written(cell: Cell | None) -> str:
+    if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
+        return SIGNS[DOES_NOT_APPLY]
+    return " ".join(filter(None, (cell.value, SIGNS[cell.verdict.verdict], cell.percent)))
+
+
+def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str:
+    """Return lines of cells below heads of several lines, the best cases first, within the terminal's width."""
+    depth = max(map(len, heads), default=0)
+    top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
+    kept = rows if len(rows) <= MOST_ROWS else rows[:OPEN_ROWS]
+    lines = [list(map(_showable, line)) for line in (*top, *kept)]
+    text = in_width(lines[0], lines[1:]) if top else ""
+    return text if len(kept) == len(rows) else f"{text}\n{len(kept)} of {len(rows)} cases, the best first"
+
+
+def _showable(cell: str) -> str:
+    """Return a cell as the terminal can show it."""
+    for sign, plain in PLAIN.items():
+        cell = cell.replace(sign, shown(sign, plain))
+    return cell.replace("\u00a0", " ")
