@@ -69,7 +69,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     peaks = simulated(saved.peaks)
     labels = finished.motions.labels
     names = {m.name: labels[m.name] for m in sorted(finished.motions.motions, key=lambda m: m.pga)}
-    show(summary(peaks, study.varied, names))
+    show(summary(peaks, study.varied, names) + "\n")
     for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
         say(warning)
     for warning in flexible(study):
