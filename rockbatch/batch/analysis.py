@@ -186,8 +186,9 @@ class AnalysisFolder:
             try:
                 yield journal
             except KeyboardInterrupt:
-                remark = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
-                self.listener.say(f"interrupted: {remark}; the same command continues from there")
+                if len(journal):
+                    remark = f"{count(len(journal), 'run')} are finished and kept in {journal.path}"
+                    self.listener.say(f"interrupted: {remark}; the same command continues from there")
                 raise
 
     def keep(self, file: str, digest: Mapping[str, str] | None = None) -> None:

@@ -255,11 +255,11 @@ def _execute_remaining(
             make_ready(study, listener)
             execute_runs(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
     except KeyboardInterrupt:
-        n_done = every - len(to_simulate(runs, requested, journal))
-        listener.say(
-            f"interrupted: {n_done} of {count(every, 'run')} are finished and kept in {journal.path}; "
-            "the same command continues from there"
-        )
+        if n_done := every - len(to_simulate(runs, requested, journal)):
+            listener.say(
+                f"interrupted: {n_done} of {count(every, 'run')} are finished and kept in {journal.path}; "
+                "the same command continues from there"
+            )
         raise
     return {"jobs": engine.jobs, "kept": n_finished}
 

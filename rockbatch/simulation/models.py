@@ -2,7 +2,7 @@
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -70,6 +70,10 @@ IDLE = Element(
     slope=0.0, give=0.0, start=0.0, returned=1.0, quickest=0.0, height=0.0, swing=0.0, way=1.0,
 )  # fmt: skip
 """An element without force in the middle of the base, from which others differ."""
+
+
+Line = Any
+"""A run as the core takes it, a NamedTuple of its system."""
 
 
 class Start(NamedTuple):
@@ -163,7 +167,7 @@ def system_of(m: Block | Springs) -> System:
 
 def line_of(
     m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float, start: Start
-) -> tuple[float, ...]:
+) -> Line:
     """Return a run as the core takes it: the model's numbers, then ``timing`` from ``dt`` to ``patience``."""
     if isinstance(m, Block):
         return block_lanes.line_of(m, start.theta, 0.0, *timing)

@@ -29,6 +29,7 @@ from rockbatch.pier import (
 )
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
+    Line,
     acceleration_at,
     elements,
     first_substeps,
@@ -119,11 +120,9 @@ def quiet_samples(quiet_s: float, dt: float) -> int:
     return math.ceil(quiet_s / dt - 1e-9)
 
 
-def _line(run: Run, substeps: int, quiet_s: float, first_row: int, wait: bool) -> tuple[float, ...]:
-    """Return a run as the core takes it: numbers only. Its motion begins at ``first_row`` of the ground."""
-    pier, base, motion = run.pier, run.base, run.motion
-    dt = float(motion.dt)
-    timing = (dt, substeps, quiet_samples(quiet_s, dt), first_row, motion.npts, patience(pier, dt) if wait else 0)
+def _line(pier: Pier, base: Base, dt: float, substeps: int, quiet_s: float, wait: bool) -> Line:
+    """Return a run as the core takes it: numbers only, but for the place of its motion in the ground."""
+    timing = (dt, substeps, quiet_samples(quiet_s, dt), 0, 0, patience(pier, dt) if wait else 0)
     read = readings(pier, base, dt) if wait else (0, 0)
     return line_of(model(pier, base), timing, read, prestress(pier, base), start_of(pier, base))
 
@@ -163,19 +162,23 @@ def written_runs(
     lines, ground = _lines(runs, substeps, quiet_s, wait)
     records = march(system, lines, ground, Stop().flag, substeps, locate, every_step, written, devices)
     histories = written.view(columns)[:, :, 0]
-    return [(_result(record), rows.view(np.recarray)) for record, rows in zip(records, histories, strict=True)]
+    return [(result, rows.view(np.recarray)) for result, rows in zip(_results(records), histories, strict=True)]
 
 
-def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tuple[list[tuple[float, ...]], Samples]:
+def _lines(runs: Sequence[Run], substeps: int, quiet_s: float, wait: bool) -> tuple[list[Line], Samples]:
     """Return runs as the core takes them, and the ground of all their motions."""
     first_rows: dict[int, int] = {}
     grounds: list[Samples] = []
+    of_piers: dict[tuple[int, int, float], Line] = {}
     lines = []
     for run in runs:
-        if id(run.motion) not in first_rows:
-            first_rows[id(run.motion)] = sum(map(len, grounds))
-            grounds.append(ground_of(run.motion))
-        lines.append(_line(run, substeps, quiet_s, first_rows[id(run.motion)], wait))
+        motion, pier = run.motion, (id(run.pier), id(run.base), run.motion.dt)
+        if id(motion) not in first_rows:
+            first_rows[id(motion)] = sum(map(len, grounds))
+            grounds.append(ground_of(motion))
+        if pier not in of_piers:
+            of_piers[pier] = _line(run.pier, run.base, float(motion.dt), substeps, quiet_s, wait)
+        lines.append(of_piers[pier]._replace(first_row=first_rows[id(motion)], npts=motion.npts))
     return lines, grounds[0] if len(grounds) == 1 else np.concatenate(grounds)
 
 
@@ -189,8 +192,8 @@ def _row_type(system: System, devices: int) -> np.dtype:
     ])  # fmt: skip
 
 
-def _result(record: np.record) -> Result:
-    return Result(*record.tolist()[: len(Result._fields)])
+def _results(records: np.recarray) -> list[Result]:
+    return [Result(*values) for values in records[list(Result._fields)].tolist()]
 
 
 def run_fixed(
@@ -230,13 +233,12 @@ def try_all(
         lines, ground = _lines([runs[i] for i in members], steps, quiet_s, wait)
         devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)
         records = march(system, lines, ground, stop.flag, steps, locate, False, NO_ROWS, devices)
-        for i, record in zip(members, records, strict=True):
-            if record.status != types.RUNNING:
-                result = _result(record)
+        for i, result, extremes in zip(members, _results(records), records.extremes, strict=True):
+            if result.status != types.RUNNING:
                 outcome = _outcome(runs[i], steps, result)
                 if devices is not None:
                     outcome = _held_at_rest(runs[i], result, devices, outcome).changed(**_use(runs[i], devices.use))
-                trials[i] = Trial(outcome, record.extremes)
+                trials[i] = Trial(outcome, extremes)
     return trials
 
 
