@@ -192,7 +192,7 @@ def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, cap
 
 
 def test_motions_of_an_empty_folder_have_no_table(tmp_path, capsys):
-    assert main(["motions", str(tmp_path)]) == 1
+    assert main(["motions", "--all", str(tmp_path)]) == 1
     assert capsys.readouterr() == ("", "0 records, 0 files not used, 0 left out; 0 stations\n")
 
 
@@ -200,7 +200,7 @@ def test_motions_shows_what_is_there_and_what_is_not_used(tmp_path, capsys):
     (tmp_path / "GOOD090.AT2").write_text(at2([0.1, -0.5, 0.2] * 50), encoding="latin-1")
     (tmp_path / "notes.doc").write_text("not a record", encoding="utf-8")
     (tmp_path / "records.zip").write_text("perhaps records", encoding="utf-8")
-    assert main(["motions", str(tmp_path)]) == 1
+    assert main(["motions", "--all", str(tmp_path)]) == 1
     shown = capsys.readouterr().out
     assert "GOOD090" in shown
     assert "0.500" in shown

@@ -105,6 +105,7 @@ _RUN: Arguments = {
 }  # fmt: skip
 _MOTIONS: Arguments = {
     "path": value(Path, "PATH", "files or folders (recursive)", nargs="+"),
+    "--all": flag("list every recording, what was done to it, and every file that is not used"),
     "--csv": value(Path, "FILE", "write the table to FILE too"),
     "--write-manifest": flag("draft PATH/motions.toml from what was found"),
     "--strict": flag("fail if any file cannot be used"),

@@ -63,7 +63,7 @@ def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
     shutil.copytree(ROOT / "motions" / "near_fault" / "imperialvalley1979_meloland", tmp_path / "records")
     (tmp_path / "pier.toml").write_text(study, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    assert main(["motions", "records"]) == 0
+    assert main(["motions", "--all", "records"]) == 0
     code = main(["run", "pier.toml"])
     assert (tmp_path / "reports" / "pier" / "report.html").is_file()
     capsys.readouterr()

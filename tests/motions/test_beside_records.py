@@ -151,7 +151,7 @@ def test_one_series_that_goes_on_from_line_to_line_is_read_if_that_is_stated(tmp
     assert 'state layout = "wrapped"' in only_reason(read_motions(tmp_path, options=stated))
     (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g", dt=0.01, layout="wrapped")).motions
     np.testing.assert_allclose(motion.horizontal, 9.81 * values, atol=1e-5)
-    assert main(["motions", str(tmp_path), "--unit", "g", "--dt", "0.01", "--layout", "wrapped"]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--unit", "g", "--dt", "0.01", "--layout", "wrapped"]) == 0
     assert str(npts) in capsys.readouterr().out
     lines = 'unit = "g"\ndt = 0.01\nlayout = "wrapped"\n'
     (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "quake_000.txt"\n{lines}')
@@ -174,7 +174,7 @@ def test_the_draft_of_a_building_addresses_its_channels_by_number(tmp_path):
     text = write_manifest(tmp_path).read_text(encoding="utf-8")
     assert "component = 12\n" in text
     assert state_of(read_motions(tmp_path)) == before
-    assert main(["motions", str(tmp_path)]) < 2
+    assert main(["motions", "--all", str(tmp_path)]) < 2
 
 
 def test_a_component_can_be_meant_by_its_number(tmp_path):
@@ -227,7 +227,7 @@ def test_what_lies_beside_records_is_left_out_and_the_exit_code_is_0(tmp_path):
     assert len(reasons) == 10
     assert "if it holds records, save its sheets as CSV" in reasons["records.xlsx"]
     assert "Volume 3, spectra" in reasons["a.V3"]
-    assert main(["motions", str(tmp_path)]) == 0
+    assert main(["motions", "--all", str(tmp_path)]) == 0
 
 
 def test_alone_they_were_meant_and_the_exit_code_is_1(tmp_path):
@@ -235,7 +235,7 @@ def test_alone_they_were_meant_and_the_exit_code_is_1(tmp_path):
         "Response and Fourier Spectra\nCorrected accelerogram\n" + csmip_text(1), encoding="latin-1"
     )
     assert "Volume 3, spectra" in only_reason(read_motions(tmp_path))
-    assert main(["motions", str(tmp_path)]) == 1
+    assert main(["motions", "--all", str(tmp_path)]) == 1
 
 
 def test_a_damaged_table_beside_records_was_meant(tmp_path):

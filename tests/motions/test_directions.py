@@ -278,9 +278,9 @@ def test_one_line_in_the_study_or_one_option_speaks_for_a_folder_of_files(tmp_pa
     assert [m.name for m in found.motions] == [f"rec{i}" for i in range(1, 8)]
     assert all("direction not known: horizontal, as stated" in m.notes for m in found.motions)
     assert [u.name for u in found.unusable] == ["known_UP"]  # what is known stays what it is
-    assert main(["motions", str(records)]) == 1
+    assert main(["motions", "--all", str(records)]) == 1
     assert "0 records, 8 files not used" in capsys.readouterr().err
-    assert main(["motions", str(records), "--role", "horizontal"]) == 1
+    assert main(["motions", "--all", str(records), "--role", "horizontal"]) == 1
     assert "7 records, 1 file not used" in capsys.readouterr().err
 
 

@@ -208,7 +208,7 @@ def test_an_unprocessed_record_has_a_finding(tmp_path, capsys):
     assert ["unprocessed" in whats(motion) for motion in motions] == [True, False, False, False]
     assert any(note.startswith("unprocessed: ") for note in motions[0].notes)
     (tmp_path / ".out").mkdir()
-    assert main(["motions", str(tmp_path), "--csv", str(tmp_path / ".out" / "t.csv")]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--csv", str(tmp_path / ".out" / "t.csv")]) == 0
     rows = list(csv.DictReader((tmp_path / ".out" / "t.csv").read_text().splitlines()))
     assert [row["processed"] for row in rows] == ["no", "yes", "yes", ""]
     assert rows[0]["check"] == "unprocessed"

@@ -206,7 +206,7 @@ def test_tables_keep_the_name_and_report_terminal_and_run_json_say_the_words(tmp
 
 def test_the_motions_command_lists_event_station_and_direction(tmp_path, capsys):
     write_at2(tmp_path, "CHAN24.AT2", wiggle(), title="IMPERIAL VALLEY, 10/15/79, MELOLAND, 270")
-    assert main(["motions", str(tmp_path), "--csv", str(tmp_path / "out.csv")]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--csv", str(tmp_path / "out.csv")]) == 0
     shown = capsys.readouterr().out
     assert "Imperial Valley 1979" in shown
     assert "Imperial Valley 1979, Meloland, 270 (CHAN24)" in shown

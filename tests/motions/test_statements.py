@@ -282,7 +282,7 @@ def test_columns_of_other_files_do_not_concern_one_whose_header_tells_its_own(tm
 
 def test_the_commands_options_are_for_files_that_state_none_too(tmp_path, capsys):
     write(tmp_path, "# SAMPLING INTERVAL (sec) : 0.01\n# unit: g", A)
-    assert main(["motions", str(tmp_path), "--dt", "0.005", "--unit", "cm/s2"]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--dt", "0.005", "--unit", "cm/s2"]) == 0
     shown = capsys.readouterr().out
     assert "x_N" in shown
     assert "unit g as the file states" in shown

@@ -235,7 +235,7 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
     (records / "bad.AT2").write_text("nothing")
     (records / "meta.json").write_text("{}")
     out = tmp_path / "table.csv"
-    assert main(["motions", str(records), "--csv", str(out)]) == 1
+    assert main(["motions", "--all", str(records), "--csv", str(out)]) == 1
     with out.open(encoding="utf-8", newline="") as file:
         good, bad, companion = csv.DictReader(file)
     assert list(good)[:13] == [
@@ -260,16 +260,16 @@ def test_the_table_is_a_csv_too_with_a_row_for_every_file(tmp_path, capsys):
 def test_strict_makes_a_bad_file_fatal_and_companions_harm_nobody(tmp_path):
     write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     (tmp_path / "meta.json").write_text("{}")
-    assert main(["motions", str(tmp_path), "--strict"]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--strict"]) == 0
     (tmp_path / "bad.AT2").write_text("nothing")
-    assert main(["motions", str(tmp_path)]) == 1
-    assert main(["motions", str(tmp_path), "--strict"]) == 2
+    assert main(["motions", "--all", str(tmp_path)]) == 1
+    assert main(["motions", "--all", str(tmp_path), "--strict"]) == 2
 
 
 def test_a_manifest_is_drafted_once(tmp_path, capsys):
     write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
-    assert main(["motions", str(tmp_path), "--write-manifest"]) == 0
+    assert main(["motions", "--all", str(tmp_path), "--write-manifest"]) == 0
     assert (tmp_path / "motions.toml").is_file()
-    assert main(["motions", str(tmp_path), "--write-manifest"]) == 2
+    assert main(["motions", "--all", str(tmp_path), "--write-manifest"]) == 2
     assert "is there already" in capsys.readouterr().err
-    assert main(["motions", str(tmp_path), str(tmp_path), "--write-manifest"]) == 2
+    assert main(["motions", "--all", str(tmp_path), str(tmp_path), "--write-manifest"]) == 2
