@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import textwrap
 from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
@@ -16,7 +15,7 @@ from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands import scorecard
-from rockbatch.commands.streams import aligned, coloured, say, show, shown, width
+from rockbatch.commands.streams import aligned, coloured, filled, say, show, shown, width
 from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
 from rockbatch.reporting import report as make_report
@@ -25,7 +24,6 @@ from rockbatch.results.labelled import labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
 
-WIDTH = 100
 WORST = 10
 """Number of verdicts printed in full if there are too many to print all."""
 
@@ -98,21 +96,20 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
             worst, lambda response: results.named_case(response.case["case"], response.case["columns"], varied)
         )
     lines = [table, ""] if table else []
-    lines += [_filled(words, 0, 2) for words in (weak_supports(saved.info["cases"]),) if words]
+    lines += [filled(words, 0, 2) for words in (weak_supports(saved.info["cases"]),) if words]
     stations = stations_of(saved.info)
     for line in answer(
         verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
     ):
         words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
-        filled = _filled(f"{mark(line.verdict).split()[0]} {_plain(words)}", 0, 2)
-        lines.append(_coloured(filled, line.verdict))
+        lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}", 0, 2), line.verdict))
     ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))
     if not checked:
         lines.append("No limits were set: no response passes or fails; `rockbatch check --rules FILE` sets some.")
         if ended:
             lines.append(f"Greatest of {planned - ended} of {planned} runs that end standing.")
     if undamped := undamped_settlement(worst):
-        lines.append(_filled(undamped, 0, 2))
+        lines.append(filled(undamped, 0, 2))
     return "\n".join(lines)
 
 
@@ -147,7 +144,7 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
             parts.append(_coloured(line, verdict.verdict))
             remarks = (wording.governing(verdict), verdict.counted, notes.about(verdict))
             if verdict.verdict != DOES_NOT_APPLY and any(remarks):
-                parts.append(_filled("; ".join(filter(None, remarks)), 6, 6))
+                parts.append(filled("; ".join(filter(None, remarks)), 6, 6))
         blocks.append("\n".join(parts))
     return blocks
 
@@ -194,13 +191,7 @@ def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
     ]
     lines += [*notes.common(), *wording.counting(verdicts)]
     lines += [f"{name}: {wording.unchecked(verdict)}." for name, verdict in rests.items()]
-    return "\n".join(["Checks", *(_filled(line, 2, 6) for line in lines)])
-
-
-def _filled(text: str, first: int, rest: int) -> str:
-    most = min(WIDTH, width() or WIDTH)
-    filled = textwrap.fill(text, most, initial_indent=" " * first, subsequent_indent=" " * rest)
-    return shown(filled, filled.encode("ascii", "replace").decode())
+    return "\n".join(["Checks", *(filled(line, 2, 6) for line in lines)])
 
 
 def _coloured(text: str, verdict: str) -> str:

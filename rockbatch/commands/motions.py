@@ -4,7 +4,6 @@ import argparse
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from textwrap import shorten
 from typing import Any
 
 from rockbatch.batch.listening import count
@@ -42,7 +41,6 @@ MOST_LINES = 60
 LEAST_STATIONS = 12
 MOST_GROUPS = 4
 """Reasons of each kind that are printed, each with an example; rare ones first."""
-_LONGEST = 20
 _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*[\d/][^\s;:,]*')
 """Names and numbers in a reason."""
 
@@ -106,8 +104,7 @@ def _of_station(name: str, motions: Sequence[Motion]) -> list[str]:
     first = motions[0].origin
     pga = max(motion.pga for motion in motions) / GRAVITY
     checks = dict.fromkeys(finding.what for motion in motions for finding in motion.findings)
-    names = [shorten(text, _LONGEST, placeholder="…") for text in (first.station or name, first.event or "")]
-    return [*names, str(len(motions)), f"{pga:.3f}", ", ".join(checks)]
+    return [first.short_station or name, first.short_event, str(len(motions)), f"{pga:.3f}", ", ".join(checks)]
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import sys
+import textwrap
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from typing import TextIO
@@ -17,6 +18,9 @@ from rockbatch.common.files import legible
 
 _COLOURS = re.compile(r"(\x1b\[(?:0|31|32|33)m)")
 """Colours of verdicts, by their ANSI numbers."""
+
+WIDTH = 100
+"""Letters of a line of prose where the output goes to no terminal, and the most on one."""
 
 _lost: dict[TextIO, OSError] = {}
 
@@ -42,7 +46,8 @@ def tell(stream: TextIO | None, text: str) -> None:
     """Print ``text`` to a stream, as far as it can be written."""
     if stream is None or stream in _lost:
         return
-    parts = _COLOURS.split(text) if stream.isatty() else [text]
+    terminal = stream.isatty()
+    parts = _COLOURS.split(_wrapped(text, shutil.get_terminal_size().columns)) if terminal else [text]
     safe = "".join(part if i % 2 else legible(part, keep="\n") for i, part in enumerate(parts))
     encoding = stream.encoding or "utf-8"
     try:
@@ -85,6 +90,29 @@ def width() -> int | None:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
+def filled(text: str, first: int, rest: int) -> str:
+    """Return prose in lines of the terminal's width, indented by ``first`` and ``rest`` columns."""
+    lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
+    return shown(lines, lines.encode("ascii", "replace").decode())
+
+
+def _in_lines(text: str, most: int, first: str, rest: str) -> str:
+    """Return prose in lines of at most so many letters, if its words are not longer: these stay whole, for who copies a path."""
+    return textwrap.fill(
+        text, most, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False
+    )
+
+
+def _wrapped(text: str, most: int) -> str:
+    """Return text whose lines are no longer than ``most``, so that the terminal breaks no word; further lines are indented."""
+    lines = []
+    for line in text.split("\n"):
+        indent = " " * (len(line) - len(line.lstrip(" ")))
+        long = len(_COLOURS.sub("", line)) > most
+        lines.append(_in_lines(line.lstrip(" "), most, indent, f"{indent}  ") if long else line)
+    return "\n".join(lines)
+
+
 def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
     """Return lines of cells as text, in columns of equal width: those at ``left`` flush left, the others right."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
@@ -94,13 +122,20 @@ def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> lis
     ]  # fmt: skip
 
 
-def in_width(head: Sequence[str], rows: Sequence[Sequence[str]], names: int = 1, left: Collection[int] = ()) -> str:
+def in_width(
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    names: int = 1,
+    left: Collection[int] = (),
+    most: int = sys.maxsize,
+) -> str:
     """Return a table as text: ``rows`` of cells below their heads.
 
     The first ``names`` columns, which name a row, and those at ``left`` are flush left, all others right. On a terminal,
-    columns that do not fit stand below the others, beside the names again; these take at most half of its width.
+    columns that do not fit stand below the others, beside the names again; these take at most half of its width. Elsewhere a line
+    has ``most`` letters.
     """
-    edge, left = width() or sys.maxsize, {*range(names), *left}
+    edge, left = width() or most, {*range(names), *left}
     lines = [
         [*(_shortened(cell, edge // (2 * names)) for cell in line[:names]), *line[names:]] for line in (head, *rows)
     ]

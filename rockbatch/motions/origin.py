@@ -42,7 +42,7 @@ class Origin:
     @property
     def label(self) -> str:
         """Event, station and direction, short enough to stand beside numbers; empty if the header has neither of the first."""
-        return Origin(self._short_event(), self._short_station(), self.direction).whole
+        return Origin(self.short_event, self.short_station, self.direction).whole
 
     @property
     def whole(self) -> str:
@@ -51,14 +51,17 @@ class Origin:
             return ""
         return ", ".join(filter(None, (self.event, self.station, self.direction)))
 
-    def _short_event(self) -> str:
+    @property
+    def short_event(self) -> str:
+        """Return the event, its middle left out if it is long."""
         if len(self.event) <= _EVENT:
             return self.event
         if _YEAR.match(self.event[-4:]):
             return f"{self.event[: _EVENT - 6].rstrip()}… {self.event[-4:]}"
         return f"{self.event[: _EVENT - 1]}…"
 
-    def _short_station(self) -> str:
+    @property
+    def short_station(self) -> str:
         """Return the station without the place of the event, and a long name without its first parts and what stands there."""
         place = self.event.partition(" ")[0]
         station = self.station.removesuffix(f" {place}") if place else self.station
