@@ -42,22 +42,22 @@ def answered_interrupts() -> Iterator[None]:
         rope.close()
         if watcher.is_alive():
             watcher.join()
+        bell.close()
 
 
 def _watch(bell: socket.socket) -> None:
     """Wait for signals until the other end is closed."""
-    with bell:
+    number = _next(bell)
+    while number not in (_END, signal.SIGINT):
         number = _next(bell)
-        while number not in (_END, signal.SIGINT):
-            number = _next(bell)
-        if number == signal.SIGINT:
-            number = _next(bell, QUICK_S)
-        if number == _LATE:
-            say("stopping, a second at most; what is finished is kept; again to stop now")
-            number = _next(bell, GRACE_S)
-        if number != _END:
-            say("rockbatch: interrupted")
-            os._exit(130)
+    if number == signal.SIGINT:
+        number = _next(bell, QUICK_S)
+    if number == _LATE:
+        say("stopping, a second at most; what is finished is kept; again to stop now")
+        number = _next(bell, GRACE_S)
+    if number != _END:
+        say("rockbatch: interrupted")
+        os._exit(130)
 
 
 def _next(bell: socket.socket, patience: float | None = None) -> int:
