@@ -179,7 +179,7 @@ def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys
         with pytest.raises(SystemExit) as ended:
             main(words)
         assert ended.value.code == 2
-        assert capsys.readouterr().err.rstrip().endswith(end)
+        assert capsys.readouterr().err.rstrip().removesuffix("; `rockbatch --help` says more").endswith(end)
 
 
 def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, capsys):
@@ -441,3 +441,53 @@ def test_too_little_memory_ends_in_a_sentence(tmp_path):
     assert done.returncode == 2
     assert "the memory of this process is limited to 410 MB" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "answer"),
+    [
+        ("chekc x", "rockbatch: there is no command chekc; did you mean check?"),
+        ("Run pier.toml", "rockbatch: there is no command Run; did you mean run?"),
+        ("zzz", "rockbatch: there is no command zzz; `rockbatch --help` says more"),
+        ("run", "rockbatch run: the following arguments are required: STUDY.toml; `rockbatch run --help` says more"),
+        ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
+        ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),
+        ("run empty", "rockbatch: empty: a folder; give a study file, such as pier.toml"),
+        (
+            "motions pier.toml",
+            "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]",
+        ),
+        (
+            "init --example nearfault x",
+            "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them",
+        ),
+    ],
+)
+def test_a_mistake_in_a_command_line_is_answered_in_one_line_with_what_was_meant(
+    words, answer, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    write_study(tmp_path, study_text()).rename(tmp_path / "pier.toml")
+    try:
+        code = main(words.split())
+    except SystemExit as exit_:
+        code = exit_.code
+    assert (code, capsys.readouterr().err) == (2, f"{answer}\n")
+
+
+@pytest.mark.parametrize(("words", "begin"), [("help", "usage: rockbatch [-h]"), ("help run", "usage: rockbatch run"),
+                                             ("check --list", "of every run: theta_max_over_alpha")])  # fmt: skip
+def test_help_and_lists_are_there_under_the_words_for_them(words, begin, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(words.split())
+    assert exit_.value.code == 0
+    assert capsys.readouterr().out.startswith(begin)
+
+
+def test_a_demand_that_does_not_exist_is_answered_in_a_line_with_the_command_that_lists_them(tmp_path, capsys):
+    check = {"name": "drift", "demand": "zzz", "at_most": 1, "reason": "x"}
+    study = write_study(tmp_path, study_text(check=[check]))
+    assert main(["run", str(study)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith('demand = "zzz": expected one that `rockbatch check --list` lists')

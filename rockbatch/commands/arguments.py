@@ -116,6 +116,20 @@ _MOTIONS: Arguments = {
     "--layout": {"choices": ("columns", "wrapped"), "help": "wrapped: one series continued from line to line"},
     "--sensitivity": {"type": float, "help": "counts per acceleration unit"},
 }
+
+
+class _Demands(argparse.Action):
+    """Lists what checks may ask for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
+        from rockbatch.commands.streams import filled, show
+        from rockbatch.quantities.catalogue import listed
+
+        for group, names in listed().items():
+            show(filled(f"{group}: {', '.join(names)}", 0, 2))
+        parser.exit()
+
+
 _FOLDER = value(Path, "DIR", "folder that `rockbatch run` has written")
 
 _FILES = """\
@@ -172,6 +186,7 @@ COMMANDS = {
         "hold finished results against design checks", "rockbatch check reports/pier", "commands.check.main",
         {
             "directory": _FOLDER,
+            "--list": {"action": _Demands, "nargs": 0, "help": "list the demands that a check can make, and exit"},
             "--rules": value(Path, "RULES.toml", "file with [[check]] tables, instead of the study's own"),
             "--all": flag("print every verdict with its numbers, and what each check asks"),
         },

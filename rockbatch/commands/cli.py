@@ -8,12 +8,13 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, NoReturn
 
 from rockbatch.commands.arguments import COMMANDS
 from rockbatch.commands.interrupts import answered_interrupts
 from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import AboutResults, InputError
+from rockbatch.common.grouping import closest
 from rockbatch.common.version import __version__
 
 EXIT_CODES = """exit codes:
@@ -23,11 +24,19 @@ EXIT_CODES = """exit codes:
   130  interrupted; what is finished is kept"""
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that answers a mistake in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        more = "" if message.endswith("?") else f"; `{self.prog} --help` says more"
+        self.exit(2, f"{self.prog}: {message}{more}\n")
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())
     first = "first steps:\n  rockbatch init mypier\n  cd mypier\n  rockbatch run pier.toml"
-    root = argparse.ArgumentParser(
+    root = _Parser(
         prog="rockbatch",
         usage="rockbatch [-h] [--version] COMMAND ...",
         description="Peak rotations of stepping bridge piers under a folder of ground motions.",
@@ -50,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             import argcomplete
 
             argcomplete.autocomplete(root)
-    parsed, unknown = root.parse_known_args(arguments)
+    parsed, unknown = root.parse_known_args(_with_command(sys.argv[1:] if arguments is None else arguments, root))
     if unknown:
         options = COMMANDS[parsed.command].arguments if parsed.command else ()
         words = [word.partition("=")[0] for word in unknown if word.startswith("--")]
@@ -63,6 +72,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with answered_interrupts():
         code = _exit_code(parsed)
     return code or int(is_lost(sys.stdout))
+
+
+def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Sequence[str]:
+    """Return the arguments, with "help" as the option that it means; a word that is no command ends with the one meant."""
+    word, *rest = arguments or [""]
+    if word in COMMANDS or not word or word.startswith("-"):
+        return arguments
+    if word.lower() in ("help", "version"):
+        return [*rest[:1], "--help"] if word.lower() == "help" else ["--version"]
+    meant = closest(word, COMMANDS)
+    root.error(f"there is no command {word}" + (f"; did you mean {meant}?" if meant else ""))
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 from rockbatch.common.analyses import doors
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import made_folder
+from rockbatch.common.grouping import closest
 
 FIRST = "first_study"
 """The example from which a new study begins."""
@@ -65,7 +66,9 @@ def example(name: str) -> Example:
     """Return the example of this name; raises ``InputError`` if there is none."""
     known = {item.name: item for item in examples()}
     if name not in known:
-        raise InputError(f"there is no example {name!r}; there are {', '.join(known)}")
+        meant = closest(name, known)
+        hint = f"did you mean {meant}? " if meant else ""
+        raise InputError(f"there is no example {name!r}; {hint}`rockbatch examples` lists them")
     return known[name]
 
 

@@ -51,6 +51,11 @@ def main(arguments: argparse.Namespace) -> int:
     options = ReadOptions(
         arguments.unit, arguments.dt, columns, arguments.sensitivity, arguments.role, arguments.layout
     )
+    for path in arguments.path:
+        if path.suffix == ".toml" and path.is_file():
+            raise InputError(
+                f"{path}: no record; give the folder of records, as a study has it in path under [motions]"
+            )
     if arguments.write_manifest:
         if len(arguments.path) > 1:
             raise InputError("--write-manifest: give one folder, which it is written into")

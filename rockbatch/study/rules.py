@@ -194,11 +194,13 @@ _CALLED = {
         "code": "standard norm", "literature": "paper book", "judgement": "judgment engineeringjudgement expert",
     }),
 }  # fmt: skip
+_DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
+
 CHECK = Section(("check",), (
     "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
 ), {
     "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
-    "demand": Key(choice(*DEMANDS, called=_CALLED["demand"]), '"theta_max_over_alpha"', "What is looked at.", required=True),
+    "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
     "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
         'How the records are summed up; "max" if it is not given.'),
     "above": Key(not_negative, "0.5",

@@ -143,13 +143,14 @@ class Choice:
     """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them.
 
     ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.words_meant`
-    takes them.
+    takes them. ``listed_by`` is the command that lists many options, in place of the list in messages.
     """
 
     options: tuple[Any, ...]
     own_words: str = ""
     also: Number | None = None
     called: Mapping[str, Any] = field(default_factory=dict)
+    listed_by: str = ""
 
     @property
     def words(self) -> str:
@@ -161,7 +162,8 @@ class Choice:
                 return option
         if self.also is not None and not isinstance(value, str):
             return self.also(value)
-        raise KindError(self.words, " or ".join(map(shown, self._meant(value))))
+        words = f"one that `{self.listed_by}` lists" if self.listed_by else self.words
+        raise KindError(words, " or ".join(map(shown, self._meant(value))))
 
     def _meant(self, value: Any) -> list[Any]:
         words = [option for option in self.options if isinstance(option, str)]

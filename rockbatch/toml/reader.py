@@ -409,6 +409,10 @@ def _values_meant(name: str, key: Key, value: Any) -> list[str]:
 def _unreadable(path: Path, error: OSError) -> str:
     if isinstance(error, FileNotFoundError):
         return f"{path}: no such file{nearby(path, str(path))}"
+    if path.is_dir():
+        inside = sorted(path.glob("*.toml"))[:3]
+        hint = f"did you mean {' or '.join(map(str, inside))}?" if inside else "give a study file, such as pier.toml"
+        return f"{path}: a folder; {hint}"
     return f"{path}: cannot be read: {error.strerror or error}"
 
 
@@ -418,5 +422,7 @@ def nearby(path: Path, written: str) -> str:
         names = os.listdir(path.parent)
     except OSError:
         return ""
-    nearest = closest(path.name, sorted(names))
+    nearest = next((name for name in (f"{path.name}.toml",) if name in names), None) or closest(
+        path.name, sorted(names)
+    )
     return f"; did you mean {(Path(written).parent / nearest).as_posix()}?" if nearest else ""
