@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -254,6 +255,24 @@ def test_completion_offers_the_commands_and_options_that_may_come_next(tmp_path)
 
     assert completed("rockbatch s") == ["statics", "spectrum", "sensitivity"]
     assert "--seconds" in completed("rockbatch accuracy --sec")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of Unix")
+def test_the_line_of_the_documentation_registers_the_completion():
+    bash, tool = shutil.which("bash"), Path(sys.executable).with_name("register-python-argcomplete")
+    line = 'eval "$(register-python-argcomplete rockbatch)"'
+    assert line in (Path(__file__).parents[1] / "docs/commands.md").read_text(encoding="utf-8")
+    if not (bash and tool.exists()):
+        pytest.skip("without argcomplete or bash")
+    path = f"{tool.parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [bash, "-c", f"{line}; complete -p rockbatch"],
+        env=os.environ | {"PATH": path},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert "_python_argcomplete" in done.stdout
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
