@@ -71,7 +71,9 @@ def test_nothing_is_overwritten_and_nothing_half_written(taken, tmp_path):
 
 
 def test_what_is_no_example_is_answered_with_those_that_are():
-    with pytest.raises(InputError, match=r"there is no example 'fig8'; there are first_study, .*fig7"):
+    with pytest.raises(
+        InputError, match=r"there is no example 'fig8'; did you mean fig\d\? `rockbatch examples` lists them"
+    ):
         copy("fig8", Path("mine"), "pier.toml")
 
 
