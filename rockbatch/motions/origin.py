@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from datetime import datetime
 from html import unescape
 
 from rockbatch.motions.orientation import Orientation
@@ -14,9 +15,9 @@ _STATE = re.compile(r", *[A-Z]{2,3}$")
 _YEAR = re.compile(r"(?<!\d)(?:19|20)\d\d(?!\d)")
 _SHORT_YEAR = re.compile(r"(?<!\d)\d{1,2}/\d{1,2}/(\d\d)(?!\d)")
 _STAMP = re.compile(r"((?:19|20)\d\d)(0[1-9]|1[0-2])([0-3]\d)[ _T-]?(?:([0-2]\d)([0-5]\d)(?:\d\d)?)?")
-_CENTURY = 30  # 29 is 2029, 30 is 1930: strong-motion records begin in 1933
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 _DAY = re.compile(rf"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)[a-z]*,? +({'|'.join(_MONTHS)}) +(\d{{1,2}}), *(\d{{4}})")
+_DATED = re.compile(r"\d{1,2}/\d{1,2}/(?:\d{4}|\d{2})(?!\d)(?: +\d{4}\b)?")
 _DISTANCE = re.compile(
     r"^\d+(?:\.\d+)? ?km (?:[NSEW]{1,3}|(?:(?:north|south|east|west)-?)+) (?:of|from) ", re.IGNORECASE
 )
@@ -98,6 +99,7 @@ def _event(text: str, date: str) -> str:
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     if day := _DAY.fullmatch(name):
         return f"{day[3]}-{_MONTHS.index(day[1]) + 1:02d}-{int(day[2]):02d}"
+    name = _DATED.sub("", name).strip(" ,-") or name
     name = _in_words(_DISTANCE.sub("", _STATE.sub("", name)))
     if stamp := _STAMP.fullmatch(name):
         return f"{stamp[1]}-{stamp[2]}-{stamp[3]}" + (f" {stamp[4]}:{stamp[5]}" if stamp[4] else "")
@@ -107,11 +109,11 @@ def _event(text: str, date: str) -> str:
 
 
 def _year(text: str) -> str:
-    """Return the year of a date: four digits, or the last two of 10/15/79."""
-    if year := _YEAR.search(text):
-        return year[0]
-    short = _SHORT_YEAR.search(text)
-    return f"{19 if int(short[1]) >= _CENTURY else 20}{short[1]}" if short else ""
+    """Return the year of a date, none after today: the last two digits of 10/15/79, before four digits that may be a time."""
+    today = datetime.now().year
+    if short := _SHORT_YEAR.search(text):
+        return str(2000 + int(short[1]) if 2000 + int(short[1]) <= today else 1900 + int(short[1]))
+    return next((year for year in _YEAR.findall(text) if int(year) <= today), "")
 
 
 TURKISH = str.maketrans("ÐÝÞðýþ", "ĞİŞğış")

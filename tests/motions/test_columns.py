@@ -315,3 +315,27 @@ def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, w
         at_once = read()
         patch.setattr(table, "_even_rows", lambda *_: [])
         assert read() == at_once
+
+
+@pytest.mark.parametrize(
+    ("head", "dt"),
+    [
+        ("Zeit [s]; Beschleunigung [g]", 0.01), ("Tiempo (s), Aceleracion (g)", 0.01), ("Zaman (s)\tIvme (g)", 0.01),
+        ("時間 (s), 加速度 (g)", 0.01), ("Temps, acc (g)", 0.01), ("Zeit (ms), acc (g)", 1e-5), ("time_s, acc_g", 0.01),
+        ("Tiempo, a(g)", 0.01), ("時間, acc_g", 0.01), ("t [s], a_cm_s2", 0.01), ("time (s), Acc. (cm/s^2)", 0.01),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("meant_for_others", [None, 0.02])
+def test_a_column_in_seconds_is_time_in_any_language_and_a_label_may_end_with_its_unit(
+    tmp_path, head, dt, meant_for_others
+):
+    """Its own times win over the step that the study states for other files."""
+    between = next(sign for sign in ";\t," if sign in head)
+    scale = 981.0 if "cm" in head else 1.0
+    rows = [f"{0.01 * i:.2f}{between} {scale * a:.6f}\n" for i, a in enumerate(wiggle(300, scale=0.3))]
+    (tmp_path / "x_NS.csv").write_text(f"{head}\n{''.join(rows)}", encoding="utf-8")
+    (motion,) = read_motions(
+        tmp_path, options=ReadOptions(dt=meant_for_others), vertical=False, confirmed=["*"]
+    ).motions
+    assert motion.dt == pytest.approx(dt)
+    assert motion.pga == pytest.approx(9.81 * max(abs(a) for a in wiggle(300, scale=0.3)), rel=1e-5)

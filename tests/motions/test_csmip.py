@@ -40,6 +40,13 @@ def pairs_text(unit: str = "G/10") -> str:
     return "\n".join([*lines[:27], *in_columns(pairs, "7.3f", 10), "/&  ----------  END OF DATA", ""])
 
 
+@pytest.mark.parametrize(("clock", "second"), [("03:19: 7.5", 7.5), ("03: 9:37.5", -600 + 37.5), (" 3:19: 7.5", 7.5)])
+def test_a_time_is_read_with_the_blanks_that_fortran_writes(clock, second):
+    text = csmip_text(2).replace("03:19:37.5", clock)
+    found = read(text, "STA.V2")
+    assert {component.start for component in found} == {START - 37.5 + second}
+
+
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
 @pytest.mark.parametrize("modern", [True, False])
 @pytest.mark.parametrize("volume", [1, 2])

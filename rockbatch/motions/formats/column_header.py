@@ -51,6 +51,10 @@ _COUNT = re.compile(
 )
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIMES = {"time", "times", *(f"{t}{unit}" for t in ("t", "time", "") for unit in ("sec", "secs", "second", "seconds"))}
+_TIMES |= {"zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
+_SUFFIXED = re.compile(
+    r"(?P<label>a[gxyz]?|acc(?:el|eleration)?|.*[_ -]acc(?:el|eleration)?)_(?P<unit>g|gal|[cm]?m_?s2)", re.IGNORECASE
+)
 _PERIODS = {"PERIOD", "PERIODS", "TN"}
 _FREQUENCIES = {"FREQ", "FREQS", "FREQUENCY", "FREQUENCIES", "HZ", "OMEGA"}
 _PER_SECOND = {"hz", "1/s", "rad/s", "rad/sec"}
@@ -71,9 +75,9 @@ class Column:
 
     @property
     def is_time(self) -> bool:
-        """Return whether it holds times."""
-        key = re.sub(r"[^a-z]", "", self.label.lower())
-        return key in _TIMES or (key in ("t", "ts") and seconds_in(self.unit or "") is not None)
+        """Return whether it holds times: by its name, or, whatever that is, by a unit of time; periods are none."""
+        key = re.sub(r"[\W\d_]", "", self.label.lower())
+        return key in _TIMES or (seconds_in(self.unit or "") is not None and not self.is_abscissa)
 
     @property
     def may_be_time(self) -> bool:
@@ -123,11 +127,11 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
 
     ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``.
     """
-    numbered = {int(m["at"]): Column(_tidy(m["label"]), m["unit"]) for line in header if (m := _NUMBERED.match(line))}
+    numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):
         return [numbered[i + 1] for i in range(width)]
     for line in reversed(header):
-        labelled = [Column(_tidy(match["label"]), match["unit"]) for match in _LABELLED.finditer(line)]
+        labelled = [_column(match) for match in _LABELLED.finditer(line)]
         if len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"'):  # "PGA (g): 0.5" is no label
             return labelled
     return None
@@ -160,10 +164,18 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 
 def _labels_of(line: str) -> list[list[Column]]:
     """Return the columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
-    words = [Column(_tidy(match["label"]), match["unit"]) for match in _WORD.finditer(line)]
+    words = [_column(match) for match in _WORD.finditer(line)]
     fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
     by_words = [] if _WORD.sub("", line).strip(" \t,;") else [words]
-    return [*by_words, [Column(_tidy(match["label"]), match["unit"]) for match in fields]]
+    return [*by_words, [_column(match) for match in fields]]
+
+
+def _column(match: re.Match[str]) -> Column:
+    """Return the column of a label and its unit, which may stand at the end of the label: acc_g, acc_cm_s2."""
+    label, unit = match["label"].strip('"'), match["unit"]
+    if unit is None and (suffixed := _SUFFIXED.fullmatch(label)):
+        label, unit = suffixed["label"], re.sub("_?s2$", "/s2", suffixed["unit"])
+    return Column(_tidy(label), unit)
 
 
 def speaks_of_spectra(header: Sequence[str]) -> str:

@@ -13,7 +13,7 @@ from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series
 from rockbatch.motions.formats.fixed_width import number_in, one_after_another
-from rockbatch.motions.formats.header_lines import layout, line_at, moment_of, past_mark, read_header
+from rockbatch.motions.formats.header_lines import CLOCK, layout, line_at, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.renadic import is_renadic
@@ -22,7 +22,7 @@ from rockbatch.motions.origin import origin_of
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _TITLE = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
 _DAY = r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4}|\d{2})"
-_CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?) *(?:UTC|GMT|\(GPS\)|\(Q=|$)"
+_CLOCK = rf"{CLOCK} *(?:UTC|GMT|\(GPS\)|\(Q=|$)"
 _TEXT = layout(  # in the lines that Volumes 1 and 2 have in common
     (
         6,

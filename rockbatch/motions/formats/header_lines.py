@@ -12,6 +12,9 @@ _YEAR_FIRST = re.compile(r"(?P<year>\d{4})[-/. ](?P<month>\d{1,2}|[A-Z]{3,})[-/.
 _DAY_FIRST = re.compile(
     r"(?P<day>\d{1,2})(?:[-/. ]| DEL? )(?P<month>\d{1,2}|[A-Z]{3,})(?:[-/., ]| DEL? )+(?P<year>\d{4})(?!\d)", re.ASCII
 )
+CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>[ \d]\d):(?P<second>[ \d]\d(?:\.\d{1,6})?)"
+"""Pattern of a time of day; Fortran writes "03:16: 8.0"."""
+
 _MONTHS = {name: i for i, names in enumerate(
     ("JAN ENE", "FEB", "MAR", "APR ABR", "MAY", "JUN", "JUL", "AUG AGO", "SEP SET", "OCT", "NOV", "DEC DIC"), start=1
 ) for name in names.split()}  # fmt: skip

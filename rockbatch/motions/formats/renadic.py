@@ -8,7 +8,7 @@ same words in line 12, digitised from film at uneven times, are read as well.
 from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, one_after_another
-from rockbatch.motions.formats.header_lines import layout, moment_of, past_mark, read_header
+from rockbatch.motions.formats.header_lines import CLOCK, layout, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.time_steps import from_pairs
@@ -21,13 +21,12 @@ _PAIRS = "UNITS OF UNCOR ACCEL ARE SEC AND"
 _LENGTH = r"RECORD LENGTH\s*=\s*(?P<length>[0-9.]{1,12})"
 _MAX = r"(?:.*?MAX\s*=\s*(?P<peak>[-+]?[0-9]{0,5}\.[0-9]{1,6})\s+G\b)?"
 _DAY = r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4})"
-_CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:\.\d{1,6})?)"
 _TEXT = layout(
     (0, r"UNCORRECTED ACCELEROGRAM DATA", "UNCORRECTED ACCELEROGRAM DATA, after the last declared value"),
     (6, r"CHAN\s+[0-9]{1,3}:\s*(?P<label>[^(]*?)\s*(?:\(|$)", "CHAN  1: L"),
     (10, rf"NO\. OF POINTS\s*=\s*(?P<npts>[0-9]{{1,9}})\s+{_LENGTH}", "NO. OF POINTS = … RECORD LENGTH = … SEC"),
     (11, rf"{_PAIRS}\s+(?P<unit>[A-Z0-9/]+){_MAX}", f"{_PAIRS} G/10"),
-    (3, rf"(?a)TRIGGER TIME:\s*{_DAY}\s+{_CLOCK}", ""),
+    (3, rf"(?a)TRIGGER TIME:\s*{_DAY}\s+{CLOCK}", ""),
 )
 _NOT_SET = "1980-1-1"  # the date of a recorder whose clock nobody set
 
