@@ -1,6 +1,7 @@
 """One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
 
 import re
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -16,6 +17,8 @@ from rockbatch.motions.orientation import Orientation, is_clock, orientation_of,
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 
 _SAME_PEAK = 1e-4  # relative: half of the last of five digits, of 1.0000
+_NOTED, _GROSS = 0.05, 0.25
+"""Relative differences up to which a stated peak is remarked, and beyond which the record waits."""
 _PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")
 
 
@@ -93,6 +96,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         raise InputError(f'component "{recording.label}": {error}') from None
     acceleration = recording.values * factor
     series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
+    peak = _peak_differs(recording, factor, file.gravity)
     return Component(
         name=name,
         dt=recording.dt,
@@ -108,8 +112,8 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         processed=recording.processed,
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
-        notes=recording.notes,
-        findings=tuple(_peak_differs(recording, factor, file.gravity)),
+        notes=(*recording.notes, *([peak.text] if peak and not peak.what else [])),
+        findings=(peak,) if peak and peak.what else (),
     )
 
 
@@ -120,11 +124,12 @@ def _in_metres(series: Series | None) -> Samples | None:
     return series[0] * factor
 
 
-def _peak_differs(recording: Recording, factor: float, gravity: float) -> list[Finding]:
+def _peak_differs(recording: Recording, factor: float, gravity: float) -> Finding | None:
     """Return that the samples do not have the peak that the header states, with their offset or without it.
 
     ``factor`` brings samples into m/s². They may be off by a unit of the last digit of the stated peak, and by a part in
-    ten thousand, since some formats print five digits. A unit that is not understood states nothing.
+    ten thousand, since some formats print five digits. By up to :data:`_NOTED` it is remarked, without ``what``, beyond
+    :data:`_GROSS` the record waits. A unit that is not understood states nothing.
     """
     text, unit = recording.stated_peak
     number = _PRINTED.fullmatch(text.strip())
@@ -133,7 +138,7 @@ def _peak_differs(recording: Recording, factor: float, gravity: float) -> list[F
     except ValueError:
         number = None
     if number is None:
-        return []
+        return None
     power = int(number["power"] or 0)
     stated, printed = (
         abs(float(number["number"])) * scale * 10.0**power,
@@ -142,10 +147,11 @@ def _peak_differs(recording: Recording, factor: float, gravity: float) -> list[F
     samples = factor * (recording.values if recording.as_read is None else recording.as_read)
     peaks = [float(np.abs(samples - offset).max(initial=0.0)) for offset in (0.0, samples.mean())]
     if any(abs(peak - stated) <= printed + _SAME_PEAK * peak for peak in peaks):
-        return []
+        return None
     nearest = min(peaks, key=lambda peak: abs(peak - stated)) / scale
+    apart = abs(nearest * scale - stated) / max(min(nearest * scale, stated), sys.float_info.min)
     unit = unit or recording.unit
-    message = (
-        f"its header states a peak of {text.strip()} {unit}, and its samples have {nearest:.6g} {unit}: check its scale"
-    )
-    return [Finding("peak", message, gross=True)]
+    message = f"its header states a peak of {text.strip()} {unit}, and its samples have {nearest:.6g} {unit}"
+    if apart <= _NOTED:
+        return Finding("", message)
+    return Finding("peak", f"{message}: check its scale", gross=apart > _GROSS)
