@@ -33,6 +33,8 @@ _SIGNIFICANT = (
 _SAME_STEP = 1e-3  # relative
 _SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
 _NO_FACTOR, _GROSS_FACTOR = 0.005, 0.05  # relative: values of g, and rounding; what has to be confirmed
+_UNITS, _SAME_UNIT = (9.81, 10.0, 98.1, 100.0, 981.0, 1000.0, 9810.0), 0.003
+"""Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
 _SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of ∫a² dt
 _SPREAD, _BLUR = 0.1, 0.05  # of the significant duration, and s: how far the times of these shares may differ in copies
@@ -71,7 +73,8 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     Sets are ranked as wholes (:func:`_ranks`), so that the components of a station come from one instrument. What a
     manifest wants (``use = true``) is always used. Copies that differ by a factor, or in their peaks, are named in the
     findings of the one that is used; where neither plausibility nor a file's name tells which factor is right, it has to
-    be confirmed. Copies by a factor under other names stay, since suites are scaled on purpose, and say so.
+    be confirmed. Copies by a factor under other names stay, since suites are scaled on purpose, and say so; if the factor is
+    that of a unit, both have to be.
     """
     components, below = without_boreholes(components)
     pairs, scaled = _pairs(components)
@@ -96,8 +99,13 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, copy_by_factor in ((i, components[j]), (j, components[i])):
             factor = _factor(copy_by_factor, components[k])
-            text = f"{copy_by_factor.source} has the same samples times {factor:.4g}; both are used, and count as one record"
-            findings.setdefault(k, []).append(Finding("factor", text))
+            assert factor is not None  # so they are found
+            text = f"{copy_by_factor.source} has the same samples times {factor:.4g}"
+            if _is_unit(factor):
+                text += ": a unit, which one of them states wrongly; check which of them is right"
+            else:
+                text += "; both are used, and count as one record"
+            findings.setdefault(k, []).append(Finding("factor", text, gross=_is_unit(factor)))
     remaining = [
         replace(component, findings=(*component.findings, *findings[i])) if i in findings else component
         for i, component in enumerate(components)
@@ -411,6 +419,12 @@ def _factor(a: Component, b: Component) -> float | None:
     if abs(factor - 1.0) <= _NO_FACTOR or np.abs(first - factor * second).max() > _SAME_SHAPE * np.abs(first).max():
         return None
     return factor or None
+
+
+def _is_unit(factor: float) -> bool:
+    """Return whether copies differ by what one unit has of another, as m/s² and g do."""
+    apart = abs(math.log(abs(factor)))
+    return any(abs(apart - math.log(unit)) < _SAME_UNIT for unit in _UNITS)
 
 
 def _reason(copy: Component, used: Component, factor: float | None) -> str:

@@ -87,6 +87,25 @@ def test_where_nothing_tells_which_factor_is_right_it_is_asked_for(tmp_path):
     assert motion.source == "two.AT2"
 
 
+@pytest.mark.parametrize(
+    ("factor", "waits"), [(9.81, True), (9.80665, True), (100.0, True), (-9.81, True), (2.0, False), (9.5, False)]
+)
+def test_of_copies_a_unit_apart_under_other_names_neither_is_used_until_it_is_said_which_is_right(
+    tmp_path, factor, waits
+):
+    """0.089 g and 0.874 g: in one of the files m/s² are called g."""
+    small = 0.02 * wiggle(60)
+    write_at2(tmp_path, "one_000.AT2", small, title="EVENT, 1/17/1994, ONE, 000")
+    write_at2(tmp_path, "two_000.AT2", factor * small, title="EVENT, 1/17/1994, TWO, 000")
+    found = read_motions(tmp_path, vertical=False)
+    assert len(found.unusable) == 2 * waits
+    assert len(found.motions) == 2 * (not waits)
+    if waits:
+        assert all("a unit, which one of them states wrongly" in unusable.reason for unusable in found.unusable)
+        (right,) = read_motions(tmp_path, vertical=False, confirmed=["one_000"]).motions
+        assert right.source == "one_000.AT2"
+
+
 def test_a_sound_copy_is_used_instead_of_one_in_a_wrong_unit(tmp_path):
     """In gal, but called g: 90 g, more intense than the sound one, and refused."""
     write_at2(tmp_path, "gal.AT2", 981.0 * wiggle(60), title=title("0"))
