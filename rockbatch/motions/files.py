@@ -15,6 +15,7 @@ _COMPANIONS = {
     "text about the records": ".json .md .rst .pdf .doc .docx .htm .html .log .toml .yml .yaml .bib .tex .geojson .kml .kmz .url "
     ".cff .ini .cfg",
     "a spreadsheet, which is not opened; if it holds records, save its sheets as CSV (UTF-8)": ".xls .xlsx .xlsm .ods",
+    "a file of the operating system": ".db .lnk",
     "a picture": ".png .jpg .jpeg .gif .svg .tif .tiff .ps .eps",
     "a program": ".py .m .ipynb .r .sh",
     "the velocity of a record": ".vt2 .vel",

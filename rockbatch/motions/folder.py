@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Literal
 
 import numpy as np
@@ -212,9 +212,16 @@ def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
 
 
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
-    """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them."""
+    """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them.
+
+    Those that belong to no station are left out if records lie in a folder below, too.
+    """
     components = [reading for reading in readings if isinstance(reading, Component)]
-    folders = {(_folder(component), station) for component in components for station in ("", component.sensor.number)}
+    folders = {(_folder(component), component.sensor.number) for component in components}
+    for folder in {_folder(component) for component in components}:
+        folders |= {
+            (str(above).removeprefix("."), "") for above in (PurePosixPath(folder), *PurePosixPath(folder).parents)
+        }
     return [
         LeftOut(reading.name, reading.source, f"no record: {reading.reason}")
         if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders

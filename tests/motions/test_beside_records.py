@@ -230,6 +230,21 @@ def test_what_lies_beside_records_is_left_out_and_the_exit_code_is_0(tmp_path):
     assert main(["motions", "--all", str(tmp_path)]) == 0
 
 
+def test_notes_above_the_folders_of_records_and_files_of_the_system_are_no_failure(tmp_path):
+    write_at2(tmp_path / "event" / "station", "x.AT2", wiggle(60), title="EVENT, 1/17/1994, STATION, 000")
+    notes = "Received in 2019.\nand it was cold.\n"
+    for name in ("notes.txt", "event/notes.txt"):
+        (tmp_path / name).write_text(notes)
+    (tmp_path / "Thumbs.db").write_bytes(b"\xd0\xcf\x11\xe0")
+    found = read_motions(tmp_path)
+    assert (len(found.unusable), len(found.left_out)) == (0, 3)
+    assert main(["motions", str(tmp_path)]) == 0
+    elsewhere = tmp_path / "event" / "other"
+    elsewhere.mkdir()
+    (elsewhere / "notes.txt").write_text(notes)  # beside no record, and below none
+    assert [file.source for file in read_motions(tmp_path).unusable] == ["event/other/notes.txt"]
+
+
 def test_alone_they_were_meant_and_the_exit_code_is_1(tmp_path):
     (tmp_path / "a.V3").write_text(
         "Response and Fourier Spectra\nCorrected accelerogram\n" + csmip_text(1), encoding="latin-1"
