@@ -339,3 +339,40 @@ def test_a_column_in_seconds_is_time_in_any_language_and_a_label_may_end_with_it
     ).motions
     assert motion.dt == pytest.approx(dt)
     assert motion.pga == pytest.approx(9.81 * max(abs(a) for a in wiggle(300, scale=0.3)), rel=1e-5)
+
+
+SHAKEN = [f"{a:.5f}" for a in wiggle(80, scale=0.3)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# acceleration in g\n80 0.02\n" + "\n".join(SHAKEN),
+        "# acceleration in g\n80 0.02\n" + "\n".join(" ".join(SHAKEN[i : i + 8]) for i in range(0, 80, 8)),
+        "# acceleration in g, dt = 0.02 s\n" + "\n".join(f"{a} \\" for a in SHAKEN),
+        "EL CENTRO\n# time(s) NS(g)\n" + "\n".join(f"{0.02 * i:.2f} {a}" for i, a in enumerate(SHAKEN)) + "\n***\n",
+    ],
+    ids=["count and step over a column", "count and step over rows", "backslashes", "an end of stars"],
+)
+def test_a_table_as_textbooks_and_programs_pass_it_on_is_read_whole(tmp_path, text):
+    (tmp_path / "x_000.txt").write_text(text)
+    motion = one(tmp_path)
+    assert motion.dt == 0.02
+    np.testing.assert_allclose(motion.horizontal, 9.81 * np.array(list(map(float, SHAKEN))), rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [79, 81])
+def test_a_count_over_a_column_that_is_not_its_own_is_no_count(tmp_path, count):
+    (tmp_path / "x_000.txt").write_text(f"# acceleration in g\n{count} 0.02\n" + "\n".join(SHAKEN))
+    assert "found 1 numbers; expected 2" in reason(tmp_path)
+
+
+def test_columns_under_the_suffix_of_a_format_are_told_to_be_called_text(tmp_path):
+    rows = "".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN))
+    (tmp_path / "x_000.AT2").write_text(rows)
+    assert "if it holds columns of numbers, call it .txt" in reason(tmp_path)
+    (tmp_path / "x_000.AT2").rename(tmp_path / "x_000.txt")
+    read = read_motions(
+        tmp_path, options=ReadOptions(unit="g", columns=("time", "000")), vertical=False, confirmed=["*"]
+    )
+    assert read.motions[0].npts == len(SHAKEN)

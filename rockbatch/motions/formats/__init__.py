@@ -157,4 +157,7 @@ def _not_recognised(file: RecordFile) -> str:
         return f"not a {names} file but a zip archive, such as an Excel workbook: export it as CSV (UTF-8)"
     if b"\x00" in file.data[:HEAD]:
         return f"not a {names} file, as its suffix {file.path.suffix} says: binary data, or text to be saved as UTF-8"
-    return f"not a {names} file, as its suffix {file.path.suffix} says: its header is another one"
+    return (
+        f"not a {names} file, as its suffix {file.path.suffix} says: its header is another one; if it holds columns of numbers, "
+        "call it .txt, and state unit and columns as of any table"
+    )

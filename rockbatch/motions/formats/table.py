@@ -23,6 +23,8 @@ _PIECE = 10_000  # lines that are read at once
 _TOUCHING = re.compile(  # with points, unlike a date such as 2010-11-14; possessive: digits may end one number or begin the next
     r"\s*+(?:[-+]?\d*+\.\d++(?:[EDed][-+]?\d++)?+\s*+)++"
 )
+_END = re.compile(r"[*=/&-]+")  # of a table, in a line of its own
+_CONTINUED = "\\ \t"  # what some programs put behind each line
 _SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 
@@ -39,7 +41,7 @@ def read_table(text: str, wrapped: bool = False, named: bool = True) -> tuple[li
     header: list[str] = []
     remainder: list[float] = []
     rows, row_lines, width, end = array("d"), array("q"), 0, 0
-    lines = lines_of(text)
+    lines = [line.rstrip(_CONTINUED) for line in lines_of(text)] if "\\" in text else lines_of(text)
     separators = _separators(text, lines)
     for i, line in enumerate(lines):
         if i < end:  # of the rows that were read at once
@@ -56,9 +58,13 @@ def read_table(text: str, wrapped: bool = False, named: bool = True) -> tuple[li
         elif row and len(row) < width and not any(map(str.strip, lines[i + 1 :])):
             remainder = row
         elif row:
+            if len(rows) == 2 and (counted := _counted(lines, row_lines[0], rows, wrapped, named)):
+                return counted
             raise _refused(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
+                if _END.fullmatch(stripped) and not any(map(str.strip, lines[i + 1 :])):
+                    break
                 raise _refused(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
@@ -79,6 +85,18 @@ def read_table(text: str, wrapped: bool = False, named: bool = True) -> tuple[li
             f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
     return header, np.append(table.ravel(), remainder).reshape(-1, 1) if wrapped else table
+
+
+def _counted(
+    lines: Sequence[str], place: int, numbers: Sequence[float], wrapped: bool, named: bool
+) -> tuple[list[str], Samples] | None:
+    """Return header and table if the line at ``place``, of two ``numbers``, is count and step of all that follow, else None."""
+    npts, dt = numbers
+    if npts != int(npts) or npts < 2 or not 0.0 < dt < 1.0:
+        return None
+    said = f"# NPTS = {npts:.0f}, DT = {dt:.12g} s"
+    header, table = read_table("\n".join([*lines[:place], said, *lines[place + 1 :]]), wrapped, named)
+    return (header, table) if table.size == npts else None
 
 
 def _refused(lines: list[str], reason: str) -> InputError:
