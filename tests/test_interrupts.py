@@ -11,13 +11,14 @@ from studies import RIGID, study_text, write_study
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 
 IN_C_CODE = """
-import hashlib, signal, sys
+import hashlib, signal, sys, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
 import rockbatch.batch.running
 from rockbatch.commands import cli, interrupts
 
 def compile_for_minutes(*_):  # as LLVM does: Python hears of no signal meanwhile
-    print("compiling", file=sys.stderr, flush=True)
+    # by another thread, once this one is in there
+    threading.Timer(0.3, print, ["compiling"], {{"file": sys.stderr, "flush": True}}).start()
     hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)
 
 rockbatch.batch.running.make_ready = compile_for_minutes

@@ -636,7 +636,7 @@ def test_a_table_without_runs_is_refused():
     ("asked", "problem"),
     [
         ({"demand": "theta_max"}, 'demand = "theta_max": did you mean "theta_max_rad" or "theta_max_over_alpha"?'),
-        ({"demand": "curvature"}, 'demand = "curvature": expected one of'),
+        ({"demand": "curvature"}, 'demand = "curvature": expected one that `rockbatch check --list` lists'),
         ({"statistic": "average"}, 'statistic = "average": did you mean "mean"?'),
         ({"flight": "ignore"}, 'flight = "ignore": expected one of "infinite"'),
         ({"at_most": None}, "at_most is missing"),

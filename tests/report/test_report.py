@@ -120,7 +120,7 @@ def test_values_of_a_list_become_labels_and_foundations_differ_in_shape_and_colo
     ]
     text = report(tmp_path, cases=cases, varied=("beta", "eta"))
     entries = re.findall(r'<li data-of="case"[^>]*>.*?<span>(.*?)</span>', text.replace("\u00a0", " "))
-    assert [entry.split(" – ")[1] for entry in entries] == [f"soil: β = {beta:g}, η = {eta:g}" for beta, eta in grid]
+    assert [entry.split(" – ")[1] for entry in entries] == [f"β = {beta:g}, η = {eta:g}" for beta, eta in grid]
     looks = [marks_of(index) for index in range(len(SHAPES) * COLOURS)]
     assert len(set(looks)) == len(looks)
     assert len({look.shape for look in looks[:7]}) == len({look.colour for look in looks[:7]}) == 7

@@ -136,7 +136,7 @@ def test_a_list_of_frictions_is_a_case_each_and_the_table_and_the_report_say_whi
     assert [case["parameters"].get("friction") for case in results.info["cases"]] == [0.1, 0.9, 0.9]
     assert results.info["units"]["base_shear_m_s2"] == "m/s^2"
     page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
-    assert page.headings.index("Forces") == page.headings.index("Every run") + 1
+    assert page.headings.index("Forces") > page.headings.index("Every run")
     slides = (results.peaks["friction_demand"] > results.peaks["friction"]).sum()
     assert slides == 1
     assert "1 run asks more friction than the interface has: the pier would slide" in told
