@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 from rockbatch.checks import Verdict
 from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import RESPONSES, Worst
-from rockbatch.checks.scorecard import Cell, scorecard
+from rockbatch.checks.scorecard import MOST_ROWS, OPEN_ROWS, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS
 from rockbatch.commands.streams import in_width, shown
 from rockbatch.common.grouping import grouped
 from rockbatch.reporting.markup import number
 
-MOST_COLUMNS, MOST_ROWS, OPEN_ROWS = 5, 12, 6
-"""Checks that stand though they pass in every case; cases that all stand, and of more those that do."""
+MOST_COLUMNS = 5
+"""Checks that stand though they pass in every case."""
 PLAIN = dict(zip(SIGNS.values(), "+x?-", strict=True)) | {"≤": "<=", "≥": ">=", "α": "alpha", "θ": "theta", "∞": "inf"}
 """What stands for signs and letters that the terminal cannot show."""
 _WRAPPED = 13  # letters of a head before it goes on below
