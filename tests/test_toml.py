@@ -129,6 +129,7 @@ def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
         ("alpha = .13\n", 1, "write alpha = 0.13"),
         ("eta = [5., 3.0]\n", 1, "write eta = [5.0, 3.0]"),
         ("vertical = True\n", 1, "write vertical = true"),
+        ("vertical = True   # as they come\n", 1, "write vertical = true;"),
         ('path = "C:\\data"\n', 1, 'write path = "C:/data"'),
         ("alpha =\n", 1, "the value is missing"),
         ("[pier\nalpha = 1\n", 1, "write [pier]"),

@@ -123,7 +123,8 @@ def _pair_slip(correct: Callable[[str, str], str]) -> Slip:
     def slip(line: str, sections: Sequence[Section]) -> Iterator[str]:
         pair = _PAIR.fullmatch(line)
         if pair:
-            yield correct(pair["key"], pair["value"])
+            value, quoted = pair["value"], '"' in pair["value"] or "'" in pair["value"]
+            yield correct(pair["key"], value if quoted else value.partition("#")[0].rstrip())
 
     return slip
 
