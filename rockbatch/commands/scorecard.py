@@ -16,7 +16,7 @@ from rockbatch.reporting.markup import number
 MOST_COLUMNS = 5
 """Checks that stand though they pass in every case."""
 PLAIN = dict(zip(SIGNS.values(), "+x?-", strict=True)) | {"≤": "<=", "≥": ">=", "α": "alpha", "θ": "theta", "∞": "inf"}
-"""What stands for signs and letters that the terminal cannot show."""
+"""Replacements for signs and letters that the terminal cannot show."""
 _WRAPPED = 13  # letters of a head before it goes on below
 
 Names = Callable[[Verdict | CaseRuns], str]
@@ -28,14 +28,14 @@ def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRu
     columns = card.open_columns(MOST_COLUMNS)
     rest = [i for i in range(len(card.columns)) if i not in columns]
     heads = [_head(card.columns[i].check, card.columns[i].limit) for i in columns]
-    told = any(row.verdict == DOES_NOT_APPLY or row.unlimited for row in card.rows)
+    remarked = any(row.verdict == DOES_NOT_APPLY or row.unlimited for row in card.rows)
     rows = []
     for row in card.rows:
         passing = sum(cell is not None and cell.verdict.verdict == PASS for cell in (row.cells[i] for i in rest))
         cells = [_written(row.cells[i]) for i in columns]
         more = [f"{SIGNS[PASS]} {passing} more" if passing else ""] if rest else []
-        rows.append([row.name, *cells, *more, *([row.in_words] if told else [])])
-    more_heads = [[""]] * (bool(rest) + told)
+        rows.append([row.name, *cells, *more, *([row.in_words] if remarked else [])])
+    more_heads = [[""]] * (bool(rest) + remarked)
     return _table([*heads, *more_heads], rows)
 
 

@@ -19,7 +19,7 @@ from rockbatch.pier import (
     restraint_of,
 )
 from rockbatch.pier.plausibility import wrong_restraints
-from rockbatch.results.labels import plain
+from rockbatch.results.labels import DEVICE_SYMBOLS, plain
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
@@ -34,13 +34,6 @@ _PREFERRED = {
     "lambda": "stiffness_kN_m",
 }
 """Keys without units, and the equivalent ones with units, for a pier whose mass is known."""
-_WORDS = {
-    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", ""),
-    "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
-    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
-    "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
-}  # fmt: skip
-
 _NAMED = {"stop": "lift stop", "deck_spring": "deck spring"}
 _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
@@ -88,14 +81,14 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
             values[key] = getattr(restraint, field) * divisor
     power = values.pop("exponent", 1.0) if "coefficient_kN_s_m" in values else 1.0
     words = f"{kind} damper" if isinstance(restraint, Damper) else _NAMED.get(kind, kind)
-    names = _WORDS | _OF_STOP if restraint.what in _NAMED else _WORDS
+    names = DEVICE_SYMBOLS | _OF_STOP if restraint.what in _NAMED else DEVICE_SYMBOLS
     numbers = [_number(*names[key], value, power) for key, value in values.items() if value < float("inf")]
     return ", ".join([f"{words} {_place(restraint)}", *numbers])
 
 
 def _number(symbol: str, unit: str, value: float, power: float) -> str:
-    if symbol == "C":
-        unit = "kN s/m" if power == 1.0 else f"kN (s/m)^{power:g}"
+    if symbol == "C" and power != 1.0:
+        unit = f"kN (s/m)^{power:g}"
     return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
 
 

@@ -35,21 +35,11 @@ SYMBOLS = {
     "area_m2": ("area", "m²"),
 }
 DEVICE_SYMBOLS = {
-    "force_kN": ("F", "kN"),
-    "f": ("f", ""),
-    "coefficient_kN_s_m": ("C", "kN s/m"),
-    "nu": ("ν", ""),
-    "exponent": ("exponent", ""),
-    "yield_mm": ("uy", "mm"),
-    "brace_kN_m": ("kb", "kN/m"),
-    "brace": ("λ", ""),
-    "prestress_kN": ("P0", "kN"),
-    "psi": ("ψ", ""),
-    "stiffness_kN_m": ("k", "kN/m"),
-    "lambda": ("λ", ""),
-    "yield_kN": ("Py", "kN"),
-    "gap_mm": ("gap", "mm"),
-}
+    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", "kN s/m"),
+    "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
+    "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
+    "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
+}  # fmt: skip
 """Symbols and units of the keys of devices, whose varied values have names such as damper_1_force_kN."""
 _OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
 
