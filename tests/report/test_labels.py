@@ -58,3 +58,15 @@ def test_each_case_is_called_in_its_own_way(tmp_path):
     stiff = {"name": "other", "base": "elastic", "stiffness_kN_m": 1.5e6}
     names = labels(tmp_path, soft, stiff)
     assert [label.replace("\u00a0", " ") for label in names] == ["one: β = 30", "other: K = 1.5 × 10⁶ kN/m"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("damper_1_coefficient_kN_s_m", 900.0, "C = 900 kN s/m"), ("damper_2_force_kN", 450.0, "damper 2: F = 450 kN"),
+        ("tendon_1_psi", 0.5, "ψ = 0.5"), ("deck_spring_2_gap_mm", 20.0, "deck spring 2: gap = 20 mm"),
+        ("damper_1_kind", "viscous", "kind viscous"), ("beta", 40.0, "β = 40"), ("yield_kN", 45e3, "Fy = 45,000 kN"),
+    ],
+)  # fmt: skip
+def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
+    assert quantity(key, value).replace("\u00a0", " ") == words
