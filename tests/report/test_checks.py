@@ -184,6 +184,12 @@ def test_checks_that_pass_everywhere_are_counted_beyond_the_seventh_and_what_fai
     assert len(row) == 1 + 9
 
 
+def test_beside_checks_the_greatest_responses_say_of_which_runs_they_are(tmp_path):
+    fell = {(FIG7[0][0], "1"): FELL}
+    shown = page(tmp_path, verdict("1", "pass"), verdict("2", "fail", ratio=1.2), changes=fell)
+    assert "Greatest values of 11 of 12 runs that end standing; the record of each is its note." in shown.text
+
+
 def test_small_limits_stand_in_millimetres_with_the_digits_that_tell(tmp_path):
     """Three digits, and more where they would make a demand look like its limit."""
     more = {"unit": "m", "limit": 0.05, "check": "settlement", "demand": "settlement_m"}

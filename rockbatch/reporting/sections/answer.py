@@ -42,7 +42,9 @@ def section(finished: Finished) -> Markup:
 
 def responses_beside_checks(finished: Finished) -> Markup:
     """Return the greatest responses of each case, whatever is checked; empty without checks, since they are the answer then."""
-    return responses(finished) if any(verdict.case for verdict in finished.verdicts) else Markup("")
+    if not any(verdict.case for verdict in finished.verdicts):
+        return Markup("")
+    return join(responses(finished), tag("p", _standing(finished), class_="legend"))
 
 
 def responses(finished: Finished) -> Markup:
@@ -149,8 +151,7 @@ def _without_a_result(finished: Finished) -> Iterator[Markup]:
 def _notes(finished: Finished, checked: bool) -> Iterator[object]:
     """Yield what belongs to the scorecard: what a value is, the error of peaks, and where remarks are."""
     if not checked:
-        standing = finished.of_all(int((finished.runs["status"] == "ok").sum()), "end standing")
-        yield f"Greatest values of {standing}; the record of each is its note. "
+        yield _standing(finished)
         yield "θ/α = 1: the pier alone stands on its edge on rigid ground. "
         bases = {str(case["base"]) for case in finished.info["cases"]}
         if bases == {"rigid"}:
@@ -167,6 +168,12 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
         yield join(
             " ", tag("a", f"{counted(noted, 'run')} {'has' if noted == 1 else 'have'} remarks", href="#peaks"), "."
         )
+
+
+def _standing(finished: Finished) -> str:
+    """Return of which runs the greatest values are."""
+    standing = finished.of_all(int((finished.runs["status"] == "ok").sum()), "end standing")
+    return f"Greatest values of {standing}; the record of each is its note. "
 
 
 def _error(finished: Finished) -> str:
