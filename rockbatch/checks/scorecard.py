@@ -148,11 +148,5 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
 
 
 def _number(value: float, limit: float = math.nan) -> str:
-    """Return a value in three significant digits, in more if it would look the same as a limit that it is not."""
-    if not math.isfinite(value):
-        return wording.number(value)
-    if abs(value) < ROUNDING * abs(limit):
-        return "0"
-    digits = next((n for n in range(3, 10) if value == limit or f"{value:.{n}g}" != f"{limit:.{n}g}"), 10)
-    rounded = float(f"{value:.{digits}g}")
-    return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
+    """Return a value in three significant digits, or those that tell it from its limit; zero for what is rounding beside it."""
+    return "0" if abs(value) < ROUNDING * abs(limit) else wording.number(value, limit, 3)

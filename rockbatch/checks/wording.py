@@ -52,11 +52,11 @@ def _is_open(verdict: Verdict) -> bool:
     return math.isinf(verdict.high) and math.isfinite(verdict.value)
 
 
-def number(value: float, neighbour: float = math.nan) -> str:
-    """Return a value in four significant digits, in more if it would look the same as a limit that it is not."""
+def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
+    """Return a value in ``least`` significant digits, in more if it would look the same as a limit that it is not."""
     if not math.isfinite(value):
         return "∞" if value > 0 else "-∞"
-    digits = next((n for n in range(4, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
+    digits = next((n for n in range(least, 10) if value == neighbour or f"{value:.{n}g}" != f"{neighbour:.{n}g}"), 10)
     rounded = float(f"{value:.{digits}g}")
     return f"{rounded:,.10g}" if rounded == 0 or 1e-4 <= abs(rounded) < 1e7 else f"{rounded:.{digits}g}"
 
