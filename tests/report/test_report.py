@@ -598,6 +598,23 @@ def test_every_line_of_a_damaged_table_is_reported_at_once(tmp_path):
     ]
 
 
+def test_errors_are_rounded_up_to_the_digits_of_the_peaks(tmp_path):
+    changes = {("SYL360", "2"): {"theta_max_error": 2.1e-5}, ("ERZ-NS", "1"): {"theta_max_error": 3e-9}}
+    head, *rows = Page(report(tmp_path, changes=changes)).tables["peaks"]
+    errors = {tuple(row[:2]): row[head.index("±")] for row in rows}
+    assert (errors["SYL360", "2"], errors["ERZ-NS", "1"]) == ("0.00003", "0.00001")
+
+
+def test_a_remark_stands_once_below_the_table_under_the_number_that_its_runs_have(tmp_path):
+    notes = {("SYL360", "2"): "first", ("ERZ-NS", "1"): "second", ("RRS228", "3"): "first"}
+    text = report(tmp_path, changes={run: {"note": note} for run, note in notes.items()})
+    listed = re.findall(r"<li>(.*?)</li>", text.split('<ol class="remarks">')[1].split("</ol>")[0])
+    assert sorted(listed) == ["first", "second"]
+    head, *rows = Page(text).tables["peaks"]
+    found = {tuple(row[:2]): row[head.index("remark")] for row in rows}
+    assert {run: listed[int(number) - 1] for run, number in found.items() if number} == notes
+
+
 def test_a_curve_that_turns_back_on_itself_keeps_its_tip():
     x, y = np.array([0.0, 5.0, 2.0]), np.zeros(3)
     assert re.search(r' d="([^"]*)"', curve(x, y, "c"))[1] == "M0 0l50 0-30 0"

@@ -168,7 +168,10 @@ def test_the_answer_says_for_which_peaks_an_error_is_known_and_which_runs_have_r
 
 
 def test_the_answer_counts_runs_that_flew_apart_from_those_that_ended_so(tmp_path):
-    guided = {("ERZ-NS", "1"): {"flight_s": 3.0, "flight_height_m": 0.0021}, ("RRS228", "3"): {"flight_s": 4.0}}
+    guided = {
+        ("ERZ-NS", "1"): {"flight_s": 3.0, "flight_height_m": 0.0021},
+        ("RRS228", "3"): {"flight_s": 4.0, "flight_height_m": 0.0004},
+    }
     write_results(tmp_path, changes=guided | {("CPM000", "2"): {"status": "flight", "flight_s": 2.5}})
     told = Page(section_of(tmp_path, answer)).text
     assert (
