@@ -331,6 +331,18 @@ def test_the_scorecard_comes_without_the_long_lists_and_of_many_cases_the_best(t
     assert "clause 7" not in "".join(lines)
 
 
+def test_without_checks_the_greatest_responses_of_each_case_stand_in_their_order(tmp_path):
+    table = pd.concat([runs([0.3, 0.6], "wide"), runs([0.1, 0.2], "pads"), runs([0.45], "other")])
+    out = folder(tmp_path / "out", table, [case("wide"), case(), case("other")])
+    lines = check.answered((), rb.open_results(out)).splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("pads"))
+    assert [line.split()[:2] for line in lines[first : first + 3]] == [
+        ["pads", "0.2"],
+        ["other", "0.45"],
+        ["wide", "0.6"],
+    ]
+
+
 @pytest.mark.parametrize("columns", [40, 80, 120])
 def test_the_scorecard_fits_the_terminal(tmp_path, columns, monkeypatch):
     rules = "".join(MARGIN.replace("margin", f"a check of {i} words") for i in range(9))

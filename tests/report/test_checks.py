@@ -83,6 +83,7 @@ def test_a_station_that_could_not_be_used_takes_the_green_from_what_passes(tmp_p
     lost = [{"name": "ABBAR--L", "source": "ABBAR--L.AT2", "reason": "the file is cut", "station": "RSN1633"}]
     shown = page(tmp_path, *checked, unusable=lost)
     assert "? 6 of 7 stations; RSN1633 could not be used: ABBAR--L.AT2: the file is cut." in shown.text
+    assert "6 of 7 stations, 6 components" in shown.text  # below the title
     assert "? Every check passes in the only case." in shown.text
     assert 'leave_out = ["RSN1633"]' in shown.text
 
