@@ -32,3 +32,11 @@ def test_all_lists_every_recording_and_every_file(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert printed.count("cut") >= 30
     assert all(f"RSN{i + 1}_" in printed for i in range(20))
+
+
+def test_rare_reasons_stand_first(tmp_path, capsys):
+    many_files(tmp_path / "records", 1, 5)
+    (tmp_path / "records" / "empty.AT2").write_text("")
+    main(["motions", str(tmp_path / "records")])
+    counted = [line.split(" ×")[0].strip() for line in capsys.readouterr().out.splitlines() if " ×: " in line]
+    assert counted[:2] == ["1", "5"]
