@@ -4,6 +4,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,11 @@ class Labelled:
     pier_places: dict[Key, int]
     cases: dict[tuple[int, int], dict[str, Any]]
 
+    @cached_property
+    def many_scales(self) -> bool:
+        """Return whether motions of several scales were run."""
+        return bool(self.runs["scale"].nunique() > 1)
+
     def named_case(self, case: str, columns: Mapping[str, Any], varied: Sequence[str], scale: float = 1.0) -> str:
         """Return the short name of a case on its pier, and the scale of its motions if there are several.
 
@@ -52,7 +58,7 @@ class Labelled:
         words = [case, *(quantity(name, value) for name, value in columns.items())]  # a case without a run
         if key in self.places and pier in self.pier_places:
             words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
-        scaled = f"motions scaled by {scale:g}" if self.runs["scale"].nunique() > 1 else ""
+        scaled = f"motions scaled by {scale:g}" if self.many_scales else ""
         return ", ".join(filter(None, (*words, scaled)))
 
 

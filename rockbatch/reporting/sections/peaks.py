@@ -70,7 +70,7 @@ def _every_run(finished: Finished) -> Markup:
     """Return the rows of ``peaks.csv``, the worst first; remarks stand below the table, each once."""
     runs, varied = finished.runs, finished.info["varied"]
     # Shown only if they vary
-    also = {"polarity": finished.both_directions, "scale": runs["scale"].nunique() > 1}
+    also = {"polarity": finished.both_directions, "scale": finished.many_scales}
     names = {"case": head(COLUMNS["case"])._replace(filter=True)}
     names |= {key: Head(symbol(key), note=key, filter=True) for key in varied}
     names |= {name: head(COLUMNS[name])._replace(filter=True) for name, changes in also.items() if changes}
