@@ -13,7 +13,7 @@ export OMP_NUM_THREADS := 1
 # What is imported is compiled then: compiling all of the packages takes as long as unpacking them.
 INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --editable
 
-.PHONY: run test lint slow thorough pythons docs screenshots clean
+.PHONY: run test lint slow thorough mutants pythons docs screenshots clean
 
 run: $(VENV)/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -27,6 +27,11 @@ slow: $(VENV)/.test
 
 thorough: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist load -m thorough
+
+# Small errors put into the product at random places: do the fast tests notice? Hours; see tests/mutants/run.py.
+mutants: $(VENV)/.test
+	$(BIN)/python -m pip install --quiet "coverage>=7.10"
+	$(BIN)/python tests/mutants/run.py --seed $(or $(SEED),1) --count $(or $(COUNT),200)
 
 # The fast tests with every supported Python that is installed, each in an environment of its own.
 pythons:

@@ -1,0 +1,70 @@
+"""The tool that puts small errors into the product: which errors, and that a test is seen to notice one."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+TOOL = Path(__file__).parent / "mutants"
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch):
+    monkeypatch.syspath_prepend(str(TOOL))
+    yield
+    for name in ("places", "run"):
+        sys.modules.pop(name, None)
+
+
+def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording():
+    from places import mutants
+
+    source = (
+        'def f(x: int = 2) -> "a < b":\n'
+        '    """1 < 2"""\n'
+        "    if x <= 0.5 and not g(x, y):\n"
+        '        raise ValueError(f"{x + 1} < 2")\n'
+        "    return max(x, y) - 3\n"
+    )
+    assert [str(mutant) for mutant in mutants(source)] == [
+        "2 → (3)",
+        "x <= 0.5 and not g(x, y) → (x <= 0.5 or not g(x, y))",
+        "x <= 0.5 and not g(x, y) → (not g(x, y))",
+        "x <= 0.5 and not g(x, y) → (x <= 0.5)",
+        "x <= 0.5 → (x < 0.5)",
+        "0.5 → (0.55)",
+        "not g(x, y) → (g(x, y))",
+        "g(x, y) → (g(y, x))",
+        "max(x, y) - 3 → (max(x, y) + 3)",
+        "3 → (4)",
+    ]
+
+
+def test_every_error_leaves_a_program_and_another_one():
+    from run import TOP, drawn
+
+    places = drawn(seed=3, count=300)
+    assert len({place.package for place in places}) > 10
+    for place in places:
+        source = (TOP / place.file).read_text(encoding="utf-8")
+        changed = place.mutant.put_into(source)
+        assert ast.dump(ast.parse(changed)) != ast.dump(ast.parse(source))
+
+
+@pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
+def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
+    from places import mutants
+    from run import Place, survives
+
+    source = f"def small(x):\n    return x < {limit}\n"
+    (tmp_path / "rockbatch").mkdir()
+    (tmp_path / "rockbatch" / "few.py").write_text(source)
+    (tmp_path / "conftest.py").write_text("import sys; sys.path.insert(0, 'rockbatch')\n")
+    (tmp_path / "test_few.py").write_text("from few import small\ndef test_small(): assert small(1) and not small(9)\n")
+    if not survived:
+        (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
+    (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
+    place = Place("rockbatch/few.py", mutant)
+    assert survives(place, [["test_few.py"], ["."]], tmp_path) is survived
+    assert (tmp_path / "rockbatch" / "few.py").read_text() == source
