@@ -2,23 +2,18 @@
 
 import hashlib
 import json
-import math
 import platform
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from rockbatch.common.files import replacing
-from rockbatch.motions import MotionSet, measures
+from rockbatch.motions import MotionSet
+from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.scaling import verticals
-from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
-from rockbatch.motions.velocity_pulses import pulse_of
 from rockbatch.pier import Damper, DeckSpring, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
 from rockbatch.results.columns import units
@@ -107,9 +102,6 @@ SHAPE = {
 }
 """The part of run.json that programs read; the rest is for people."""
 
-MOST_SPECTRA = 200
-"""Motions whose spectra go into run.json; each takes about 10 ms."""
-
 VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 """Packages whose versions are kept with results."""
 
@@ -144,8 +136,8 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "units": units(study),
         "cases": [describe_case(case) for case in study.cases],
         "without_vertical": motions.without_vertical,
-        "records": [_describe_motion(motion, labels[motion.name], gravity, with_pulses) for motion in motions.motions],
-        "spectra": _spectra(motions.motions, fitted, gravity, target),
+        "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
+        "spectra": spectra(motions.motions, fitted, gravity, target),
         **({} if target is None else {"target": target.described(fitted, gravity)}),
         **_vertical_target(study, motions, gravity),
         "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
@@ -168,27 +160,6 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[s
     return {"vertical_target": target.described(verticals(motions.motions), gravity)}
 
 
-def _spectra(
-    motions: list[Motion], fitted: list[Motion], gravity: float, target: SpectrumTarget | None
-) -> dict[str, Any] | None:
-    """Return response spectra of a suite that is not too large; with the damping and periods of its target, if any, and the mean
-    of those ``fitted`` to it."""
-    if len(motions) > MOST_SPECTRA:
-        return None
-    if target is None:
-        return suite_spectra(motions, gravity)
-    spectra = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
-    of_target = target.spectrum.at(np.array(spectra["period_s"], dtype=np.float64))
-    periods = np.array(spectra["period_s"], dtype=np.float64)
-    names = {motion.name for motion in fitted}
-    rows = [sa for motion, sa in zip(motions, spectra["sa_g"], strict=True) if motion.name in names]
-    mean = target.mean(fitted, periods, gravity, np.array(rows, dtype=np.float64))
-    return spectra | {
-        "mean_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in mean],
-        "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
-    }
-
-
 def describe_case(case: Case) -> dict[str, Any]:
     """Return the entry of a case in run.json."""
     pier = case.pier
@@ -199,45 +170,6 @@ def describe_case(case: Case) -> dict[str, Any]:
         "base": case.base.name,
         "parameters": case.base.parameters(pier),
     }
-
-
-def _describe_motion(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[str, Any]:
-    vertical = motion.pga_vertical
-    return {
-        "record": motion.name,
-        "station": motion.of_station,
-        "label": label,
-        "event": motion.origin.event,
-        "station_name": motion.origin.station,
-        "direction": motion.origin.direction,
-        "dt_s": motion.dt,
-        "npts": motion.npts,
-        "duration_s": motion.duration,
-        "pga_g": motion.pga / gravity,
-        "pga_v_g": None if vertical is None else vertical / gravity,
-        "pgv_m_s": measures.pgv(motion.horizontal, motion.dt, motion.initial),
-        "pgd_m": measures.believable_pgd(motion),
-        "arias_m_s": measures.arias_intensity(motion.horizontal, motion.dt, gravity),
-        "d5_95_s": None if len(motion.shocks) > 1 else measures.significant_duration(motion.horizontal, motion.dt),
-        "azimuth_deg": motion.azimuth,
-        "magnitude": motion.magnitude,
-        "distance_km": motion.distance_km,
-        **(_pulse(motion) if with_pulse else {}),
-        "factor": motion.factor,
-        **({} if motion.vertical_factor is None else {"vertical_factor": motion.vertical_factor}),
-        "source": motion.source,
-        "vertical_source": motion.vertical_source,
-        "processed": motion.processed,
-        "findings": [asdict(finding) for finding in motion.findings],
-        "notes": list(motion.notes),
-    }
-
-
-def _pulse(motion: Motion) -> dict[str, Any]:
-    """Return the pulse of a motion, by the criterion of Baker (2007)."""
-    pulse = pulse_of(motion)
-    period = None if math.isnan(pulse.period_s) else float(f"{pulse.period_s:.4g}")
-    return {"pulse": pulse.kind, "pulse_indicator": float(f"{pulse.indicator:.4g}"), "pulse_period_s": period}
 
 
 def write_info(directory: Path, info: Mapping[str, Any]) -> None:
@@ -256,17 +188,3 @@ def write_info(directory: Path, info: Mapping[str, Any]) -> None:
 
 def _json(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
-
-
-def suite_spectra(
-    motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
-) -> dict[str, Any]:
-    """Return horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
-    ``sa_g``."""
-    undamped = np.asarray(periods, dtype=np.float64)
-    spectra = [spectral_acceleration(m.horizontal, m.dt, undamped, damping) / gravity for m in motions]
-    return {
-        "damping": damping,
-        "period_s": [float(f"{period:.4g}") for period in undamped],
-        "sa_g": [[float(f"{value:.4g}") for value in spectrum] for spectrum in spectra],
-    }

@@ -9,9 +9,9 @@ import pytest
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, measures
+from rockbatch.motions.description import suite_spectra
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration
-from rockbatch.results.run_json import suite_spectra
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # pyrotd asks pkg_resources, which is on its way out
