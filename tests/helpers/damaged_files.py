@@ -5,7 +5,7 @@ import struct
 from collections.abc import Callable
 
 import numpy as np
-from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
+from agency_files import BBP, cwa_text, dyna_text, emod3d_text, geonet_text, knet_text, renadic_text, resorce_text
 from fixed_column_files import cosmos_text, csmip_text, smc_text
 from motion_files import at2_text, wiggle
 from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
@@ -45,6 +45,7 @@ def samples() -> dict[str, list[tuple[str, bytes]]]:
         "UNAM": [("CANA1709.191", unam_text())],
         "RESORCE": [("x.cor.acc", resorce_text())],
         "CWA free field": [("x.dat", cwa_text())],
+        "EMOD3D": [("x.090", emod3d_text())],
         "text columns": [("x.csv", f"time [s],acc [g]\n{table}\n"), ("x.bbp", BBP)],
     }
     encoded = {name: [(file, text.encode("latin-1")) for file, text in files] for name, files in texts.items()}

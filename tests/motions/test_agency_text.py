@@ -17,6 +17,7 @@ from agency_files import (
     C,
     cwa_text,
     dyna_text,
+    emod3d_text,
     geonet_component,
     geonet_text,
     moment,
@@ -37,7 +38,7 @@ from national_files import (
 )
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import (
     RecordFile,
     afad,
@@ -509,3 +510,23 @@ def test_one_component_that_is_not_understood_can_be_left_out_and_the_others_sta
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "X"\nuse = false\n')
     with pytest.raises(InputError, match='the file has "L", "V", "T", "TILT"'):
         read_motions(tmp_path)
+
+
+def test_emod3d_files_are_one_station_whose_unit_is_stated(tmp_path):
+    """The first line of a file of qcore's: 15738 samples of 5 ms at HALS, whose names say the direction."""
+    for label, values in (("000", A), ("090", B), ("ver", C)):
+        (tmp_path / f"HALS.{label}").write_text(emod3d_text(label, values))
+    assert all("no unit in the header" in refused.reason for refused in read_motions(tmp_path).unusable)
+    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"), confirmed=["*"])
+    assert [motion.name for motion in found.motions] == ["HALS.000", "HALS.090"]
+    for motion, values in zip(found.motions, (A, B), strict=True):
+        assert (motion.dt, motion.azimuth) == (0.005, float(motion.name[-3:]))
+        np.testing.assert_allclose(motion.horizontal, values / 100, rtol=1e-5)
+        np.testing.assert_allclose(motion.vertical, C / 100, rtol=1e-5)
+
+
+@pytest.mark.parametrize("count", [NPTS - 6, NPTS + 6])
+def test_an_emod3d_file_of_another_count_is_refused(tmp_path, count):
+    (tmp_path / "HALS.090").write_text(emod3d_text(count=count))
+    (refused,) = read_motions(tmp_path, options=ReadOptions(unit="g")).unusable
+    assert f"the header says {count} values" in refused.reason
