@@ -10,7 +10,7 @@ import numpy as np
 from agency_files import BBP, cwa_text, dyna_text, emod3d_text, geonet_text, knet_text, renadic_text, resorce_text
 from fixed_column_files import cosmos_text, csmip_channel, csmip_text, film_text, smc_text
 from motion_files import at2_text, wiggle
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
+from national_files import afad_text, bhrc_text, caltech_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 from obspy import Stream, Trace
 
 from rockbatch.motions import ReadOptions
@@ -110,6 +110,8 @@ def _layouts() -> list[Layout]:
         ("RENADIC", "pairs of time and value", "x.V1", renadic_text(), ReadOptions()),
         ("USC", "Volume I", "x.s0a", usc_text(), ReadOptions()),
         ("USC", "Volume II", "x.s0a", usc_corrected_text(), ReadOptions()),
+        ("Caltech", "Volume II", "IIA001.V2", caltech_text(), ReadOptions()),
+        ("Caltech", "Volume II, no line before the series", "IIA001.V2", caltech_text(declared=False), ReadOptions()),
         ("RESORCE", "`.cor.acc`, 5E14.7", "1_N.cor.acc", resorce_text(), ReadOptions()),
         ("BHRC", "Volume 1", "x.V1", bhrc_text(), ReadOptions()),
         ("BHRC", "Volume 2", "x.V2", bhrc_text(volume=2), ReadOptions()),
