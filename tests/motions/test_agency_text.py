@@ -563,3 +563,9 @@ def test_an_emod3d_file_of_another_count_is_refused(tmp_path, count):
     (tmp_path / "HALS.090").write_text(emod3d_text(count=count))
     (refused,) = read_motions(tmp_path, options=ReadOptions(unit="g")).unusable
     assert f"the header says {count} values" in refused.reason
+
+
+def test_a_dyna_file_of_two_components_is_refused_where_the_second_begins():
+    lines = dyna_text().splitlines()
+    with pytest.raises(InputError, match='line 3: "EVENT_NAME" a second time'):
+        read("\n".join([*lines[:2], lines[0], *lines[2:]]), "x.ASC")
