@@ -474,6 +474,8 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
             "line 52: ",
         ),
         (usc_corrected_text().replace("POINTS OF ACC", "POINTS OF VEL", 1), "x.s0a", "line 46: .*unit of accel"),
+        (usc_corrected_text().replace("PEAK ACCELERATION", "PEAK", 1), "x.s0a", "line 18: .*PEAK ACCELERATION"),
+        (usc_text().replace("DURATION", "LENGTH", 1), "x.s0a", "line 11: .*DURATION"),
         (cwa_text(**{"SampleRate(Hz)": "100"}), "x.txt", "the header says 100 Hz, but time grows by 0.005 s"),
         (cwa_text(**{"RecordLength(sec)": "90"}), "x.txt", "the header says 90 s, but there are 0.215 s"),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),

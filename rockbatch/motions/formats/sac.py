@@ -80,7 +80,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     return [
         Component(
             name=file.stem,
-            dt=numbers["DELTA"],
+            dt=float(str(np.float32(numbers["DELTA"]))),  # the shortest decimal that a header of four bytes may mean
             acceleration=samples * factor,
             orientation=orientation_of(channel) or _by_angles(numbers) or split_stem(file.stem)[1] or unknown(channel),
             station=".".join((network, station, location, channel[:-1])) if station else "",
@@ -106,10 +106,10 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
     words = (*np.frombuffer(data, f"{order}f4", _FLOATS), *np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS))
     numbers = {}
     for name, (word, least, largest) in _NUMBERS.items():
-        value = float(f"{words[word]:.7g}") if word < _FLOATS else int(words[word])  # the decimal that four bytes mean
+        value = float(words[word])
         if value == _UNDEFINED and name not in _NEEDED:
             continue
-        if not least <= value <= largest:
+        if not least <= float(f"{value:.7g}") <= largest:
             raise InputError(f"SAC header: {name} = {value:g}; expected {least:g} to {largest:g}: it is damaged")
         numbers[name] = value
     npts = int(numbers["NPTS"])

@@ -46,18 +46,22 @@ _TEXT = layout(  # of Volume I, which Volume II repeats
     (3, r"(?a)^\d+\.(?P<network>[A-Z0-9]{1,2})\.(?P<code>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\.", ""),
     (3, rf"(?ai)(?P<began>start|trigger) time: *{_DAY},? *{CLOCK} *(?:UTC|GMT|\(GPS\)|\(Q=|$)", ""),
 )
-_STATED = {  # where the text says once more, or without another line, what the samples are
+_STATED = {  # where the text says once more, or alone, what the samples are; CSMIP does not everywhere
     1: layout(
-        (10, r"(?ai)no\. of points\s*=\s*(?P<npts>\d{1,9})", ""),
-        (10, r"(?ai)duration *= *(?P<duration>[\d.]{1,12}) *sec", ""),
+        (10, r"(?ai)no\. of points\s*=\s*(?P<npts>\d{1,9})", "NO. OF POINTS = …"),
+        (10, r"(?ai)duration *= *(?P<duration>[\d.]{1,12}) *sec", "DURATION = … SEC"),
         (10, r"(?ai)at +(?P<rate>[\d.]{1,12}) *samples/sec", ""),
-        (11, r"(?ai)\bare sec and\s+(?P<unit>[A-Z0-9/]+)", ""),
+        (11, r"(?ai)\bare sec and\s+(?P<unit>[A-Z0-9/]+)", "UNITS ARE SEC AND G/10"),
         (11, r"(?ai)max\s*=\s*(?P<peak>[-+]?\d{0,5}\.\d{1,6})\s*(?P<of_peak>g)\b", ""),
     ),
     2: layout(
-        (15, r"(?ai)^ *(?P<npts>\d{1,9}) +(?:points of|instrument and)", ""),
-        (16, r"(?ai)intervals of +(?P<dt>[\d.]{1,12}) *sec", ""),
-        (17, r"(?ai)peak acceleration *= *[-+]?(?P<peak>\d*\.\d+) *(?P<of_peak>[cm]ms?/sec/sec)", ""),
+        (15, r"(?ai)^ *(?P<npts>\d{1,9}) +(?:points of|instrument and)", "… INSTRUMENT AND BASELINE CORRECTED DATA"),
+        (16, r"(?ai)intervals of +(?P<dt>[\d.]{1,12}) *sec", "AT EQUALLY-SPACED INTERVALS OF … SEC."),
+        (
+            17,
+            r"(?ai)peak acceleration *= *[-+]?(?P<peak>\d*\.\d+) *(?P<of_peak>[cm]ms?/sec/sec)",
+            "PEAK ACCELERATION = …",
+        ),
     ),
 }
 
@@ -109,7 +113,9 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
             f"line {first + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
         )
     header = first + volume - 1
-    fields = read_header(lines, header, _TEXT) | read_header(lines, first, _STATED[volume])
+    fields = read_header(lines, header, _TEXT)
+    needed = not fields["number"]  # by USC and Caltech
+    fields |= read_header(lines, first, [(i, said, needed * example) for i, said, example in _STATED[volume]])
     samples, begins, end = _samples(lines, first, volume, fields)
     place = fields["place"]
     notes = (*samples.pop("notes", ()), *([f"channel {fields['number']}: {place}"] if place else []))
@@ -167,7 +173,7 @@ def _samples(
     declared = declares_series(lines, start)
     if volume == 1 and not declared and fields["npts"] and fields["unit"]:
         return _pairs(lines, first, fields)
-    if volume == 2 and not declared and fields["npts"] and fields["dt"] and fields["of_peak"]:
+    if volume == 2 and not declared and not fields["number"] and not line_at(lines, start).strip("-+. 0123456789"):
         dt, series, end = _undeclared(lines, start, fields)
     else:
         dt, series, end = declared_series(lines, start)
