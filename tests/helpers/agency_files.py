@@ -168,3 +168,17 @@ def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000, seed
         "Last Correction   2018/01/24 19:51:38\nMemo.             \n"
     )
     return header + rows + "\n", counts
+
+
+def emod3d_text(label: str = "090", values=A, *, count: int | None = None, title: str = "") -> str:
+    """Return a file of EMOD3D as qcore writes it; ``values`` in whatever unit."""
+    npts = len(values) if count is None else count
+    fields = [f"{value:13.5e}" for value in values]
+    return "\n".join(
+        [
+            f"{'HALS':10} {label:>3} {title}",
+            f"{npts:d} {0.005:12.5e} 0 0 {-1.0:12.5e} {33.9338:12.5e} {0.0:12.5e} {0.0:12.5e}",
+            *(" ".join(fields[i : i + 6]) for i in range(0, len(fields), 6)),
+            "",
+        ]
+    )

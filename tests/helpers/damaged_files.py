@@ -5,10 +5,10 @@ import struct
 from collections.abc import Callable
 
 import numpy as np
-from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
+from agency_files import BBP, cwa_text, dyna_text, emod3d_text, geonet_text, knet_text, renadic_text, resorce_text
 from fixed_column_files import cosmos_text, csmip_text, smc_text
 from motion_files import at2_text, wiggle
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
+from national_files import afad_text, bhrc_text, caltech_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 
 Damage = Callable[[bytearray, np.random.Generator], bytes | bytearray]
 
@@ -38,13 +38,14 @@ def samples() -> dict[str, list[tuple[str, bytes]]]:
         "CSMIP": [("x.V1", csmip_text(1)), ("x.V2", csmip_text(2))],
         "USGS SMC": [("x.smc", smc_text())],
         "RENADIC": [("x.V1", renadic_text())],
-        "USC": [("x.s0a", usc_text()), ("y.s0a", usc_corrected_text())],
+        "USC": [("x.s0a", usc_text()), ("y.s0a", usc_corrected_text()), ("IIA001.V2", caltech_text(declared=False))],
         "BHRC Volume 1": [("x.V1", bhrc_text())],
         "CSMNC": [("x.dat", csmnc_text())],
         "AFAD text": [("x.txt", afad_text())],
         "UNAM": [("CANA1709.191", unam_text())],
         "RESORCE": [("x.cor.acc", resorce_text())],
         "CWA free field": [("x.dat", cwa_text())],
+        "EMOD3D": [("x.090", emod3d_text())],
         "text columns": [("x.csv", f"time [s],acc [g]\n{table}\n"), ("x.bbp", BBP)],
     }
     encoded = {name: [(file, text.encode("latin-1")) for file, text in files] for name, files in texts.items()}

@@ -7,10 +7,10 @@ import io
 from dataclasses import dataclass, field
 
 import numpy as np
-from agency_files import BBP, cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
+from agency_files import BBP, cwa_text, dyna_text, emod3d_text, geonet_text, knet_text, renadic_text, resorce_text
 from fixed_column_files import cosmos_text, csmip_channel, csmip_text, film_text, smc_text
 from motion_files import at2_text, wiggle
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
+from national_files import afad_text, bhrc_text, caltech_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 from obspy import Stream, Trace
 
 from rockbatch.motions import ReadOptions
@@ -110,6 +110,8 @@ def _layouts() -> list[Layout]:
         ("RENADIC", "pairs of time and value", "x.V1", renadic_text(), ReadOptions()),
         ("USC", "Volume I", "x.s0a", usc_text(), ReadOptions()),
         ("USC", "Volume II", "x.s0a", usc_corrected_text(), ReadOptions()),
+        ("Caltech", "Volume II", "IIA001.V2", caltech_text(), ReadOptions()),
+        ("Caltech", "Volume II, no line before the series", "IIA001.V2", caltech_text(declared=False), ReadOptions()),
         ("RESORCE", "`.cor.acc`, 5E14.7", "1_N.cor.acc", resorce_text(), ReadOptions()),
         ("BHRC", "Volume 1", "x.V1", bhrc_text(), ReadOptions()),
         ("BHRC", "Volume 2", "x.V2", bhrc_text(volume=2), ReadOptions()),
@@ -129,6 +131,8 @@ def _layouts() -> list[Layout]:
             *(unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/42/42/42"}), ReadOptions()),
         ),
         ("CWA", "free field", "x.dat", cwa_text(), ReadOptions()),
+        ("EMOD3D (ucgmsim)", "`.000`, `.090`, `.ver`", "x.090", emod3d_text(), ReadOptions(unit="mm/s2")),
+        ("EMOD3D (ucgmsim)", "no unit stated", "x.090", emod3d_text(), ReadOptions()),
         (
             "text columns",
             "units in the header",
@@ -141,6 +145,9 @@ def _layouts() -> list[Layout]:
         ("text columns", "one column, nothing stated", "x_000.txt", _table(""), ReadOptions()),
         ("text columns", "five a line, `layout` stated", "x_000.txt", _table("", 5), wrapped),
         ("text columns", "five a line", "x_000.txt", _table("", 5), g),
+        ("text columns", "time and values called `.AT2`", "x_000.AT2", _table("", time=True), ReadOptions(unit="g")),
+        ("text columns", "OpenSees, `.g3`", "x_000.g3", _table("", 5), wrapped),
+        ("text columns", "called `.smc`", "x_000.smc", _table("", time=True), ReadOptions(unit="g")),
         ("text columns", "SHAKE, 8F9.6", "x.ACC", _shake(), g),
         ("text columns", "SHAKE, 8F9.6, `layout` stated", "x_000.ACC", _shake(), wrapped),
         (

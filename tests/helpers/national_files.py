@@ -211,6 +211,14 @@ def usc_corrected_channel(label: str, values) -> list[str]:
     ]
 
 
+def caltech_text(declared: bool = True, values=(A, C, B), *, unit: str = "CMS/SEC/SEC") -> str:
+    """Return Volume II as Caltech wrote it, with or without the lines that declare the series."""
+    parts = [usc_corrected_channel(label, x) for label, x in zip(("S00E", "UP", "S90W"), values, strict=True)]
+    text = "\n".join(line for part in parts for line in part if declared or " POINTS OF " not in line) + "\n"
+    station = "STATION NO. 117   32 47 43N,115 32 55W "
+    return text.replace("STATION USC# 0016   34 05 22N, 118 26 05N", station).replace("CMS/SEC/SEC", unit)
+
+
 def usc_corrected_text() -> str:
     parts = [usc_corrected_channel(label, x) for label, x in (("N90E", A), ("UP", C), ("N00E", B))]
     return "\n".join(line for part in parts for line in part) + "\n"

@@ -17,6 +17,7 @@ from agency_files import (
     C,
     cwa_text,
     dyna_text,
+    emod3d_text,
     geonet_component,
     geonet_text,
     moment,
@@ -29,6 +30,7 @@ from fixed_column_files import read
 from national_files import (
     afad_text,
     bhrc_text,
+    caltech_text,
     csmnc_text,
     unam_text,
     usc_channel,
@@ -37,7 +39,7 @@ from national_files import (
 )
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import (
     RecordFile,
     afad,
@@ -48,9 +50,8 @@ from rockbatch.motions.formats import (
     dyna,
     geonet,
     read_record,
-    renadic,
     unam,
-    usc,
+    volumes,
 )
 from rockbatch.motions.motion import Unusable
 
@@ -73,12 +74,12 @@ AFAD, BHRC, CSMNC, UNAM, USC = (
     (bhrc.is_bhrc_file, bhrc.read_bhrc_stream),
     (csmnc.is_csmnc_file, csmnc.read_csmnc_stream),
     (unam.is_unam_file, unam.read_unam_stream),
-    (usc.is_usc_file, usc.read_usc_stream),
+    (volumes.is_usc_file, volumes.read_usc_stream),
 )
 GEONET, DYNA, RENADIC, CWA, COLUMNS = (
     (geonet.is_geonet_file, geonet.read_geonet_stream),
     (dyna.is_dyna_file, dyna.read_dyna_stream),
-    (renadic.is_renadic_file, renadic.read_renadic_stream),
+    (volumes.is_renadic_file, volumes.read_renadic_stream),
     (cwa.is_cwa_file, cwa.read_cwa_stream),
     (columns.is_bbp_file, columns.read_bbp_stream),
 )
@@ -336,7 +337,10 @@ def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_
         np.testing.assert_allclose(component.acceleration, values / 100, atol=5.1e-6)
     assert east.initial.velocity == pytest.approx(0.008344, abs=6e-6)
     (before,) = {component.station for component in read(usc_text(), "x.s0a")}
-    assert (east.station, east.sensor, east.event) == (f"{before}, Volume II", *sensor_and_event(usc_text()))
+    assert (east.station, east.sensor, east.event) == (
+        before.replace("Volume 1", "Volume 2"),
+        *sensor_and_event(usc_text()),
+    )
 
 
 def sensor_and_event(text: str):
@@ -349,6 +353,36 @@ def test_a_second_volume_of_usc_with_another_peak_is_not_used():
     peak = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
     east = read(text.replace(peak, peak.replace("-", "-1", 1)), "x.s0a")[0]
     assert [finding.gross for finding in east.findings] == [True]
+
+
+@pytest.mark.parametrize("declared", [True, False])
+def test_caltechs_second_volume_is_read_with_or_without_lines_that_declare_its_series(declared):
+    south, up, west = read(caltech_text(declared), "IIA001.V2")
+    assert [(c.orientation.azimuth, c.orientation.vertical) for c in (south, up, west)] == [
+        (180.0, False),
+        (None, True),
+        (270.0, False),
+    ]
+    assert (south.dt, south.processed, south.sensor.station, south.findings) == (0.02, True, "117", ())
+    for component, values in ((south, A), (up, C), (west, B)):
+        np.testing.assert_allclose(component.acceleration, values / 100, atol=5.1e-6)
+    assert south.initial.velocity == pytest.approx(0.008344, abs=6e-6)
+
+
+def test_caltechs_undeclared_series_in_another_unit_than_their_peak_are_not_used():
+    (found, *_) = read(caltech_text(declared=False, unit="MMS/SEC/SEC"), "x.V2")
+    np.testing.assert_allclose(found.acceleration, A / 1000, atol=5.1e-7)
+    text = caltech_text(declared=False, values=(10 * A, 10 * C, 10 * B))
+    peak = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
+    in_mm = read(text.replace(peak, f"PEAK ACCELERATION = {np.abs(A).max():11.5f}  CMS/SEC/SEC AT"), "x.V2")[0]
+    assert [finding.gross for finding in in_mm.findings] == [True]
+
+
+@pytest.mark.parametrize("count", [NPTS - 8, NPTS + 8])
+def test_caltechs_undeclared_series_have_the_count_of_their_header(count):
+    text = caltech_text(declared=False).replace(f"{NPTS:6d}  INSTRUMENT", f"{count:6d}  INSTRUMENT")
+    with pytest.raises(InputError, match=r"line \d+: found"):
+        read(text, "x.V2")
 
 
 @pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
@@ -404,7 +438,7 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (dyna_text(np.tile(A, 3)).rstrip()[:-1], "x.ASC", "line 147: .*the file is cut"),
         (dyna_text().replace("\n0.000000", "\nnan", 1) + "nan", "x.ASC", r'line \d+: found "nan"|there are 44'),
         (renadic_text().replace("POINTS =     43", "POINTS = 999999999", 1), "x.v1", "take 200000000 lines"),
-        (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after 43 pairs'),
+        (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after the declared values'),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
         (csmnc_text(count=44), "x.dat", "line 22: found 3 numbers; expected 4"),
         (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'found "VELOCITY"; expected accelerations'),
@@ -426,13 +460,13 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (
             usc_text().replace("=   0.210 SEC", "=   0.310 SEC", 1),
             "x.s0a",
-            "line 11 says 0.31 s, but the last time is 0.21 s",
+            'line 11: "DURATION =   0.310 SEC" contradicts line 28 and its samples: 0.21',
         ),
         (usc_text().replace("\n   0.000", "\n0.000  ", 1), "x.s0a", "line 28: .*expected a blank and ten columns"),
         (
             usc_corrected_text().replace("  .020  SEC", "  .010  SEC", 1),
             "x.s0a",
-            "lines 16 and 17 say 43 points at .010 s, but line 46 43 at",
+            'line 17: "INTERVALS OF    .010  SEC" contradicts line 46 and its samples: 0.02',
         ),
         (
             usc_corrected_text().replace(f"{NPTS:6d} POINTS OF ACC", f"{NPTS + 8:6d} POINTS OF ACC", 1),
@@ -440,6 +474,8 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
             "line 52: ",
         ),
         (usc_corrected_text().replace("POINTS OF ACC", "POINTS OF VEL", 1), "x.s0a", "line 46: .*unit of accel"),
+        (usc_corrected_text().replace("PEAK ACCELERATION", "PEAK", 1), "x.s0a", "line 18: .*PEAK ACCELERATION"),
+        (usc_text().replace("DURATION", "LENGTH", 1), "x.s0a", "line 11: .*DURATION"),
         (cwa_text(**{"SampleRate(Hz)": "100"}), "x.txt", "the header says 100 Hz, but time grows by 0.005 s"),
         (cwa_text(**{"RecordLength(sec)": "90"}), "x.txt", "the header says 90 s, but there are 0.215 s"),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),
@@ -509,3 +545,29 @@ def test_one_component_that_is_not_understood_can_be_left_out_and_the_others_sta
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x.v1"\ncomponent = "X"\nuse = false\n')
     with pytest.raises(InputError, match='the file has "L", "V", "T", "TILT"'):
         read_motions(tmp_path)
+
+
+def test_emod3d_files_are_one_station_whose_unit_is_stated(tmp_path):
+    """The first line of a file of qcore's: 15738 samples of 5 ms at HALS, whose names say the direction."""
+    for label, values in (("000", A), ("090", B), ("ver", C)):
+        (tmp_path / f"HALS.{label}").write_text(emod3d_text(label, values))
+    assert all("no unit in the header" in refused.reason for refused in read_motions(tmp_path).unusable)
+    found = read_motions(tmp_path, options=ReadOptions(unit="cm/s2"), confirmed=["*"])
+    assert [motion.name for motion in found.motions] == ["HALS.000", "HALS.090"]
+    for motion, values in zip(found.motions, (A, B), strict=True):
+        assert (motion.dt, motion.azimuth) == (0.005, float(motion.name[-3:]))
+        np.testing.assert_allclose(motion.horizontal, values / 100, rtol=1e-5)
+        np.testing.assert_allclose(motion.vertical, C / 100, rtol=1e-5)
+
+
+@pytest.mark.parametrize("count", [NPTS - 6, NPTS + 6])
+def test_an_emod3d_file_of_another_count_is_refused(tmp_path, count):
+    (tmp_path / "HALS.090").write_text(emod3d_text(count=count))
+    (refused,) = read_motions(tmp_path, options=ReadOptions(unit="g")).unusable
+    assert f"the header says {count} values" in refused.reason
+
+
+def test_a_dyna_file_of_two_components_is_refused_where_the_second_begins():
+    lines = dyna_text().splitlines()
+    with pytest.raises(InputError, match='line 3: "EVENT_NAME" a second time'):
+        read("\n".join([*lines[:2], lines[0], *lines[2:]]), "x.ASC")

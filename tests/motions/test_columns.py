@@ -361,18 +361,30 @@ def test_a_table_as_textbooks_and_programs_pass_it_on_is_read_whole(tmp_path, te
     np.testing.assert_allclose(motion.horizontal, 9.81 * np.array(list(map(float, SHAKEN))), rtol=1e-12)
 
 
-@pytest.mark.parametrize("count", [79, 81])
+@pytest.mark.parametrize("count", [79, 81, "nan", "inf"])
 def test_a_count_over_a_column_that_is_not_its_own_is_no_count(tmp_path, count):
     (tmp_path / "x_000.txt").write_text(f"# acceleration in g\n{count} 0.02\n" + "\n".join(SHAKEN))
     assert "found 1 numbers; expected 2" in reason(tmp_path)
 
 
-def test_columns_under_the_suffix_of_a_format_are_told_to_be_called_text(tmp_path):
+@pytest.mark.parametrize("suffix", ["AT2", "g3"])
+def test_numbers_that_programs_leave_in_a_file_of_records_are_read_as_text_columns(tmp_path, suffix):
+    (tmp_path / f"x_000.{suffix}").write_text("".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN)))
+    assert 'column 2 has no unit; write unit = "cm/s2"' in reason(tmp_path)
+    motion = one(tmp_path, unit="g")
+    np.testing.assert_allclose(motion.horizontal, 9.81 * np.array(list(map(float, SHAKEN))), rtol=1e-12)
+    assert motion.dt == 0.01
+
+
+@pytest.mark.parametrize("suffix", ["smc", "V2", "xyz"])
+def test_columns_under_another_suffix_are_told_to_be_called_text(tmp_path, suffix):
     rows = "".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN))
-    (tmp_path / "x_000.AT2").write_text(rows)
-    assert "if it holds columns of numbers, call it .txt" in reason(tmp_path)
-    (tmp_path / "x_000.AT2").rename(tmp_path / "x_000.txt")
-    read = read_motions(
-        tmp_path, options=ReadOptions(unit="g", columns=("time", "000")), vertical=False, confirmed=["*"]
-    )
-    assert read.motions[0].npts == len(SHAKEN)
+    (tmp_path / f"x_000.{suffix}").write_text(rows)
+    assert "but a table: read it as text columns: call it .txt, and state unit" in reason(tmp_path)
+    (tmp_path / f"x_000.{suffix}").rename(tmp_path / "x_000.txt")
+    assert one(tmp_path, unit="g").npts == len(SHAKEN)
+
+
+def test_what_is_no_table_is_not_told_to_be_called_text(tmp_path):
+    (tmp_path / "x_000.smc").write_text("1 2 3\nnot a table\n4 5\n" * 40)
+    assert reason(tmp_path).endswith("its header is another one")

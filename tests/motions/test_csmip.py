@@ -19,7 +19,7 @@ from fixed_column_files import (
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.formats.csmip import read_csmip_stream
+from rockbatch.motions.formats.volumes import read_csmip_stream
 from rockbatch.motions.motion import Unusable
 
 START = datetime(2019, 7, 6, 3, 19, 37, tzinfo=UTC).timestamp() + 0.5

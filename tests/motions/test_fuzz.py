@@ -69,7 +69,7 @@ def read_all_ways_of_damage(name: str, inputs: int, seed: int) -> Counts:
 
 def test_there_are_samples_of_every_format_and_all_of_them_are_read():
     assert set(SAMPLES) == {known.name for known in FORMATS}
-    options = ReadOptions(sensitivity=1e5)
+    options = ReadOptions(unit="m/s2", sensitivity=1e5)
     for files in SAMPLES.values():
         for file, whole in files:
             assert not any(

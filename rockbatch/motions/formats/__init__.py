@@ -18,19 +18,18 @@ from rockbatch.motions.formats import (
     bhrc,
     columns,
     cosmos,
-    csmip,
     csmnc,
     cwa,
     dyna,
+    emod3d,
     geonet,
     knet,
     miniseed,
-    renadic,
     resorce,
     sac,
     smc,
     unam,
-    usc,
+    volumes,
 )
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions, RecordFile
@@ -88,22 +87,24 @@ FORMATS = (
     Format("GeoNet V1A/V2A", _names(".v1a .v2a"), geonet.is_geonet, reader(geonet.parse)),
     Format("DYNA (ESM, ITACA, AFAD)", _names(".asc"), dyna.is_dyna, reader(dyna.parse)),
     Format("COSMOS", _names(".v0 .v1 .v2 .v3 .v0c .v1c .v2c .v3c"), cosmos.is_cosmos, reader(cosmos.parse)),
-    Format("CSMIP", _names(".v1 .v2 .v3 .raw"), csmip.is_csmip, reader(csmip.parse)),
+    Format("CSMIP", _names(".v1 .v2 .v3 .raw"), volumes.is_csmip, reader(volumes.parse)),
     Format("USGS SMC", _names(".smc"), smc.is_smc, reader(smc.parse)),
-    Format("RENADIC", _names(".v1 .raw"), renadic.is_renadic, reader(renadic.parse)),
-    Format("USC", _names(""), usc.is_usc, reader(usc.parse)),
+    Format("RENADIC", _names(".v1 .raw"), volumes.is_renadic, reader(volumes.parse_pairs)),
+    Format("USC", _names(""), volumes.is_usc, reader(volumes.parse)),
     Format("BHRC Volume 1", _names(""), bhrc.is_bhrc, reader(bhrc.parse)),
     Format("CSMNC", _names(""), csmnc.is_csmnc, reader(csmnc.parse)),
     Format("AFAD text", _names(""), afad.is_afad, reader(afad.parse)),
     Format("UNAM", _names(""), unam.is_unam, reader(unam.parse)),
     Format("RESORCE", _names(""), resorce.is_resorce, reader(resorce.parse)),
     Format("CWA free field", _names(".txt .dat .acc .asc"), cwa.is_cwa, reader(cwa.parse)),
+    Format("EMOD3D", _names(".000 .090 .ver"), emod3d.is_emod3d, emod3d.read_emod3d),
     Format("PEER AT2", _names(".at2"), at2.has_at2_count, at2.read_component, anywhere=False),
+    Format("text columns", _names(".at2 .g3"), columns.holds_table, columns.read_columns, anywhere=False),
     Format(
         "text columns", _names(".txt .csv .dat .bbp .acc"), columns.is_columns, columns.read_columns, anywhere=False
     ),
 )
-"""In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns."""
+"""In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns, a table called .AT2 as well."""
 
 
 def is_usual(suffix: str) -> bool:
@@ -147,17 +148,18 @@ def usable(reading: Component | Unusable) -> Component | Unusable:
 
 def _not_recognised(file: RecordFile) -> str:
     """Return why a file is of no known format, and what to do with it."""
-    names = " or ".join(dict.fromkeys(form.name for form in FORMATS if file.path.suffix.lower() in form.suffixes))
+    suffix = file.path.suffix
+    names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes))
     foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")
-    if foreign or not names:
-        return f"not a format that rockbatch reads{f', but {foreign}' if foreign else ''}; {_INSTEAD}"
-    if not file.data:
+    if foreign:
+        return f"not a format that rockbatch reads, but {foreign}; {_INSTEAD}"
+    if names and not file.data:
         return "the file is empty"
-    if file.data.startswith(b"PK\x03\x04"):
+    if names and file.data.startswith(b"PK\x03\x04"):
         return f"not a {names} file but a zip archive, such as an Excel workbook: export it as CSV (UTF-8)"
-    if b"\x00" in file.data[:HEAD]:
-        return f"not a {names} file, as its suffix {file.path.suffix} says: binary data, or text to be saved as UTF-8"
-    return (
-        f"not a {names} file, as its suffix {file.path.suffix} says: its header is another one; if it holds columns of numbers, "
-        "call it .txt, and state unit and columns as of any table"
-    )
+    if names and b"\x00" in file.data[:HEAD]:
+        return f"not a {names} file, as its suffix {suffix} says: binary data, or text to be saved as UTF-8"
+    kind = f"not a {names} file, as its suffix {suffix} says" if names else "not a format that rockbatch reads"
+    if columns.holds_table(file.data[:HEAD]):
+        return f"{kind}, but a table: read it as text columns: call it .txt, and state unit and columns as of any table"
+    return f"{kind}: its header is another one" if names else f"{kind}; {_INSTEAD}"

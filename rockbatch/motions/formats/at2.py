@@ -12,7 +12,7 @@ import numpy as np
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, number_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
@@ -34,13 +34,12 @@ _UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORE
 _IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # of El Centro 1940 as it goes from hand to hand
 _DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
-_NOT_FINITE = re.compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
 _HEADER_BYTES = 2048
 _HEADER_CHARACTERS = 8192
 _BLANK = re.compile(r"\s")
 _PIECE = 2**20  # characters that are looked at together
-_WIDEST = 40  # characters of a number; longer ones are no numbers, and would cost the patterns long
+_WIDEST = 40  # characters of a number
 
 
 def looks_like_at2(head: bytes) -> bool:
@@ -88,7 +87,7 @@ def _parse(text: str) -> list[Recording]:
             f"lines 1–{len(lines)}: no number of points and time step found; "
             'expected a line such as "NPTS= 4316, DT= .0100 SEC"'
         )
-    npts, dt = int(fields["npts"]), float(_plain(fields["dt"]))
+    npts, dt = int(fields["npts"]), float(fields["dt"].upper().replace("D", "E"))
     if not 1 <= npts <= MOST_SAMPLES or not is_step(dt):
         raise InputError(
             f'line {first + 1}: found "{lines[first].strip()[:80]}"; expected a count from 1 to {MOST_SAMPLES:,}, and a time '
@@ -189,22 +188,8 @@ def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list
             else [line[column : column + width].strip() for column in range(0, len(line), width)]
         )
 
-    values = (_number(field, first + i) for i, line in enumerate(lines) for field in fields(line))
+    values = (number_in(field, first + i) for i, line in enumerate(lines) for field in fields(line))
     return np.fromiter(values, float), [field for line in body[-LOOKED_AT:] for field in fields(line)][-LOOKED_AT:]
-
-
-def _plain(number: str) -> str:
-    """Return a number of Fortran's as Python reads it."""
-    return number.upper().replace("D", "E")
-
-
-def _number(field: str, index: int) -> float:
-    """Return a field of the line with index ``index`` as a number, or raise ``InputError``."""
-    if not (len(field) <= _WIDEST and _SIGNED.fullmatch(field)) and not _NOT_FINITE.fullmatch(field):
-        raise InputError(
-            f'line {index + 1}: found "{field[:40]}"; expected numbers separated by blanks, or in equal columns'
-        )
-    return float(_plain(field)) if _SIGNED.fullmatch(field) else float(field)
 
 
 def _width(lines: list[str], npts: int) -> int | None:

@@ -26,7 +26,7 @@ from rockbatch.motions.formats.column_header import (
     stated_unit,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import ReadOptions, RecordFile, unstated
+from rockbatch.motions.formats.record_file import ReadOptions, RecordFile, text_of, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
@@ -39,6 +39,14 @@ _GROWING = 0.9  # of the steps of a column of time; those of an acceleration gro
 def is_columns(head: bytes) -> bool:
     """Return whether the first bytes may be text."""
     return head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\x00" not in head
+
+
+def holds_table(head: bytes) -> bool:
+    """Return whether the first bytes, as far as their lines are whole, are a table of numbers, below a header or none."""
+    try:
+        return len(read_table(text_of(head.rpartition(b"\n")[0]))[1]) > 2
+    except InputError:
+        return False
 
 
 def is_bbp(head: bytes) -> bool:

@@ -4,14 +4,13 @@ import re
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.formats.header_lines import moment_in
+from rockbatch.motions.formats.header_lines import keys_of, moment_in, number_if_any
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.origin import origin_of
 
-_KEY = re.compile(r"(?P<key>[^:]{1,60}?)\s*:\s*(?P<value>.*)")
 _LABEL = re.compile(r"\s*(?P<label>[A-Za-z0-9]{1,8})\(\+\)\s*")
 _MOMENT = re.compile(
     r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})-(?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d(?:\.\d{1,6})?)",
@@ -30,7 +29,7 @@ def is_cwa(head: bytes) -> bool:
 def parse(text: str) -> list[Recording]:
     """Return the three components; ``InputError`` where header and columns do not agree."""
     lines, table = read_table(text)
-    header = {match["key"]: match["value"].strip() for line in lines if (match := _KEY.match(line))}
+    header = keys_of(lines)
     unit, _, offset = header.get("AmplitudeUnit", "").partition(".")
     labels = _labels(header.get("DataSequence", ""))
     if len(labels) + 1 != table.shape[1]:
@@ -73,13 +72,7 @@ def _labels(sequence: str) -> list[str]:
 
 def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None:
     """Raise ``InputError`` unless the stated rate and length, if given as numbers, are those of the columns."""
-    stated = {}
-    for key in ("SampleRate(Hz)", "RecordLength(sec)"):
-        try:
-            stated[key] = float(header[key])
-        except (KeyError, ValueError):
-            continue
-    rate, length = stated.get("SampleRate(Hz)"), stated.get("RecordLength(sec)")
+    rate, length = (number_if_any(header, key) for key in ("SampleRate(Hz)", "RecordLength(sec)"))
     if rate is not None and not abs(rate * dt - 1) <= _SAME_RATE:
         raise InputError(f"the header says {rate:g} Hz, but time grows by {dt:g} s")
     if length is not None and not abs(npts * dt - length) <= _WITHIN + dt:

@@ -10,6 +10,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in
 from rockbatch.motions.formats.header_lines import line_at, match_line
 from rockbatch.motions.formats.recording import Series
+from rockbatch.motions.motion import Samples
 
 _PER_LINE = 8
 _SPACING = re.compile(
@@ -23,6 +24,11 @@ _WORDS = {"acc": "accel", "vel": "veloc", "dis": "displ"}
 _FORMAT = re.compile(r"\((?P<per_line>[0-9]{1,2})f(?P<width>[0-9]{1,2})\.[0-9]{1,2}\)", re.IGNORECASE)
 
 
+def declares_series(lines: list[str], index: int) -> bool:
+    """Return whether ``lines[index]`` declares a series."""
+    return _SPACING.match(line_at(lines, index)) is not None
+
+
 def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Series], int]:
     """Return the interval [s], the series by kind ("acc", "vel", "dis"), and where the lines after them begin.
 
@@ -31,7 +37,7 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
     """
     _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}
-    while _SPACING.match(line_at(lines, end)):
+    while declares_series(lines, end):
         quantity, _, values, end = _block(lines, end, ("vel", "dis"))
         series[quantity] = values
     return dt, series, end
@@ -52,13 +58,19 @@ def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str
             f'line {start + 1}: found "{line[0].strip()[:75]}"; expected a count, an interval and a unit of '
             f"{' or '.join(_WORDS[word] for word in expected)}"
         )
-    if layout:
-        per_line, width = int(layout["per_line"]), int(layout["width"])
-    else:  # before formats were declared: 8F9.6 or 8F10.3, which the first line tells
-        per_line, width = _PER_LINE, len(line_at(lines, start + 1).rstrip()) // min(_PER_LINE, npts)
-    if per_line < 1 or width < 2:
-        raise InputError(
-            f'line {start + 2}: found "{line_at(lines, start + 1)[:40]}"; expected numbers in equal columns'
-        )
-    values, end = fixed_numbers(lines, start + 1, npts, width, per_line)
+    columns = (int(layout["width"]), int(layout["per_line"])) if layout else None
+    values, end = equal_columns(lines, start + 1, npts, columns)
     return quantity, float(f"{1.0 / step:.12g}") if line["rate"] else step, (values, unit["unit"]), end
+
+
+def equal_columns(
+    lines: list[str], start: int, npts: int, columns: tuple[int, int] | None = None
+) -> tuple[Samples, int]:
+    """Return ``npts`` numbers from ``lines[start]`` on, shape (npts,), and where the lines after them begin.
+
+    They stand in ``columns`` of a width and so many to a line, or in eight that the first line tells: 8F9.6 or 8F10.3.
+    """
+    width, per_line = columns or (len(line_at(lines, start).rstrip()) // min(_PER_LINE, npts), _PER_LINE)
+    if per_line < 1 or width < 2:
+        raise InputError(f'line {start + 1}: found "{line_at(lines, start)[:40]}"; expected numbers in equal columns')
+    return fixed_numbers(lines, start, npts, width, per_line)

@@ -9,7 +9,7 @@ import re
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import count_and_step, moment_in, number_if_any
+from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in, number_if_any
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.origin import TURKISH, origin_of
@@ -62,17 +62,8 @@ def parse(text: str) -> list[Recording]:
 
 def _header(lines: list[str]) -> dict[str, str]:
     """Return the keys before the first line that has none, each with its value."""
-    header: dict[str, str] = {}
-    for number, line in enumerate(lines[:_MOST_KEYS], start=1):
-        key, colon, value = line.partition(":")
-        if not colon:
-            break
-        if key.strip() in header:
-            raise InputError(f'line {number}: "{key.strip()[:40]}" a second time; expected the values of one component')
-        header[key.strip()] = value.strip()
-    lacking = [key for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM") if not header.get(key)]
-    if lacking:
-        raise InputError(f"the header lacks {', '.join(lacking)}")
+    end = next((i for i, line in enumerate(lines[:_MOST_KEYS]) if ":" not in line), len(lines))
+    header = keys_of(lines[:end], "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM", once=True)
     kind = header.get("DATA_TYPE", "ACCELERATION")
     if kind.upper() != "ACCELERATION":
         raise NoRecordError(

@@ -80,14 +80,29 @@ def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expecte
     raise InputError(f'no line "{expected}" in the first {most} lines')
 
 
-def keys_of(lines: Sequence[str]) -> dict[str, str]:
-    """Return the values of header lines ``KEY : value``, the first of each key; other lines are skipped."""
+def keys_of(lines: Sequence[str], *needed: str, once: bool = False) -> dict[str, str]:
+    """Return the values of header lines ``KEY : value``, the first of each key; other lines are skipped.
+
+    Raises ``InputError`` with all ``needed`` keys that it lacks, or has without a value, and for a key that is there twice
+    instead of ``once``.
+    """
     header: dict[str, str] = {}
     for index in range(len(lines)):
         key, colon, value = line_at(lines, index).partition(":")
+        if once and key.strip() in header:
+            raise InputError(
+                f'line {index + 1}: "{key.strip()[:40]}" a second time; expected the values of one component'
+            )
         if colon and key.strip():
             header.setdefault(key.strip(), value.strip())
+    require(header, *needed)
     return header
+
+
+def require(header: Mapping[str, str], *keys: str) -> None:
+    """Raise ``InputError`` with all the ``keys`` that a header lacks, or has without a value."""
+    if lacking := [key for key in keys if not header.get(key)]:
+        raise InputError(f"the header lacks {', '.join(lacking)}")
 
 
 def number_of(header: Mapping[str, str], key: str) -> float:

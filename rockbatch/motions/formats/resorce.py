@@ -6,7 +6,6 @@ touch. The layout is that of the database's own files.
 
 import re
 
-from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
@@ -27,12 +26,10 @@ def parse(text: str) -> list[Recording]:
     """Return the recording of a file; ``InputError`` with the line, or the key, where it is not whole."""
     lines = lines_of(text)
     index, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
-    header = keys_of(lines[:index])
+    header = keys_of(lines[:index], *_NEEDED)
     npts, dt = count_and_step(header, *_NEEDED[:2])
     values, end = fixed_numbers(lines, index + 1, npts, _WIDTH, _PER_LINE)
     refuse_more(lines, end, f"the {npts} declared values")
-    if "Orientation" not in header:
-        raise InputError("the header lacks Orientation")
     code, _, name = (part.strip() for part in header.get("Station Code / Name", "").partition("/"))
     event = header.get("Event Date & Time", "")
     return [

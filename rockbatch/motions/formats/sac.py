@@ -1,28 +1,60 @@
-"""SAC (binary): one component, in a unit that its header does not tell reliably."""
+"""SAC (binary): one component, in a unit that its header does not tell reliably.
 
-from typing import Literal
+A header of 70 floats and 40 integers of four bytes and 24 words of eight letters, in either byte order, then the samples as
+floats. Words whose value is -12345 are undefined. Source: SAC's manual, "SAC data file format".
+"""
+
+from datetime import UTC, datetime
 
 import numpy as np
 
-from rockbatch.common.lazy import obspy
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
+from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.record_file import RecordFile, no_acceleration, unstated
-from rockbatch.motions.formats.with_obspy import read_stream
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
-from rockbatch.motions.origin import Origin, origin_of
+from rockbatch.motions.origin import origin_of
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
-_KIND_AT = 86 * 4  # header word IDEP
+_DAY = 86400.0  # s
 _KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
-_VERSION_AT = 76 * 4  # header word NVHDR, 6 or 7
+_HEADER, _FLOATS, _INTEGERS, _TEXTS = 632, 70, 40, 24  # bytes; words
+_VERSION_AT = 76 * 4  # bytes: NVHDR, 6 or 7
+_UNDEFINED = -12345
+_NUMBERS = {  # word, the least and the largest value; floats are the first of them
+    "DELTA": (0, 1e-5, 1.0),
+    "B": (5, -1e10, 1e10),  # some count from 1970
+    "CMPAZ": (57, -360.0, 720.0),
+    "CMPINC": (58, -180.0, 180.0),
+    "NZYEAR": (70, 1900, 2100),
+    "NZJDAY": (71, 1, 366),
+    "NZHOUR": (72, 0, 24),
+    "NZMIN": (73, 0, 60),
+    "NZSEC": (74, 0, 61),
+    "NZMSEC": (75, 0, 1000),
+    "NVHDR": (76, 6, 7),
+    "NPTS": (79, 1, 2**28),
+    "IFTYPE": (85, 1, 1),  # a time series; spectra and tables have other numbers
+    "IDEP": (86, -(2**31), 2**31),
+    "LEVEN": (105, 1, 1),  # samples at even times
+}
+_NEEDED = ("DELTA", "NPTS", "NVHDR")
+_NAMES = {"KSTNM": (0, 1), "KEVNM": (1, 3), "KHOLE": (3, 4), "KCMPNM": (20, 21), "KNETWK": (21, 22)}  # texts
 
 
 def is_sac(head: bytes) -> bool:
     """Return whether the first bytes are a binary SAC header, in either byte order."""
-    word = head[_VERSION_AT : _VERSION_AT + 4]
-    return len(word) == 4 and any(int.from_bytes(word, order) in (6, 7) for order in ("little", "big"))
+    return _byte_order(head) is not None
+
+
+def _byte_order(data: bytes) -> str | None:
+    """Return the byte order in which the version of the header is one."""
+    whole = len(data) >= _VERSION_AT + 4
+    return next(
+        (order for order in "<>" if whole and np.frombuffer(data, f"{order}i4", 1, _VERSION_AT)[0] in (6, 7)), None
+    )
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
@@ -32,57 +64,86 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
     """
     options = file.options
-    (trace,) = read_stream(file.data, "SAC")
-    stats = trace.stats
-    if is_clock(stats.channel):
-        return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", stats.channel)]
-    if (kind := _KINDS.get(_kind(file.data)) or not_acceleration(stats.channel)) and "unit" not in options.instead:
+    numbers, names, samples = _parsed(file.data)
+    station, location, channel, network = (names[name] for name in ("KSTNM", "KHOLE", "KCMPNM", "KNETWK"))
+    if is_clock(channel):
+        return [Unusable(file.stem, file.source, "the recorder's clock, no ground motion", channel)]
+    kind = _KINDS.get(int(numbers.get("IDEP", 0))) or not_acceleration(channel)
+    if kind and "unit" not in options.instead:
         raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
         raise unstated(
             "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
         )
-    start = stats.starttime.timestamp
+    start, day = _start(numbers)
     factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
-    orientation = orientation_of(stats.channel) or _by_angles(stats.sac) or split_stem(file.stem)[1]
-    codes = (stats.network, stats.station, stats.location, stats.channel[:-1])
     return [
         Component(
             name=file.stem,
-            dt=float(str(np.float32(stats.delta))),  # the shortest decimal that a header of four bytes may mean
-            acceleration=trace.data.astype(float) * factor,
-            orientation=orientation or unknown(stats.channel),
-            station=".".join(codes) if stats.station else "",
+            dt=float(str(np.float32(numbers["DELTA"]))),  # the shortest decimal that a header of four bytes may mean
+            acceleration=samples * factor,
+            orientation=orientation_of(channel) or _by_angles(numbers) or split_stem(file.stem)[1] or unknown(channel),
+            station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
             start=start,
-            sensor=Sensor(stats.station if start >= FIRST_YEAR else "", stats.network, stats.location),
+            sensor=Sensor(station if start >= FIRST_YEAR else "", network, location),
             unit=options.unit or "m/s2",
             raw=True,
-            origin=_origin(stats, start),
+            origin=origin_of(names["KEVNM"], f"{network}.{station}".strip("."), day),
             notes=(f"unit {options.unit or 'm/s2'} as stated",),
         )
     ]
 
 
-def _kind(data: bytes) -> int:
-    """Return the header's kind of data (IDEP), in the byte order of its version."""
-    order: Literal["little", "big"] = (
-        "little" if int.from_bytes(data[_VERSION_AT : _VERSION_AT + 4], "little") in (6, 7) else "big"
-    )
-    return int.from_bytes(data[_KIND_AT : _KIND_AT + 4], order, signed=True)
+def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
+    """Return numbers and texts of the header by their names, those that are defined and "" for the others, and the samples.
+
+    Raises ``InputError`` for words that cannot be, and for a file of another length.
+    """
+    if len(data) < _HEADER:
+        raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_HEADER}: the file is cut")
+    order = _byte_order(data)
+    words = (*np.frombuffer(data, f"{order}f4", _FLOATS), *np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS))
+    numbers = {}
+    for name, (word, least, largest) in _NUMBERS.items():
+        value = float(words[word])
+        if value == _UNDEFINED and name not in _NEEDED:
+            continue
+        if not least <= float(f"{value:.7g}") <= largest:
+            raise InputError(f"SAC header: {name} = {value:g}; expected {least:g} to {largest:g}: it is damaged")
+        numbers[name] = value
+    npts = int(numbers["NPTS"])
+    if len(data) != _HEADER + 4 * npts:
+        raise InputError(
+            f"holds {(len(data) - _HEADER) / 4:.10g} samples behind its header, which says {npts}: the file is cut, or damaged"
+        )
+    text = data[4 * (_FLOATS + _INTEGERS) : _HEADER].decode("latin-1")
+    names = {name: text[8 * first : 8 * end].partition("\0")[0].strip() for name, (first, end) in _NAMES.items()}
+    names = {name: "" if value.startswith(str(_UNDEFINED)) else value for name, value in names.items()}
+    return numbers, names, np.frombuffer(data, f"{order}f4", npts, _HEADER).astype(float)
 
 
-def _origin(stats: "obspy.core.trace.Stats", start: float) -> Origin:
-    """Return the origin by the header's name of the event (KEVNM), or the day of the record."""
-    day = stats.starttime.strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
-    return origin_of(str(stats.sac.get("kevnm", "")), f"{stats.network}.{stats.station}".strip("."), day)
+def _start(numbers: dict[str, float]) -> tuple[float, str]:
+    """Return the time of the first sample [s since 1970, or B without a date] and its day; "" without a date."""
+    begins = numbers.get("B", 0.0)
+    try:
+        year, day, hour, minute, second, ms = (
+            numbers[f"NZ{part}"] for part in ("YEAR", "JDAY", "HOUR", "MIN", "SEC", "MSEC")
+        )
+    except KeyError:
+        return begins, ""
+    midnight = moment(int(year), 1, 1, int(hour), int(minute), second)
+    if midnight is None:
+        return begins, ""
+    start = midnight + _DAY * (day - 1) + (ms / 1000 + begins)
+    return start, datetime.fromtimestamp(start, UTC).strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
 
 
-def _by_angles(sac: dict[str, float]) -> Orientation | None:
+def _by_angles(numbers: dict[str, float]) -> Orientation | None:
     """Return the orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], if both are set and it is one."""
-    if "cmpinc" not in sac or "cmpaz" not in sac:
+    if "CMPINC" not in numbers or "CMPAZ" not in numbers:
         return None
-    azimuth, inclination = float(sac["cmpaz"]), float(sac["cmpinc"])
+    azimuth, inclination = numbers["CMPAZ"], numbers["CMPINC"]
     if inclination in (0.0, 180.0):
         return Orientation("", vertical=True, down=inclination == 180.0)
     return Orientation("", azimuth=azimuth % 360.0) if abs(inclination - 90.0) <= _LEVEL else None

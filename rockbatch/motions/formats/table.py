@@ -92,7 +92,7 @@ def _counted(
 ) -> tuple[list[str], Samples] | None:
     """Return header and table if the line at ``place``, of two ``numbers``, is count and step of all that follow, else None."""
     npts, dt = numbers
-    if npts != int(npts) or npts < 2 or not 0.0 < dt < 1.0:
+    if not npts.is_integer() or npts < 2 or not 0.0 < dt < 1.0:
         return None
     said = f"# NPTS = {npts:.0f}, DT = {dt:.12g} s"
     header, table = read_table("\n".join([*lines[:place], said, *lines[place + 1 :]]), wrapped, named)

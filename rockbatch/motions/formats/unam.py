@@ -14,7 +14,15 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
-from rockbatch.motions.formats.header_lines import count_and_step, date_in, keys_of, line_with, moment, number_of
+from rockbatch.motions.formats.header_lines import (
+    count_and_step,
+    date_in,
+    keys_of,
+    line_with,
+    moment,
+    number_of,
+    require,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
 from rockbatch.motions.motion import Samples
@@ -98,8 +106,7 @@ def _header(lines: list[str]) -> dict[str, str]:
         return next((value for key, value in entries.items() if key.startswith(begins)), "")
 
     header = {name: value_of(name) for name in (*_NEEDED, *_ELSE)}
-    if lacking := [name for name in _NEEDED if not header[name]]:
-        raise InputError(f"the header lacks {', '.join(lacking)}")
+    require(header, *_NEEDED)
     return header
 
 

@@ -4,9 +4,8 @@ Left to find the format itself, ``obspy.read`` unpickles files that look like a 
 their code. Bytes are handed over rather than a path, so that nothing in a file's name is taken for a pattern
 or an address.
 
-The readers believe what a header says: an event's longitude of 1e30 is brought below 180° by subtracting 360° for
-ever, and a control header whose blockette is 0 long is read again and again. So each of them has a check here, which
-raises ``InputError`` for words that cannot be, and hands on only words that it knows.
+The readers believe what a header says: a control header whose blockette is 0 long is read again and again. So each of them has a
+check here, which raises ``InputError`` for words that cannot be.
 """
 
 import io
@@ -22,59 +21,12 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import obspy
 
 _ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # another one each time
-_UNDEFINED = -12345  # of SAC; as text for its words of eight letters
-_SAC_HEADER, _FLOATS, _INTEGERS = 632, 70, 40  # bytes; words of four bytes, floats first
-_SAC_FLOATS = {  # word, the least and the largest value
-    "DELTA": (0, 1e-5, 1.0),
-    "B": (5, -1e10, 1e10),  # some count from 1970
-    "CMPAZ": (57, -360.0, 720.0),
-    "CMPINC": (58, -180.0, 180.0),
-}
-_SAC_INTEGERS = {  # likewise
-    "NZYEAR": (70, 1900, 2100),
-    "NZJDAY": (71, 1, 366),
-    "NZHOUR": (72, 0, 24),
-    "NZMIN": (73, 0, 60),
-    "NZSEC": (74, 0, 61),
-    "NZMSEC": (75, 0, 1000),
-    "NVHDR": (76, 6, 7),
-    "NPTS": (79, 1, 2**28),
-    "IFTYPE": (85, 1, 1),  # a time series; spectra and tables have other numbers
-    "LEVEN": (105, 1, 1),  # samples at even times
-}
-_SAC_NEEDED = ("DELTA", "NPTS", "NVHDR")
-_SAC_TEXTS = (0, 1, 2, 3, 20, 21)  # of 24 texts: station, event (two), hole, component, network
 
 _DATA, _CONTROL = b"DRQM", b"VAST"  # kinds of records in a SEED volume
 _FIXED = 48  # bytes of a data record's fixed header
 _LENGTHS = range(7, 21)  # of records, as powers of 2
 _LENGTH_IN = (b"005", b"008", b"010")  # the blockettes of a volume that tell the length of its records
 _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
-
-
-def sac(data: bytes) -> bytes:
-    """Return a binary SAC file whose other header words, such as event and distance, are undefined."""
-    if len(data) < _SAC_HEADER:
-        raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_SAC_HEADER}: the file is cut")
-    offset = 4 * _SAC_INTEGERS["NVHDR"][0]
-    order = "<" if int.from_bytes(data[offset : offset + 4], "little") in (6, 7) else ">"
-    floats = np.frombuffer(data, f"{order}f4", _FLOATS)
-    integers = np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS)
-    texts = np.frombuffer(data, "S8", 24, 4 * (_FLOATS + _INTEGERS))
-    copies = np.full_like(floats, _UNDEFINED), np.full_like(integers, _UNDEFINED), np.full_like(texts, b"-12345  ")
-    for words, limits, first, copied in (
-        (floats, _SAC_FLOATS, 0, copies[0]),
-        (integers, _SAC_INTEGERS, _FLOATS, copies[1]),
-    ):
-        for name, (word, least, largest) in limits.items():
-            value = words[word - first]
-            if value == _UNDEFINED and name not in _SAC_NEEDED:
-                continue
-            if not least <= float(f"{value:.7g}") <= largest:
-                raise InputError(f"SAC header: {name} = {value:g}; expected {least:g} to {largest:g}: it is damaged")
-            copied[word - first] = value
-    copies[2][list(_SAC_TEXTS)] = texts[list(_SAC_TEXTS)]
-    return b"".join(words.tobytes() for words in copies) + data[_SAC_HEADER:]
 
 
 def mseed(data: bytes) -> bytes:
@@ -125,10 +77,8 @@ def _data_record(record: bytes) -> None:
         offset, previous = following, offset
 
 
-CHECKS: dict[str, Callable[[bytes], bytes]] = {"SAC": sac, "MSEED": mseed}
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": mseed}
 """By ObsPy's name of the format."""
-
-_OPTIONS = {"SAC": {"round_sampling_interval": False}}  # rounding a step of four bytes, ObsPy warns of 1/512 s
 
 
 @contextmanager
@@ -150,7 +100,7 @@ def read_stream(data: bytes, name: str) -> "obspy.Stream":
         warnings.simplefilter("always")
         try:
             stream = obspy.read(  # warns of its own use of the standard library when it is loaded
-                io.BytesIO(data), format=name, check_compression=False, **_OPTIONS.get(name, {})
+                io.BytesIO(data), format=name, check_compression=False
             )
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
             message = _ADDRESS.sub("the file", str(error))
