@@ -24,7 +24,8 @@ from rockbatch.common.files import (
     only_writer,
     read_table,
     read_text,
-    refuse_folders,
+    refuse_irregular,
+    remove,
     sha256_of,
     write_whole,
 )
@@ -67,9 +68,10 @@ class Analysis(Shown):
     files: tuple[Path, ...] = ()
 
     @classmethod
-    def refuse_folders(cls, directory: Path) -> None:
-        """Raise ``InputError`` if a folder stands where a file of this analysis is to be written."""
-        refuse_folders(directory, (*(f"{name}.csv" for name in cls.TABLES), f"{cls.NAME}.json", REPORT))
+    def refuse_irregular(cls, directory: Path) -> None:
+        """Raise ``InputError`` if no regular file stands where one of this analysis is to be written."""
+        names = (*(f"{name}.csv" for name in cls.TABLES), f"{cls.NAME}.json", REPORT)
+        refuse_irregular(*(directory / name for name in names))
 
     @property
     def tables(self) -> "dict[str, pd.DataFrame]":
@@ -206,7 +208,7 @@ class AnalysisFolder:
 
     def drop(self, file: str) -> None:
         """Remove a table that an earlier analysis had, and this one has not."""
-        (self.directory / file).unlink(missing_ok=True)
+        remove(self.directory / file)
 
     def tables(self, names: Sequence[str]) -> dict[str, Any]:
         """Return the tables NAME.csv as the disk has them; None for those that this analysis does not have."""
@@ -247,7 +249,7 @@ def run_analysis(
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
     spec = read(loaded)
     if out is not None:
-        kind.refuse_folders(Path(out))
+        kind.refuse_irregular(Path(out))
     with nullcontext(out) if out is not None else TemporaryDirectory(prefix="rockbatch-") as directory, engine:
         results = AnalysisFolder(
             Path(directory), kind.NAME, loaded, fresh=fresh, listener=listener, engine=engine, temporary=out is None

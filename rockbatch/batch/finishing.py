@@ -22,7 +22,7 @@ from rockbatch.checks.checking import verdicts
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import is_plain, legible, read_text
+from rockbatch.common.files import is_plain, legible, read_text, remove
 from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
 from rockbatch.reporting import REPORT, write_report
@@ -157,7 +157,7 @@ def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
     """
     directory = journal.path.parent
     for name in OUTPUTS[1:]:
-        (directory / name).unlink(missing_ok=True)
+        remove(directory / name)
     return journal.write_in_order(directory / PEAKS, unusable_rows(motions))._asdict()
 
 
@@ -174,7 +174,7 @@ def finish(
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
-    (directory / REPORT).unlink(missing_ok=True)  # it comes last: where it is, the others are there
+    remove(directory / REPORT)  # it comes last: where it is, the others are there
     with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = open_results(directory)
@@ -210,7 +210,7 @@ def _tables(
     """Yield name and rows of the tables beside the peaks, and take away those of another time."""
     asked = _beside_peaks(study, motions)
     for name in {INTENSITY, SHOCKS, HALF_CYCLES}.difference(asked):
-        (saved.directory / name).unlink(missing_ok=True)
+        remove(saved.directory / name)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
     if INTENSITY in asked:
         yield INTENSITY, intensities(saved.peaks, study, motions.motions)
@@ -239,5 +239,5 @@ def _keep_histories(
     except InputError as error:
         return None, error
     if path is None:
-        (saved.directory / HISTORIES).unlink(missing_ok=True)
+        remove(saved.directory / HISTORIES)
     return path, None

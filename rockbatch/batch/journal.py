@@ -23,6 +23,7 @@ from rockbatch.common.files import (
     naming_full_disk,
     only_writer,
     opened,
+    remove,
     replacing,
 )
 
@@ -104,7 +105,7 @@ class Journal:
             made_folder(self.path.parent)
             entered.enter_context(only_writer(self.path.parent))
             if self._fresh:
-                self.path.unlink(missing_ok=True)
+                remove(self.path)
             self._file = opened(self.path, "r+b")
             entered.callback(lambda: self._file.close())
             if damaged := self._recover():
@@ -126,7 +127,7 @@ class Journal:
             empty = os.fstat(self._file.fileno()).st_size <= self._head
             self._file.close()
             if os.getpid() == self._process and (empty or (self._written and kind is None)):
-                self.path.unlink()
+                remove(self.path)
 
     def __len__(self) -> int:
         """Return the number of finished runs."""

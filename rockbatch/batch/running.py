@@ -26,7 +26,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import refuse_folders
+from rockbatch.common.files import refuse_irregular
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
@@ -144,7 +144,7 @@ def run_into(
         As :func:`run`.
     """
     started = time.monotonic()
-    refuse_folders(directory, OUTPUTS)
+    refuse_irregular(*(directory / name for name in OUTPUTS))
     motions = ground_motions(study)
     listener.motions(motions)
     _check_records(records, motions)

@@ -106,7 +106,7 @@ _RUN: Arguments = {
 _MOTIONS: Arguments = {
     "path": value(Path, "PATH", "files or folders (recursive)", nargs="+"),
     "--all": flag("list every recording, what was done to it, and every file that is not used"),
-    "--csv": value(Path, "FILE", "write the table to FILE too"),
+    "--csv": value(Path, "FILE", "write the table to FILE too; - is stdout"),
     "--write-manifest": flag("draft PATH/motions.toml from what was found"),
     "--strict": flag("fail if any file cannot be used"),
     "--unit": {"help": 'acceleration unit of files that do not state theirs, such as "cm/s2"'},
@@ -165,8 +165,8 @@ COMMANDS = {
         "commands.statics.main",
         {
             "file": value(Path, "STUDY.toml", "the study file; its records are not read, and need not be there"),
-            "--csv": value(Path, "FILE", "write the sheet to FILE too, a row for each case"),
-            "--curves": value(Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation"),
+            "--csv": value(Path, "FILE", "write the sheet to FILE too, a row for each case; - is stdout"),
+            "--curves": value(Path, "FILE", "write the moment-rotation curves to FILE, a row for each rotation; - is stdout"),
         },
     ),
     "run": Command(
@@ -197,7 +197,7 @@ COMMANDS = {
         {
             "directory": _FOLDER,
             "other": value(Path, "OTHER", "a second folder, to compare with the first", nargs="?"),
-            "--out": value(Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html)"),
+            "--out": value(Path, "FILE", "file to write (default: DIR/report.html, or DIR/compare-OTHER.html); - is stdout"),
             "--all": flag("unfold every section, so that all of them are printed"),
         },
     ),

@@ -6,14 +6,16 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, redirect_stdout, suppress
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, NoReturn
 
 from rockbatch.commands.arguments import COMMANDS
 from rockbatch.commands.interrupts import answered_interrupts
 from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import AboutResults, InputError
+from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import __version__
 
@@ -87,8 +89,9 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
 
 def _exit_code(parsed: argparse.Namespace) -> int:
     """Run a command and return its exit code; report what went wrong in words."""
+    is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
-        with warnings.catch_warnings():
+        with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():
             warnings.simplefilter("always", AboutResults)
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].run_command(parsed)

@@ -1,5 +1,6 @@
 """Example studies and the records they need: their paths, and copies of them to work on."""
 
+import os
 import re
 import shutil
 import tomllib
@@ -99,7 +100,7 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
     records = folder() / "motions" / match[1] if match else None
     written = [to / study, to / CHECKS, *([to / RECORDS] if records else [])]
     for path in written:
-        if path.exists():
+        if os.path.lexists(path):
             raise InputError(f"{path} is there already; name another folder, or move it away")
     made_folder(to)
     if records:

@@ -9,7 +9,7 @@ from typing import Any
 from rockbatch.batch.listening import count
 from rockbatch.commands.streams import filled, in_width, say, show
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_text, write_whole
+from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import LeftOut, Motion, MotionSet, ReadOptions, Unusable, read_motions
@@ -145,10 +145,7 @@ def _write(path: Path, rows: list[dict[str, Any]], suite: MotionSet) -> None:
     not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
     heads = list(COLUMNS)
     heads.insert(heads.index("azimuth_deg"), "reason")
-    try:
-        write_whole(path, csv_text(heads, [*rows, *not_used]))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    write_output(path, csv_text(heads, [*rows, *not_used]))
 
 
 def _table(rows: list[dict[str, Any]]) -> str:

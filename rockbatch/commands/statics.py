@@ -10,8 +10,7 @@ import numpy as np
 from rockbatch.checks.remarks import weak_supports
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
-from rockbatch.common.errors import InputError
-from rockbatch.common.files import csv_text, write_whole
+from rockbatch.common.files import csv_text, write_output
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.results.run_json import describe_case
@@ -97,8 +96,5 @@ def rotations(sheet: Statics) -> str:
 def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[tuple[Case, list[Any]]]) -> None:
     """Write a table whose rows begin with the case and the varied values."""
     lines = [{"case": case.name} | case.columns | line for case, of_case in rows for line in of_case]
-    try:
-        write_whole(path, csv_text(["case", *study.varied, *columns], lines))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    write_output(path, csv_text(["case", *study.varied, *columns], lines))
     say(str(path))

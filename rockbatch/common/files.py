@@ -1,8 +1,9 @@
 """Access to the files of a folder of results, and to texts from elsewhere.
 
 A folder may come from anybody. What is read or continued there is a plain file of that folder (:func:`opened`); what is new
-takes its place as a whole (:func:`replacing`); and one process at a time writes (:func:`only_writer`). A text from elsewhere is
-:func:`legible` before it is shown, and :func:`csv_safe` in a table.
+takes its place as a whole (:func:`replacing`); only plain files are replaced or removed (:func:`remove`); and one process at a
+time writes (:func:`only_writer`). Where a user says where to write, pipes and terminals will do as well (:func:`write_output`). A
+text from elsewhere is :func:`legible` before it is shown, and :func:`csv_safe` in a table.
 """
 
 import csv
@@ -32,9 +33,14 @@ MOST_TEXT = 1 << 30
 
 CHANGED = "changed while it was read; read it again when nothing writes into it any more"
 
-_AT_ONCE = sum(getattr(os, flag, 0) for flag in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY"))
+_AT_ONCE = sum(getattr(os, flag, 0) for flag in ("O_NONBLOCK", "O_CLOEXEC", "O_BINARY", "O_NOCTTY"))
 _PLAIN_ONLY = _AT_ONCE | getattr(os, "O_NOFOLLOW", 0)
 """A link is not followed, and a pipe does not keep whoever opens it waiting."""
+_KINDS = (
+    (stat.S_ISLNK, "a link"), (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a disk"),
+)  # fmt: skip
+_STDOUT = ("-", "/dev/stdout")
 
 _FORMULA_AHEAD = r"(?='*[=+\-@＝＋－＠\t\r\n].)"
 _FORMULA = re.compile(rf"(?:\A|(?<=;)){_FORMULA_AHEAD}", re.DOTALL)
@@ -74,7 +80,7 @@ def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
     status = os.fstat(handle)
     if not stat.S_ISREG(status.st_mode) or (mode == "r+b" and status.st_nlink > 1):
         os.close(handle)
-        raise _not_plain(path, "a file with several names" if stat.S_ISREG(status.st_mode) else "no plain file")
+        raise _not_plain(path, _kind(status) or "a file with several names")
     return io.FileIO(handle, mode)
 
 
@@ -83,14 +89,20 @@ def opened_input(path: Path) -> io.FileIO:
 
     A named pipe that nobody writes into is empty, instead of keeping whoever opens it waiting for ever.
     """
-    handle = os.open(path, os.O_RDONLY | _AT_ONCE)
-    if hasattr(os, "O_NONBLOCK"):
-        os.set_blocking(handle, True)  # of a pipe with a writer, as of `<(…)` in a shell, all is read
+    handle = _open_at_once(path, os.O_RDONLY)
     try:
         return io.FileIO(handle)
     except OSError:  # of a folder
         os.close(handle)
         raise
+
+
+def _open_at_once(path: Path, flags: int) -> int:
+    """Open a file without waiting for the other end of a pipe; what goes through it, as of `<(…)` in a shell, is waited for."""
+    handle = os.open(path, flags | _AT_ONCE)
+    if hasattr(os, "O_NONBLOCK"):
+        os.set_blocking(handle, True)
+    return handle
 
 
 @contextmanager
@@ -120,6 +132,11 @@ def _not_plain(path: Path, kind: str) -> InputError:
     return InputError(
         f"{path}: {kind}, which is neither read nor written in a folder of results; remove it, or put a plain file there"
     )
+
+
+def _kind(status: os.stat_result) -> str:
+    """Return what a file is that is no regular one, in words; empty for a regular one."""
+    return next((words for is_kind, words in _KINDS if is_kind(status.st_mode)), "")
 
 
 def is_plain(path: Path) -> bool:
@@ -163,8 +180,10 @@ def made_folder(path: Path) -> Path:
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary file beside ``path`` that takes its place at the end of the ``with`` block, or is removed on an error.
 
-    A reader finds the earlier file or the new one, never a part.
+    A reader finds the earlier file or the new one, never a part. Raises ``InputError`` if something else than a regular file
+    stands there.
     """
+    refuse_irregular(path)
     with naming_full_disk(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=UNFINISHED, dir=path.parent)
         os.close(handle)
@@ -177,25 +196,57 @@ def replacing(path: Path) -> Iterator[Path]:
             temporary.chmod(0o666 & ~umask)
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())  # else a power cut might leave the name without the contents
+            refuse_irregular(path)  # it may have come meanwhile
             temporary.replace(path)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
 
 
-def refuse_folders(directory: Path, names: Iterable[str]) -> None:
-    """Raise ``InputError`` with all folders that stand where files of these names will be written."""
-    folders = [path for path in (directory / name for name in names) if path.is_dir() and not path.is_symlink()]
-    if folders:
-        raise InputError(
-            *(f"{path}: a folder, where a file of this name is to be written; move it away" for path in folders)
-        )
+def refuse_irregular(*paths: Path) -> None:
+    """Raise ``InputError`` with all of these that are there but are no regular files."""
+    kinds = {path: _kind(os.lstat(path)) for path in paths if os.path.lexists(path)}
+    advice = "which is not replaced; move it away, or name another"
+    if any(kinds.values()):
+        raise InputError(*(f"{path}: {kind}, {advice}" for path, kind in kinds.items() if kind))
+
+
+def remove(path: Path) -> None:
+    """Remove a file of a folder of results, if it is there; ``InputError`` for what is no regular file."""
+    refuse_irregular(path)
+    path.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, text: str) -> None:
     """Write UTF-8 ``text`` to ``path``, whole or not at all."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def write_output(path: Path, text: str) -> None:
+    """Write UTF-8 ``text`` where a user asks for it: as :func:`write_whole`, or into a pipe, a device or stdout (``-``).
+
+    Raises ``InputError`` for all else that is no regular file, and for what cannot be written.
+    """
+    try:
+        with naming_full_disk(path):
+            if is_stdout(path):
+                handle = os.dup(1)
+            elif path.exists() and _kind(path.stat()) in ("a pipe", "a device"):
+                handle = _open_at_once(path, os.O_WRONLY)
+            else:
+                write_whole(path, text)
+                return
+            with os.fdopen(handle, "wb") as file:
+                file.write(text.encode())
+    except OSError as error:
+        advice = "; if it is a pipe, start its reader first" if error.errno == errno.ENXIO else ""
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}{advice}") from None
+
+
+def is_stdout(path: Path) -> bool:
+    """Return whether a user means the standard output by ``path``."""
+    return path.as_posix() in _STDOUT
 
 
 @contextmanager
@@ -219,6 +270,7 @@ def only_writer(folder: Path) -> Iterator[None]:
     """
     from filelock import FileLock, Timeout
 
+    refuse_irregular(folder / LOCK)
     process = os.getpid()
     lock = FileLock(folder / LOCK)
     try:
@@ -234,8 +286,8 @@ def only_writer(folder: Path) -> Iterator[None]:
         yield
     finally:
         if os.getpid() == process:
-            with suppress(OSError):  # Windows keeps files that are open
-                Path(lock.lock_file).unlink()
+            with suppress(OSError, InputError):  # Windows keeps files that are open
+                remove(folder / LOCK)
             lock.release()
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import legible, write_whole
+from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
@@ -44,12 +44,9 @@ def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None =
     if not folder.is_dir():
         raise InputError(f"{folder}: a manifest is for a folder; give the one that the records lie in")
     for existing in (target, folder / "motions.csv"):
-        if existing.exists():
+        if os.path.lexists(existing):
             raise InputError(f"{existing} is there already; edit it, or move it away to have a new one drafted")
-    try:
-        write_whole(target, draft(folder, options))
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written: {error.strerror or error}") from None
+    write_output(target, draft(folder, options))
     return target
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rockbatch.checks import as_table, read_verdicts
 from rockbatch.common.arguments import checked
-from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.files import is_plain, made_folder, read_text, write_output, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents
@@ -56,7 +56,7 @@ def write_report(
     """
     directory = Path(directory)
     target = out or directory / REPORT
-    write_whole(target, page(read(directory, responses, saved), whole))
+    (write_output if out else write_whole)(target, page(read(directory, responses, saved), whole))
     return target
 
 
@@ -68,7 +68,7 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None, whol
     """
     first, second = Path(first), Path(second)
     target = out or first / f"compare-{second.resolve().name}.html"
-    write_whole(target, comparison(pair(read(first, ()), read(second, ())), whole))
+    (write_output if out else write_whole)(target, comparison(pair(read(first, ()), read(second, ())), whole))
     return target
 
 

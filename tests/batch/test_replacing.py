@@ -87,7 +87,7 @@ def test_a_folder_called_like_an_output_is_noticed_before_the_first_run(tmp_path
     study, out = write_study(tmp_path, text, "pier.toml"), tmp_path / "out"
     (out / name).mkdir(parents=True)
     assert main([command, str(study), "--out", str(out)]) == 2
-    message = f"{out / name}: a folder, where a file of this name is to be written; move it away\n"
+    message = f"{out / name}: a folder, which is not replaced; move it away, or name another\n"
     assert capsys.readouterr().err == f"rockbatch: {message}"
     assert [path.name for path in out.iterdir()] == [name]
 

@@ -67,15 +67,17 @@ def test_a_file_that_is_no_plain_one_is_not_opened(foreign, tmp_path, name, kind
 
 
 @pytest.mark.parametrize("name", ["peaks.csv", "run.json", "report.html", "checks.csv", "histories.h5"])
-def test_what_is_written_replaces_a_link_and_not_what_it_leads_to(tmp_path, finished, name):
+def test_a_link_where_a_result_is_to_be_written_is_refused_and_what_it_leads_to_stays(tmp_path, finished, name, capsys):
     notes = tmp_path / "notes.txt"
     notes.write_text("precious")
     out = tmp_path / "out"
     out.mkdir()
     (out / name).symlink_to(notes)
-    assert main(["run", str(finished.parent / "study.toml"), "--out", str(out)]) == 0
+    assert main(["run", str(finished.parent / "study.toml"), "--out", str(out)]) == 2
+    assert f"{out / name}: a link, which is not replaced" in capsys.readouterr().err
     assert notes.read_text() == "precious"
-    assert is_plain(out / name)
+    assert (out / name).readlink() == notes
+    assert len(list(out.iterdir())) == 1
 
 
 def test_the_door_opens_plain_files_only(tmp_path):

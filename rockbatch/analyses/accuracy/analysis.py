@@ -131,7 +131,7 @@ def accuracy(
         raise InputError(f"seconds = {seconds:g}: must be above 0")
     loaded, listener = given_study(study, motions), listener_of(progress)
     if out is not None:
-        Accuracy.refuse_folders(Path(out))
+        Accuracy.refuse_irregular(Path(out))
     suite = ground_motions(loaded)
     make_ready(loaded, listener)
     clock = Clock(seconds)
