@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockbatch.analyses.fragility.csv_columns import columns_of
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve, problems
+from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Clash, Key, Section
@@ -99,7 +99,7 @@ def read_hazard(file: TomlFile, levels: str) -> Hazard | None:
 def _from_file(table: Table, name: str, levels: str) -> dict[str, Sequence[Any]]:
     path = table.file.path.parent / name
     with table.noting("file"):
-        columns = columns_of(path, (levels, *_RATES))
+        columns = columns_of(path, dict.fromkeys((levels, *_RATES), positive))
         if levels not in columns or len(columns) != 2:
             raise InputError(
                 f"{path}: its columns are {', '.join(columns)}; it needs {levels} and one of {', '.join(_RATES)}"

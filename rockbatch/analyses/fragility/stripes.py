@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockbatch.analyses.fragility.csv_columns import columns_of
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Clash, Key, Section
@@ -82,15 +82,12 @@ def _records(table: Table, read: dict[str, Any]) -> tuple[tuple[str, ...], tuple
 
 def _from_file(table: Table, name: str) -> tuple[tuple[str, ...], tuple[float, ...]]:
     path = table.file.path.parent / name
-    columns = columns_of(path, ("record", "scale"), texts=("record",))
+    columns = columns_of(path, {"record": text, "scale": positive})
     if "record" not in columns:
         raise InputError(f"{path}: it has no column record")
-    records, scales = tuple(map(str, columns["record"])), tuple(map(float, columns.get("scale", ())))
-    if len(set(records)) < len(records):
+    if len(set(columns["record"])) < len(columns["record"]):
         raise InputError(f"{path}: a record occurs twice; a stripe runs each once")
-    if not all(0 < scale < float("inf") for scale in scales):
-        raise InputError(f"{path}: a scale is not above 0")
-    return records, scales
+    return tuple(columns["record"]), tuple(columns.get("scale", ()))
 
 
 def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[str]) -> list[dict[int, float | None]]:

@@ -1,19 +1,18 @@
 """A release test, what was measured of it and what is fitted: [release] of a study file."""
 
-import csv
-import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.files import whole_input
+from rockbatch.common.errors import InputError
 from rockbatch.study.load import Study
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import Number, choice, positive, shown, text
-from rockbatch.toml.reader import Table, nearby
+from rockbatch.toml.csv_columns import columns_of
+from rockbatch.toml.kinds import Number, choice, not_negative, positive, text
+from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Clash, Key, Section
 
 FITS = ("restitution", "epsilon", "zeta")
@@ -26,8 +25,6 @@ UNITS = {
 
 FEWEST, MOST = 3, 500
 """Values and impacts of a test: with fewer there is no interval, and more no test has."""
-
-_MOST_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -91,7 +88,7 @@ def read_release(study: Study) -> ReleaseSpec:
     if table is not None:
         read: dict[str, Any] = table.read(RELEASE)
         if "measured" in read:
-            read |= _of_file(table, study.path.parent / Path(read["measured"]).expanduser(), read["measured"])
+            read |= _of_file(table, read["measured"])
         spec = ReleaseSpec(**_padded(read))
         if not file.problems:
             _check(table, spec, study)
@@ -109,65 +106,16 @@ def _padded(read: dict[str, Any]) -> dict[str, Any]:
     return read | {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(value for _, value in rows)}
 
 
-def _of_file(table: Table, path: Path, written: str) -> dict[str, tuple[float, ...]]:
-    """Return the columns of a CSV of measured values; what is wrong in it is noted with its line."""
-    try:
-        with whole_input(path) as (file, size):
-            if size > _MOST_BYTES:
-                long = f"{size} bytes, where a table of impacts has a few hundred"
-                table.complain(f"measured = {shown(written)}: {long}", "measured")
-                return {}
-            content = file.read().decode("utf-8-sig")
-    except (OSError, ValueError) as error:  # InputError is one, too
-        reason = (
-            "no such file" + nearby(path, written)
-            if isinstance(error, FileNotFoundError)
-            else f"cannot be read: {error}"
-        )
-        table.complain(f"measured = {shown(written)}: {reason}; paths are relative to the study file", "measured")
-        return {}
-    separator = ";" if ";" in content.partition("\n")[0] else ","
-    lines = csv.reader(io.StringIO(content), delimiter=separator)
-    names = [name.strip() for name in next(lines, [])]
-    if wrong := _wrong_columns(names):
-        table.complain(f"measured = {shown(written)}: {wrong}", "measured")
-        return {}
-    columns: dict[str, list[float]] = {UNITS[name][0]: [] for name in names}
-    for number, cells in enumerate(lines, 2):
-        if not any(cell.strip() for cell in cells):
-            continue
-        if len(cells) != len(names):
-            table.complain(f"{written}:{number}: {len(cells)} values under {len(names)} names", "measured")
-            return {}
-        for name, cell in zip(names, cells, strict=True):
-            value = _number(cell, separator)
-            if value is None or not (math.isnan(value) or 0.0 <= value < math.inf):
-                message = f"{name} = {shown(cell)}: expected 0, a number above it, or nothing"
-                table.complain(f"{written}:{number}: {message}", "measured")
-                return {}
-            columns[UNITS[name][0]].append(value * UNITS[name][1])
-    return {name: tuple(values) for name, values in columns.items()}
-
-
-def _wrong_columns(names: Sequence[str]) -> str:
-    """Return what is wrong about the names of the columns; empty if nothing is."""
-    unknown = [name for name in names if name not in UNITS]
-    if unknown or not names:
-        return (
-            f"column {shown(unknown[0] if unknown else '')}: expected names among {', '.join(UNITS)} in its first line"
-        )
-    kinds = [UNITS[name][0] for name in names]
-    twice = next((kind for kind in kinds if kinds.count(kind) > 1), "")
-    return f"{twice.partition('_')[0]} is given by two columns; keep one" if twice else ""
-
-
-def _number(cell: str, separator: str) -> float | None:
-    """Return a number, NaN for an empty cell; None for what is none. Beside semicolons a comma is a decimal one."""
-    cell = cell.strip().replace(",", ".") if separator == ";" else cell.strip()
-    try:
-        return float(cell) if cell else math.nan
-    except ValueError:
-        return None
+def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:
+    """Return the columns of a CSV of measured values; mistakes in it are noted with their line."""
+    path = table.file.path.parent / Path(name).expanduser()
+    with table.noting("measured"):
+        columns = columns_of(path, dict.fromkeys(UNITS, not_negative), gaps=True)
+        measured = {UNITS[name][0]: tuple(UNITS[name][1] * x for x in values) for name, values in columns.items()}
+        if len(measured) < len(columns):
+            raise InputError(f"{path}: times or amplitudes are given by two columns; keep one")
+        return measured
+    return {}
 
 
 def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:

@@ -1,0 +1,74 @@
+"""Columns of small CSV files that a study names, such as a hazard curve or the measured values of a test."""
+
+import csv
+import math
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import closest
+from rockbatch.toml.kinds import Kind, KindError, Text, shown
+from rockbatch.toml.reader import TomlFile
+
+MOST_ROWS = 100_000
+
+
+def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> dict[str, list[Any]]:
+    """Return the columns of a CSV file by their names in its first line, all as long, with values of these ``kinds``.
+
+    Lines that begin with # are remarks. With semicolons between the cells, decimals may have commas. Where there may be ``gaps``
+    an empty cell is NaN. Raises ``InputError`` with the file and the line for an unknown column, a cell that is not of its kind,
+    or a line that is too short.
+    """
+    lines = [
+        (number, line)
+        for number, line in enumerate(TomlFile.text_of(path).splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if len(lines) < 2 or len(lines) > MOST_ROWS:
+        raise InputError(f"{path}: expected a line of column names, and a line for each row below it")
+    delimiter = ";" if ";" in lines[0][1] else ","
+    rows = [
+        (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in lines
+    ]
+    names = _names(path, *rows[0], kinds)
+    columns: dict[str, list[Any]] = {name: [] for name in names}
+    wrong: list[str] = []
+    for number, cells in rows[1:]:
+        if len(cells) != len(names):
+            wrong.append(
+                f"{path}:{number}: {len(cells)} cells below {len(names)} column names; write one in each column"
+            )
+        elif any(cells):
+            for name, cell in zip(names, cells, strict=True):
+                try:
+                    columns[name].append(_value(cell, kinds[name], delimiter, gaps))
+                except KindError as error:
+                    wrong.append(f"{path}:{number}: {name} = {shown(cell)}: {error.advice()}")
+    if wrong:
+        raise InputError(*wrong[:20])
+    return columns
+
+
+def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]) -> Sequence[str]:
+    for name in names:
+        if name not in known:
+            nearest = closest(name, known)
+            instead = f"did you mean {nearest}?" if nearest else f"write one of {', '.join(known)}"
+            raise InputError(f"{path}:{number}: {shown(name)}: unknown column; {instead}")
+    if len(set(names)) < len(names):
+        raise InputError(f"{path}:{number}: a column occurs twice")
+    return names
+
+
+def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> Any:
+    if gaps and cell.lower() in ("", "nan"):
+        return math.nan
+    if isinstance(kind, Text):
+        return kind(cell)
+    try:
+        value = float(cell.replace(",", ".") if delimiter == ";" else cell)
+    except ValueError:
+        raise KindError(kind.words) from None
+    return kind(value)
