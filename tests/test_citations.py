@@ -142,14 +142,6 @@ def test_links_to_headings_of_documents_lead_there(path):
     assert lost == []
 
 
-def test_citations_are_found():
-    """So that the searches above are known to find them."""
-    assert len([path for path in SOURCES if citations(SOURCES[path])]) > 30
-    assert citations("(THEORY.md, eq. 4) and # (THEORY.md,\n    # Forces)") == ["eq. 4) and # (", "Forces)"]
-    assert cited_equations("eqs. 4 to 6)") == [4, 5, 6]
-    assert len(FILE.findall(SOURCES["docs/pages/verification.md"])) > 20
-
-
 def test_the_citation_names_this_version():
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert re.search(r"^version: (.+)$", citation, re.MULTILINE).group(1) == __version__

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 TOOL = Path(__file__).parent / "mutants"
+PRODUCT = "rockbatch"
 
 
 @pytest.fixture(autouse=True)
@@ -58,13 +59,13 @@ def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
     from run import Place, survives
 
     source = f"def small(x):\n    return x < {limit}\n"
-    (tmp_path / "rockbatch").mkdir()
-    (tmp_path / "rockbatch" / "few.py").write_text(source)
+    (tmp_path / PRODUCT).mkdir()
+    (tmp_path / PRODUCT / "few.py").write_text(source)
     (tmp_path / "conftest.py").write_text("import sys; sys.path.insert(0, 'rockbatch')\n")
     (tmp_path / "test_few.py").write_text("from few import small\ndef test_small(): assert small(1) and not small(9)\n")
     if not survived:
         (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
-    place = Place("rockbatch/few.py", mutant)
+    place = Place(f"{PRODUCT}/few.py", mutant)
     assert survives(place, [["test_few.py"], ["."]], tmp_path) is survived
-    assert (tmp_path / "rockbatch" / "few.py").read_text() == source
+    assert (tmp_path / PRODUCT / "few.py").read_text() == source

@@ -140,6 +140,7 @@ def test_asce7_replaces_the_mean_when_one_response_is_unacceptable_and_fails_on_
     assert one.counted == f"1 {status} (infinite)"
     two = judged(eleven(status=[status, status, *["ok"] * 9]), statistic="asce7-16", at_most=1e6)
     assert (two.value, two.verdict) == (INF, "fail")
+    assert "2 unacceptable responses" in two.note
 
 
 def test_asce7_never_falls_below_the_mean_of_the_acceptable():

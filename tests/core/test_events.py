@@ -18,11 +18,14 @@ from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import NEAR, hermite, largest_within, lowest_within, turning_point
 from rockbatch.core.search import nearby
+from rockbatch.core.springs.equations import holding, touching
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.system import rates
 from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
+    LEFT,
+    RIGHT,
     SEPARATION_LEFT,
     SEPARATION_RIGHT,
     SURVIVED,
@@ -428,3 +431,16 @@ def test_the_least_of_random_cubics_is_that_of_a_grid_whatever_was_least_before(
 def test_kinds_of_history_rows_are_the_ones_compared_here():
     """The numbers that this file compares rows with."""
     assert CONTACT_EVENTS == (SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT)
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize("yields", [0.0, 1.0])
+def test_a_pivot_that_grazes_its_support_leaves_the_other_on_its_branch(side, yields):
+    """In contact before, with a spring that yields or not, or grazing itself: then it is in contact, on the branch asked for."""
+    pressed = touching(touching(Contact(0.0, 0.0, 0.0, 0.0, 0.0), side, 1.0 - yields), -side, yields)
+    grazing = Contact(0.0, 0.0, 0.0, 0.0, float(-side))
+    for before in (pressed, grazing):
+        after = holding(before, side, yields)
+        branches = {LEFT: (after.left, after.left_yields), RIGHT: (after.right, after.right_yields)}
+        assert branches == {side: (0.0, 0.0), -side: (1.0, yields)}
+        assert after.held == side

@@ -240,7 +240,8 @@ def test_the_uncorrected_and_the_corrected_version_of_a_record_are_two_stations(
 
 def test_three_files_of_one_dyna_record_share_their_station_and_no_other_version_does():
     east, up = (read(dyna_text(stream=stream), "x.ASC")[0] for stream in ("HNE", "HNZ"))
-    assert east.station == up.station
+    assert east.station == up.station == read(dyna_text(stream="HNN"), "x.ASC")[0].station
+    assert read(dyna_text(stream="HLE"), "x.ASC")[0].station != east.station  # of another instrument
     assert up.orientation.vertical
     assert read(dyna_text(PROCESSING="none"), "x.ASC")[0].station != east.station
     assert read(dyna_text(EVENT_ID="X-2"), "x.ASC")[0].station != east.station

@@ -319,6 +319,18 @@ def test_a_sac_component_that_is_neither_level_nor_upright_is_asked_for(tmp_path
     assert [u.name for u in found.unusable] == ["b", "c"]
 
 
+@pytest.mark.parametrize(("inclination", "sign"), [(0.0, 1.0), (180.0, -1.0)])
+def test_a_sac_component_along_the_plumb_line_is_the_vertical_one_upwards(tmp_path, inclination, sign):
+    level, upright = wiggle(), wiggle(seed=2)
+    for name, values, inclined in (("a.sac", level, 90.0), ("b.sac", upright, inclination)):
+        trace = Trace(values.astype(np.float32), {"sampling_rate": 100.0, "station": "AQK"})
+        trace.stats.sac = {"cmpaz": 45.0, "cmpinc": inclined}
+        trace.write(str(tmp_path / name), format="SAC")
+    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="m/s2")).motions
+    assert (motion.name, motion.vertical_source) == ("a", "b.sac")
+    np.testing.assert_allclose(motion.vertical, sign * (upright - upright.mean()), atol=1e-6)  # single precision
+
+
 def test_agencies_numbers_of_one_digit_are_azimuths():
     """5° of an SMC or COSMOS header, or the last field of a PEER title, is no number of a component."""
     found = orientation_of("5")

@@ -75,6 +75,11 @@ def test_a_clock_that_is_not_known_to_the_millisecond_gives_no_start(clock):
     assert read(smc_text(clock=clock), "x.smc")[0].start is None
 
 
+@pytest.mark.parametrize("second", [0, 59])
+def test_every_second_of_a_minute_gives_a_start(second):
+    assert read(smc_text(clock=(1989, 291, 0, 4, second, 250)), "x.smc")[0].start == START - 15 + second
+
+
 @pytest.mark.parametrize("digits", [-32768, 8])
 def test_film_without_a_rate_is_pairs_of_time_and_value_on_even_steps(digits):
     times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000

@@ -60,6 +60,8 @@ def test_a_spectrum_of_several_columns_and_one_that_the_study_names_are_refused_
     assert "a response spectrum" in reason(tmp_path)
     write(tmp_path, "", T, SPECTRUM)
     assert "a response spectrum" in reason(tmp_path, unit="g", columns=("T", "Sa"))
+    write(tmp_path, "PSA", SPECTRUM)
+    assert "a response spectrum" in reason(tmp_path, unit="g", dt=0.01)
 
 
 def test_columns_without_labels_below_a_title_of_a_spectrum_are_not_taken_for_time(tmp_path):

@@ -22,6 +22,7 @@ from rockbatch.simulation import (
     run_fixed,
     run_to_tolerance,
 )
+from rockbatch.simulation.agreement import windows
 from rockbatch.simulation.models import readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
@@ -116,6 +117,21 @@ def test_no_error_is_claimed_where_rotations_before_the_peak_have_not_settled(mo
     assert outcome.theta_max_error is None
     assert "before the peak" in outcome.note
     assert "no error of it is claimed" in outcome.note
+
+
+@pytest.mark.parametrize(("window", "claimed"), [(5, False), (7, True), (31, True)])
+def test_rotations_that_have_not_settled_withdraw_the_error_of_a_later_peak_only(monkeypatch, window, claimed):
+    """The peak at 1 s of a motion of 3 s and 2 s after it: in the 7th of 32 equal parts of the run."""
+    at = [0.1 if number == 6 else 0.0 for number in range(WINDOWS)]
+    changing = [[*at[:window], lesser, *at[window + 1 :]] for lesser in (0.010, 0.012, 0.011)]
+    scripted(monkeypatch, *(ok(0.1, t_max=1.0, windows=rotations) for rotations in changing))
+    outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
+    assert (outcome.theta_max_error is not None) == claimed
+
+
+def test_parts_of_a_run_that_neither_of_two_steps_has_reached_agree_and_those_of_one_do_not():
+    fine, coarse = (trial(2, ok(0.1, windows=[0.1, late, math.nan])) for late in (0.05, math.nan))
+    assert windows(fine, coarse)[1][:3].tolist() == [0.0, math.inf, 0.0]
 
 
 SENSITIVE = [ok(0.1, windows=[0.08, 0.1]), ok(0.1, windows=[0.08 + 9e-6, 0.1])]

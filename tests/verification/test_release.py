@@ -203,7 +203,9 @@ def test_other_direction_is_the_mirror_image_with_devices(base):
     assert abs(ledger.remainder).max() < 1e-4 * abs(ledger.potential).max()
 
 
-@pytest.mark.parametrize("restraints", [DEVICES[:1], DEVICES[1:], DEVICES], ids=["tendon", "dampers", "all"])
+@pytest.mark.parametrize(
+    "restraints", [DEVICES[:1], DEVICES[1:], DEVICES, STOPS], ids=["tendon", "dampers", "all", "stops"]
+)
 def test_springs_with_devices_balance_where_they_are_held_and_follow_the_reference(restraints):
     """The reference starts from our held state, of which the balance is checked by its own geometry; then as without devices."""
     base, theta = ElasticBase(50, 0.1, restraints=restraints), 0.4 * FIG5.alpha
@@ -213,6 +215,9 @@ def test_springs_with_devices_balance_where_they_are_held_and_follow_the_referen
     solver.y[FIRST:] = list(start.states)
     solver.rest, solver.mode = [solver.v0 - solver.dy * solver.z0] * 2, ["free", "unload"]
     solver.way = [-1.0] * len(solver.elements)  # everything closes next
+    for j, stop in solver.stops.items():
+        if (elongation := solver.elongation(j, solver.y)) > stop.gap:
+            stop.fire("turns back", elongation)
     assert start.z_left == 0.0
     assert solver.accelerations(solver.mode, solver.y, 0.0, 0.0)[0] == pytest.approx(0.0, abs=1e-9 * FIG5.gravity)
     for j, (device, _) in enumerate(solver.elements):

@@ -13,8 +13,10 @@ from studies import seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
+from rockbatch.analyses.fragility.figures import clouds
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
+from rockbatch.common.figures.description import Points, Polyline, Rule
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.study import load_study
 
@@ -177,19 +179,23 @@ def test_the_curve_is_that_of_total_probability_and_rises_to_one():
 
 
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
-    """60 clouds of 40 records: medians and rates 95 %, less 3 deviations of 2.8 %, or more, as the intervals may be wide."""
+    """60 clouds of 40 records: medians and rates 95 %, less 3 deviations of 2.8 %; and the medians scatter as widely as their
+    intervals say, to 3 deviations of 9 %: wider ones would hold the truth, too."""
     rng = np.random.default_rng(7)
     x, rates = HazardCurve([0.05, 0.15, 0.35, 0.7], [1 / 30, 1 / 150, 1 / 700, 1 / 2500]).quadrature()
     kept = slice(300, 1000, 4)  # where the rate comes from, enough for a count
     x, rates = x[kept], rates[kept]
     truth = exactly()
-    held = np.zeros(2)
+    held, medians, widths = np.zeros(2), list[float](), list[float]()
     for _ in range(60):
         found = fitted(made_up(rng), 0.05)
         _, low, high = found.rate(x, rates)
         least, most = found.median_interval
         held += [low <= truth.rate(x, rates)[0] <= high, least <= truth.median <= most]
+        medians.append(math.log(found.median))
+        widths.append(math.log(most / least) if least > 0 else math.inf)
     assert (held / 60 >= 0.87).all()
+    assert np.median(widths) / (2 * norm.ppf(0.975) * np.std(medians)) == pytest.approx(1.0, abs=0.3)
 
 
 @pytest.mark.parametrize(
@@ -260,7 +266,20 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     html = next(path for path in found.save(tmp_path / "out") if path.suffix == ".html").read_text(encoding="utf-8")
     assert "Cloud analysis of records as they are: of the records that stand a line" in Page(html).text
     assert "each counts once at every scale, as if these were records of their own" in found.info["scales"]["said"]
-    found.plot()
+    (panel,) = clouds(found.info).panels
+    (limit,) = (mark for mark in panel.marks if isinstance(mark, Rule))
+    assert (limit.axis, limit.at.tolist()) == ("y", [0.5])
+    line, *_ = (mark for mark in panel.marks if isinstance(mark, Polyline))
+    drawn = ~np.isnan(line.y)
+    through = expected.line
+    np.testing.assert_allclose(line.y[drawn], np.exp(through.intercept) * line.x[drawn] ** through.slope, rtol=1e-6)
+    counted = of_rotation[of_rotation["counts"] == "line"]
+    of_line, *_ = (mark for mark in panel.marks if isinstance(mark, Points))
+    np.testing.assert_allclose(
+        sorted(zip(of_line.x, of_line.y, strict=True)),
+        sorted(zip(counted["intensity"], counted["demand"], strict=True)),
+        rtol=1e-8,
+    )
 
 
 def test_with_a_hazard_a_cloud_has_rates(tmp_path):

@@ -12,9 +12,11 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
-from rockbatch.analyses.fragility.curves import ScaledRuns, assess, intensities
+from rockbatch.analyses.fragility.curves import ScaledRuns, assess, intensities, output
+from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analyses.fragility.lognormal import Capacities, fit
+from rockbatch.analyses.fragility.risk import risk_table, risks
 from rockbatch.analyses.fragility.section import section
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import described, points
@@ -26,6 +28,7 @@ from rockbatch.batch.waves import Waves
 from rockbatch.checks import Rule
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable, InputError
+from rockbatch.motions.hazard import HazardCurve
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
@@ -34,6 +37,7 @@ from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.results.columns import columns
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
+from rockbatch.study.spec import Output
 from rockbatch.study.suite import ground_motions
 
 STRIPES = 'measure = "PGA"\nlevels_g = [0.2, 0.4, 0.6, 0.8]'
@@ -371,6 +375,32 @@ def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_pat
         assert found.median == fit(Capacities.of_same_records(levels, *expected)).median
     assert curve.readings.exceeded.median < curve.fitted.median < curve.readings.withstood.median
     assert [stripe.undecided for stripe in curve.stripes] == [0, 8, 4, 0]
+
+
+def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
+    """Each by the closed form ν(θ) exp(k²β²/2) under a power law; without undecided runs neither."""
+
+    def status(motion, x):
+        return "failed" if motion < 8 and x == 0.4 else stands_or_falls(motion, x)
+
+    hazard = Hazard(HazardCurve([0.25], [1 / 475], slope=2.0), (50.0,), "made up")
+    (curve,), spec, _ = made_up(tmp_path, STRIPES, status, hazard=hazard)
+    (decided,), *_ = made_up(tmp_path, STRIPES, stands_or_falls, hazard=hazard)
+    table = risk_table([curve, decided], risks([curve, decided], spec), spec, ())
+    row, without = table.to_dict("records")
+    for name, reading in (("rate_if_withstood", curve.readings.withstood), ("rate_if_exceeded", curve.readings.exceeded)):
+        expected = 1 / 475 * (0.25 / reading.median) ** 2 * math.exp(2.0 * reading.dispersion**2)
+        assert row[name] == pytest.approx(expected, rel=1e-6)
+        assert math.isnan(without[name])
+    assert row["rate_if_withstood"] < row["rate_per_year"] < row["rate_if_exceeded"]
+
+
+def test_a_limit_on_settlement_beside_others_asks_for_the_other_law(tmp_path):
+    settlement = Rule("settled", "settlement_m", at_most=0.01)
+    rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
+    spec = read_fragility(load_study(written(tmp_path, STRIPES)))
+    for limits, asked in (((rotation, settlement), True), ((rotation,), False)):
+        assert output(replace(spec, limits=limits), Output(both_laws=True)).both_laws is asked
 
 
 def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
