@@ -1,20 +1,23 @@
-"""Records in archives: a .zip is read as a folder, a .gz as the file that it holds; nothing is written to the disk.
+"""Records in archives: a .zip or .tar.gz is read as a folder, a .gz as the file that it holds; nothing is written to the disk.
 
-A file in a .zip has a path that goes on within it, ``motions/peer.zip/RSN6_A_B.AT2``. Everything is bounded: the
-archive, what it unpacks to, the number of its files and how far they grow, and an archive within an archive is not
-opened.
+A file in an archive has a path that goes on within it, ``motions/peer.zip/RSN6_A_B.AT2``, also where that is in another one,
+``all.zip/peer.zip/RSN6_A_B.AT2``; a third is not opened. Everything is bounded: the archive, what it unpacks to, the number of
+its files and how far they grow.
 """
 
 import gzip
 import io
 import stat
+import tarfile
 import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path, PurePosixPath
+from typing import BinaryIO, NamedTuple, Protocol
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import state_of, whole_input
@@ -29,24 +32,26 @@ _GROWTH = 100  # how many times its packed size a file may have: records of text
 _NEVER_TOO_LARGE = 2**20  # bytes
 _LISTING = 2**20  # bytes of an archive's list of files
 _END, _END_64, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", b"PK\x06\x07", 22, 2**16
+_TARS = (".tar", ".tar.gz", ".tgz")
 _PACKED = {".zip", ".gz", ".tar", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".tbz", ".txz", ".zst"}
 _MAGIC = (b"PK\x03\x04", b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"7z\xbc\xaf", b"Rar!")
+_BLOCK = 512  # bytes of a block of a .tar, which ends in two empty ones
 _READ_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-_DAMAGED = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError)
+_WITHIN = "an archive within an archive; unpack it"
+_DAMAGED = (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, RuntimeError, ValueError, OSError)
 """Errors of the standard library on damaged files: RuntimeError where bits ask for a password or a method that it lacks,
-ValueError for places in the file that cannot be."""
+ValueError for places in the file that cannot be, OSError of gzip."""
 
 
-def is_zip(path: Path) -> bool:
+def is_archive(path: Path | PurePosixPath) -> bool:
     """Return whether a path has the name of an archive that is read as a folder."""
-    return path.suffix.lower() == ".zip"
+    return path.name.lower().endswith((".zip", *_TARS))
 
 
 def not_read(path: Path) -> str:
     """Return why an archive is not opened, and what to do; empty for what is read, or no archive."""
-    inner = bare(path).suffix.lower() if path.suffix.lower() == ".gz" else path.suffix.lower()
-    if inner in _PACKED and not is_zip(path):
-        return "an archive that is not read (.zip is, and .gz of one record); unpack it"
+    if bare(path).suffix.lower() in _PACKED and not is_archive(path):
+        return "an archive that is not read (.zip and .tar.gz are, and .gz of one record); unpack it"
     return ""
 
 
@@ -64,6 +69,26 @@ class Member:
     refusal: str
 
 
+class _Entry(NamedTuple):
+    """A file as its archive lists it: its name, with / between folders; sizes [bytes]; why its kind is not to be opened."""
+
+    name: str
+    size: int
+    packed: int
+    kind: str
+    place: zipfile.ZipInfo | tarfile.TarInfo
+
+
+class _Archive(Protocol):
+    """An archive that is open."""
+
+    def entries(self) -> Iterator[_Entry]:
+        """Yield what it lists, but folders."""
+
+    def opened(self, entry: _Entry) -> BinaryIO:
+        """Return a file of it, to be read."""
+
+
 def members(archive: Path) -> Iterator[Member]:
     """Return the files of an archive in order of their names, but hidden and read-me files, as in folders.
 
@@ -71,23 +96,38 @@ def members(archive: Path) -> Iterator[Member]:
     """
     total = 0
     visited: set[Path] = set()
-    with _opened(archive) as opened:
-        listed = opened.infolist()
-    for info in sorted(listed, key=_name):
-        name = PurePosixPath(_name(info))
-        hidden = any(part.startswith(".") and part != ".." for part in name.parts)
-        if info.is_dir() or hidden or name.stem.lower() == "readme":
-            continue
-        total += info.file_size
-        path = archive / _within(info)
-        refusal = _refusal(info)
-        if not refusal and path in visited:
+    for number, (member, size) in enumerate(_listed(archive), 1):
+        if number > _MOST_FILES:
+            raise InputError(_TOO_MANY)
+        total += size
+        refusal = member.refusal
+        if not refusal and member.path in visited:
             refusal = "the archive has two files of this name; unpack it"
         elif not refusal and total > _MOST_UNPACKED:
             refusal = f"the archive unpacks to more than {_MOST_UNPACKED // 2**30} GiB; unpack it"
         elif not refusal:
-            visited.add(path)
-        yield Member(path, _name(info), refusal)
+            visited.add(member.path)
+        yield Member(member.path, member.name, refusal)
+
+
+def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
+    """Yield the files of an archive, and of those in it, with their sizes; ``outer`` is the name of one in another."""
+    with _opened(archive) as opened:
+        entries = sorted(opened.entries(), key=lambda entry: entry.name)
+    for entry in entries:
+        name, path = PurePosixPath(entry.name), archive / _within(entry.name)
+        if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
+            continue
+        member = Member(
+            path, f"{outer}{entry.name}", _refusal(entry) or (_WITHIN if outer and is_archive(name) else "")
+        )
+        if member.refusal or not is_archive(name):
+            yield member, entry.size
+            continue
+        try:
+            yield from list(_listed(path, f"{member.name}/"))
+        except InputError as error:
+            yield Member(path, member.name, "; ".join(error.problems)), 0
 
 
 def is_member(path: Path) -> bool:
@@ -106,8 +146,8 @@ def _paths_in(archive: Path, state: tuple[int, ...]) -> frozenset[Path]:
 
 
 def archive_of(path: Path) -> Path | None:
-    """Return the archive that a path goes on within; ``None`` for a path of the disk."""
-    return next((above for above in path.parents if is_zip(above) and above.is_file()), None)
+    """Return the archive on the disk that a path goes on within; ``None`` for a path of the disk."""
+    return next((above for above in path.parents if is_archive(above) and above.is_file()), None)
 
 
 def state(path: Path) -> tuple[int, ...]:
@@ -120,7 +160,7 @@ def state(path: Path) -> tuple[int, ...]:
 
 def files_in(folder: Path) -> list[Path]:
     """Return paths of the regular files in a folder, or in a folder of an archive, in order; those that may be opened."""
-    archive = folder if is_zip(folder) and folder.is_file() else archive_of(folder)
+    archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
     return [member.path for member in members(archive) if member.path.parent == folder and not member.refusal]
@@ -131,51 +171,74 @@ def content(path: Path, first: int | None = None) -> bytes:
 
     Raises ``InputError`` for what is damaged, or larger than allowed, ``OSError`` for what cannot be read.
     """
-    archive = archive_of(path)
-    if archive is not None:
-        return _from_zip(archive, path, first)
-    packed = path.suffix.lower() == ".gz"
+    if archive_of(path) is not None:
+        data = _from_archive(path, first)
+    else:
+        packed = path.suffix.lower() == ".gz"
+        data = _from_disk(path, None if packed else first)
+        if packed:
+            data = _from_gzip(data, first)
+    if data.startswith(_MAGIC) or data[257:262] == b"ustar":
+        raise InputError(_WITHIN)
+    return data
+
+
+def _from_disk(path: Path, first: int | None = None) -> bytes:
     with whole_input(path) as (file, size):
         if size > LARGEST:
-            raise InputError(f"larger than {LARGEST // 2**20} MiB")
-        data = file.read(size if first is None or packed else min(first, size))  # what is asked for is allocated
-    return _from_gzip(data, first) if packed else data
+            raise InputError(f"larger than {LARGEST // 2**20} MiB{'; unpack it' if is_archive(path) else ''}")
+        return file.read(size if first is None else min(first, size))  # what is asked for is allocated
 
 
-def _from_gzip(data: bytes, first: int | None) -> bytes:
+def _from_gzip(data: bytes, first: int | None = None) -> bytes:
     most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * len(data)))
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
             unpacked = file.read(most + 1 if first is None else first)
-    except (*_DAMAGED, OSError):  # gzip's own errors are OSErrors
+    except _DAMAGED:
         raise InputError("not a gzip file, or a damaged one; fetch it again") from None
     if len(unpacked) > most:
         raise InputError(_too_large(len(data), most))
-    if unpacked.startswith(_MAGIC) or unpacked[257:262] == b"ustar":
-        raise InputError("an archive within an archive; unpack it")
     return unpacked
 
 
-def _from_zip(archive: Path, path: Path, first: int | None) -> bytes:
+def _from_archive(path: Path, first: int | None = None) -> bytes:
+    """Return what a file in an archive holds, or its ``first`` bytes."""
+    disk = archive_of(path)
+    archive = next(above for above in path.parents if is_archive(above) or above == disk)
     with _opened(archive) as opened:
-        allowed = (info for info in opened.infolist() if archive / _within(info) == path and not _refusal(info))
-        info = next(allowed, None)
-        if info is None:
+        entry = next((e for e in opened.entries() if archive / _within(e.name) == path and not _refusal(e)), None)
+        if entry is None:
             raise InputError("no longer in the archive")
         try:
-            with opened.open(info) as file:
-                data = file.read(info.file_size if first is None else first)
+            with opened.opened(entry) as file:
+                return file.read(entry.size if first is None else first)
         except _DAMAGED:
             raise InputError("damaged within its archive; fetch the archive again") from None
-    if data.startswith(_MAGIC):
-        raise InputError("an archive within an archive; unpack it")
-    return data
 
 
 @contextmanager
-def _opened(archive: Path) -> Iterator[zipfile.ZipFile]:
-    """Yield a .zip, after a look at how much it lists; ``InputError`` where it is too much, or no .zip."""
+def _opened(archive: Path) -> Iterator[_Archive]:
+    """Yield an archive, after a look at how much it lists; ``InputError`` where it is too much, or no archive."""
+    if archive_of(archive) is not None or not archive.name.lower().endswith(".zip"):
+        data = _held(archive, state(archive))
+        yield _Zip(io.BytesIO(data), len(data)) if archive.name.lower().endswith(".zip") else _Tar(data)
+        return
     with whole_input(archive) as (file, size):
+        yield _Zip(file, size)
+
+
+@lru_cache(maxsize=2)
+def _held(archive: Path, state: tuple[int, ...]) -> bytes:
+    """Return the bytes of an archive that is not read where it lies: a .tar, without its .gz, or one in another."""
+    data = _from_disk(archive) if archive_of(archive) is None else _from_archive(archive)
+    return _from_gzip(data) if archive.name.lower().endswith("gz") else data
+
+
+class _Zip:
+    """A .zip."""
+
+    def __init__(self, file: BinaryIO, size: int) -> None:
         if not size:
             raise InputError("the file is empty")
         if size > LARGEST:
@@ -183,12 +246,58 @@ def _opened(archive: Path) -> Iterator[zipfile.ZipFile]:
         file.seek(max(0, size - _END_SIZE - _LONGEST_COMMENT))
         _refuse_long_lists(file.read(_END_SIZE + _LONGEST_COMMENT))
         try:
-            opened = zipfile.ZipFile(file)
+            self._file = zipfile.ZipFile(file)
         except _DAMAGED:
             raise InputError("not a zip archive, or a damaged one; fetch it again") from None
-        if len(opened.infolist()) > _MOST_FILES:
+        if len(self._file.infolist()) > _MOST_FILES:
             raise InputError(_TOO_MANY)
-        yield opened
+
+    def entries(self) -> Iterator[_Entry]:
+        """Yield what it lists, but folders; / stands between folders as some programs for Windows do not write it."""
+        for info in self._file.infolist():
+            if not info.is_dir():
+                kind = (
+                    "encrypted; unpack it with its password" if info.flag_bits & 1
+                    else "a link; unpack the archive" if stat.S_ISLNK(info.external_attr >> 16)
+                    else "" if info.compress_type in _READ_METHODS
+                    else f"packed by method {info.compress_type}, which is not read; unpack it"
+                )  # fmt: skip
+                yield _Entry(info.filename.replace("\\", "/"), info.file_size, info.compress_size, kind, info)
+
+    def opened(self, entry: _Entry) -> BinaryIO:
+        """Return a file of it, to be read."""
+        return self._file.open(entry.place)  # type: ignore[arg-type, return-value]
+
+
+class _Tar:
+    """A .tar."""
+
+    def __init__(self, data: bytes) -> None:
+        if len(data) < _BLOCK or any(data[-_BLOCK:]):
+            raise InputError("not a tar archive, or a cut one; fetch it again")
+        self._size = len(data)
+        try:
+            self._file = tarfile.open(fileobj=io.BytesIO(data), mode="r:")  # noqa: SIM115
+            self._infos = list(islice(self._file, _MOST_FILES + 1))
+        except _DAMAGED:
+            raise InputError("not a tar archive, or a damaged one; fetch it again") from None
+        if len(self._infos) > _MOST_FILES:
+            raise InputError(_TOO_MANY)
+
+    def entries(self) -> Iterator[_Entry]:
+        """Yield what it lists, but folders."""
+        for info in self._infos:
+            if not info.isdir():
+                kind = (
+                    "a link; unpack the archive" if info.issym() or info.islnk()
+                    else "" if info.isreg() and not info.issparse() and info.size <= self._size
+                    else "no regular file; unpack the archive"
+                )  # fmt: skip
+                yield _Entry(info.name.removeprefix("./"), info.size, info.size, kind, info)
+
+    def opened(self, entry: _Entry) -> BinaryIO:
+        """Return a file of it, to be read."""
+        return self._file.extractfile(entry.place)  # type: ignore[arg-type, return-value]
 
 
 def _refuse_long_lists(tail: bytes) -> None:
@@ -201,21 +310,19 @@ def _refuse_long_lists(tail: bytes) -> None:
         raise InputError(_TOO_MANY)
 
 
-def _refusal(info: zipfile.ZipInfo) -> str:
+def _refusal(entry: _Entry) -> str:
     """Return why a file of an archive is not to be opened; empty where it may be."""
-    name = PurePosixPath(_name(info))
+    name = PurePosixPath(entry.name)
     if name.is_absolute() or not name.parts or ".." in name.parts or ":" in name.parts[0]:
         return "its name leads out of the archive; unpack it where that does no harm"
-    if info.flag_bits & 1:
-        return "encrypted; unpack it with its password"
-    if stat.S_ISLNK(info.external_attr >> 16):
-        return "a link; unpack the archive"
-    if name.suffix.lower() in _PACKED:
-        return "an archive within an archive; unpack it"
-    if info.compress_type not in _READ_METHODS:
-        return f"packed by method {info.compress_type}, which is not read; unpack it"
-    most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * info.compress_size))
-    return _too_large(info.compress_size, most) if info.file_size > most else ""
+    if entry.kind:
+        return entry.kind
+    if any(map(is_archive, name.parents)):
+        return "in a folder with the name of an archive; unpack it"
+    if name.suffix.lower() in _PACKED and not is_archive(name):
+        return _WITHIN
+    most = min(LARGEST, max(_NEVER_TOO_LARGE, _GROWTH * entry.packed))
+    return _too_large(entry.packed, most) if entry.size > most else ""
 
 
 def _too_large(packed: int, most: int) -> str:
@@ -224,12 +331,7 @@ def _too_large(packed: int, most: int) -> str:
     return f"unpacks to more than {_GROWTH} times its {packed} bytes, as no record does; unpack it if it is one"
 
 
-def _name(info: zipfile.ZipInfo) -> str:
-    """Return the name in an archive, with / between folders as some programs for Windows do not write it."""
-    return info.filename.replace("\\", "/")
-
-
-def _within(info: zipfile.ZipInfo) -> PurePosixPath:
-    """Return a name in the archive that does not lead out of it."""
-    inside = [part for part in PurePosixPath(_name(info)).parts if part not in ("/", "//", "..")]
+def _within(name: str) -> PurePosixPath:
+    """Return a name in an archive as one that does not lead out of it."""
+    inside = [part for part in PurePosixPath(name).parts if part not in ("/", "//", "..")]
     return PurePosixPath(*inside) if inside else PurePosixPath("?")

@@ -57,7 +57,7 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
             elif not real.is_file():
                 yield SourceFile(path, source, "not a regular file")
             elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                files = _of_archive(path, source) if archives.is_zip(path) else [_regular(path, source)]
+                files = _of_archive(path, source) if archives.is_archive(path) else [_regular(path, source)]
                 yield from (replace(file, root=inside) for file in files)
 
 

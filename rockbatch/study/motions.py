@@ -53,7 +53,7 @@ MOTIONS = Section(("motions",), (
     "Every motion is run with every case."
 ), {
     "path": Key(text, '"../motions"',
-        "A folder with its subfolders, a file, or a .zip, relative to the study file.", many=True),
+        "A folder with its subfolders, a file, a .zip or a .tar.gz, relative to the study file.", many=True),
     "vertical": Key(kinds.vertical, "true",
         'Whether the vertical component of a record is used if it has one. With "required", records without one are '
         "refused."),

@@ -69,7 +69,9 @@ def test_several_channels_of_one_file_are_one_station_and_named_by_their_directi
 
 
 def test_blank_lines_between_channels_and_the_order_of_comments_change_nothing():
-    channels = [cosmos_text(values, direction, scnl="8040.HNE.NP.D0") for values, direction in ((A, "90 Deg"), (B, "360 Deg"))]
+    channels = [
+        cosmos_text(values, direction, scnl="8040.HNE.NP.D0") for values, direction in ((A, "90 Deg"), (B, "360 Deg"))
+    ]
     plain = read("".join(channels), "x.v1c")
     assert len(plain) == 2
     code = "|<SCNL>8040.HNE.NP.D0    <AUTH> 2019/05/28 02:27:48.000"
@@ -78,7 +80,11 @@ def test_blank_lines_between_channels_and_the_order_of_comments_change_nothing()
         assert text != "".join(channels)
         for component, expected in zip(read(text, "x.v1c"), plain, strict=True):
             np.testing.assert_array_equal(component.acceleration, expected.acceleration)
-            assert (component.station, component.name, component.notes) == (expected.station, expected.name, expected.notes)
+            assert (component.station, component.name, component.notes) == (
+                expected.station,
+                expected.name,
+                expected.notes,
+            )
 
 
 def test_one_file_per_channel_is_one_station_too_but_not_with_another_location_or_version(tmp_path):

@@ -388,7 +388,10 @@ def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
     (decided,), *_ = made_up(tmp_path, STRIPES, stands_or_falls, hazard=hazard)
     table = risk_table([curve, decided], risks([curve, decided], spec), spec, ())
     row, without = table.to_dict("records")
-    for name, reading in (("rate_if_withstood", curve.readings.withstood), ("rate_if_exceeded", curve.readings.exceeded)):
+    for name, reading in (
+        ("rate_if_withstood", curve.readings.withstood),
+        ("rate_if_exceeded", curve.readings.exceeded),
+    ):
         expected = 1 / 475 * (0.25 / reading.median) ** 2 * math.exp(2.0 * reading.dispersion**2)
         assert row[name] == pytest.approx(expected, rel=1e-6)
         assert math.isnan(without[name])
