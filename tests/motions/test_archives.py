@@ -308,8 +308,7 @@ def test_a_tar_is_bounded_as_a_zip_is(tmp_path, monkeypatch, kind):
     (reason,) = reasons_of(read_motions(tmp_path)).values()
     assert "more than 2000 files" in reason
     (tmp_path / name).write_bytes(tarred({"x.AT2": at2("000.AT2", 1).encode() + b"0.0 " * 2**20}, kind))
-    found = read_motions(tmp_path)
-    assert found.motions if kind == "w" else "more than 100 times" in reasons_of(found)[name]
+    assert ("more than 100 times" in str(reasons_of(read_motions(tmp_path)))) is (kind == "w:gz")
     monkeypatch.setattr(archives, "LARGEST", 1000)
     (reason,) = reasons_of(read_motions(tmp_path)).values()
     assert "larger than" in reason or "unpacks to more than" in reason
