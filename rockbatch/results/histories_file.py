@@ -72,7 +72,7 @@ _BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
 _ALL_UNITS = UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
 _BASES = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase)}
-_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
+_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError)
 """Exceptions of h5py for parts that are missing or broken."""
 
 

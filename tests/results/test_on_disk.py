@@ -520,6 +520,18 @@ def test_a_file_that_is_no_hdf5_is_refused(tmp_path):
     assert "damaged" in damaged(tmp_path, lambda path: path.write_text("peaks"))
 
 
+@pytest.mark.parametrize("place", range(48, 56))
+def test_a_file_whose_list_lies_beyond_all_files_is_refused(tmp_path, place):
+    """Addresses of the first block of HDF5, of which one byte is another: to h5py it lies where no file reaches."""
+
+    def lead_astray(path):
+        data = bytearray(path.read_bytes())
+        data[place] = 0xF1
+        path.write_bytes(data)
+
+    assert "damaged" in damaged(tmp_path, lead_astray)
+
+
 def test_hdf5_of_another_kind_is_refused(tmp_path):
     assert "not the histories" in damaged(tmp_path, edited(lambda file: file.attrs.__delitem__("format")))
 
