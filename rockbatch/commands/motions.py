@@ -122,7 +122,7 @@ def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> lis
         lines += filled(f"{len(same)} ×: {reason} ({example})", 2, 6).split("\n")
     if len(reasons) > most:
         rest = sum(map(len, reasons[most:]))
-        lines.append(f"  {rest} × for {len(reasons) - most} other reasons")
+        lines.append(f"  {rest} × for {count(len(reasons) - most, 'other reason')}")
     return lines
 
 

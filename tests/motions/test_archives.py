@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from agency_files import knet_text
+from archive_files import tarred, write_zip
 from motion_files import at2_text, wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
@@ -27,29 +28,8 @@ def at2(name: str, seed: int) -> str:
     return at2_text(wiggle(50, seed), title=f"Made-up, 1/17/1994, Test Station, {component}")
 
 
-def write_zip(path: Path, files: dict[str, str | bytes], method: int = zipfile.ZIP_DEFLATED) -> Path:
-    with zipfile.ZipFile(path, "w", method) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return path
-
-
 def peer_zip(path: Path, inside: str = "") -> Path:
     return write_zip(path, peer_files(inside))
-
-
-def tarred(files: dict[str, str | bytes], mode: str = "w", *more: tarfile.TarInfo) -> bytes:
-    """Return the bytes of a .tar of the files and of ``more`` entries, which have no content."""
-    data = io.BytesIO()
-    with tarfile.open(fileobj=data, mode=mode) as archive:
-        for name, content in files.items():
-            content = content.encode() if isinstance(content, str) else content
-            info = tarfile.TarInfo(name)
-            info.size = len(content)
-            archive.addfile(info, io.BytesIO(content))
-        for info in more:
-            archive.addfile(info)
-    return data.getvalue()
 
 
 def peer_files(inside: str = "") -> dict[str, str]:

@@ -1,6 +1,9 @@
 """What `rockbatch motions` prints first: counts, what is missing by its reason, and stations, however many files there are."""
 
-from motion_files import wiggle, write_at2
+import numpy as np
+from archive_files import tarred, write_zip
+from damaged_files import SAMPLES
+from motion_files import at2_text, wiggle, write_at2
 
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import MOST_LINES
@@ -40,3 +43,35 @@ def test_rare_reasons_stand_first(tmp_path, capsys):
     main(["motions", str(tmp_path / "records")])
     counted = [line.split(" ×")[0].strip() for line in capsys.readouterr().out.splitlines() if " ×: " in line]
     assert counted[:2] == ["1", "5"]
+
+
+def test_a_folder_of_many_agencies_archives_and_junk_is_said_in_a_screen(tmp_path, capsys):
+    """Eight agencies, as a project collects them: every record is used, wherever it lies, and each other file has its reason."""
+    folder = tmp_path / "Aufzeichnungen Übung"
+    agencies = ["K-NET/KiK-net", "GeoNet V1A/V2A", "COSMOS", "CSMIP", "USGS SMC", "UNAM", "MiniSEED", "PEER AT2"]
+    for number, agency in enumerate(agencies):
+        (folder / f"Behörde {number}").mkdir(parents=True)
+        for name, content in SAMPLES[agency]:
+            (folder / f"Behörde {number}" / name).write_bytes(content)
+    packed = {
+        f"RSN{i}_A_PACKED{i}000.AT2": at2_text(wiggle(300, i, scale=0.3), title=f"Made-up, 1/17/1994, P{i}, 000")
+        for i in range(6)
+    }
+    names = list(packed)
+    (folder / "archive").mkdir()
+    (folder / "archive" / "a.tar.gz").write_bytes(tarred({name: packed[name] for name in names[:3]}, "w:gz"))
+    inner = write_zip(tmp_path / "inner", {name: packed[name] for name in names[3:]})
+    write_zip(folder / "archive" / "außen.zip", {"innen.zip": inner.read_bytes()})
+    decimals = "\n".join(f"{0.01 * i:.2f};{value:.5f}".replace(".", ",") for i, value in enumerate(wiggle(400, 9)))
+    (folder / "Messung.000.csv").write_text(f"Zeit [s];000 [m/s²]\n{decimals}\n", encoding="utf-8")
+    for name in ("Thumbs.db", "Liste.xlsx", "Notizen.docx", "Skizze.png", "leer.txt"):
+        (folder / name).write_bytes(b"" if name == "leer.txt" else b"PK\x03\x04")
+    (folder / "kaputt.AT2").write_text("PEER\nx\ny\nNPTS= 400, DT= .01 SEC\n1 2\n")
+    (folder / "Rauschen.dat").write_bytes(np.random.default_rng(1).bytes(2000))
+    main(["motions", str(folder)])
+    printed = capsys.readouterr().out
+    assert len(printed.splitlines()) <= MOST_LINES
+    assert "17 usable recordings of 11 stations, 3 not used, 11 left out" in printed.splitlines()[0]
+    assert all(f"\nP{i} " in printed for i in range(6))
+    for name in ("Messung ", "Behörde 6/x.mseed", "Rauschen.dat", "kaputt.AT2", "Liste.xlsx", "Thumbs.db"):
+        assert name in printed
