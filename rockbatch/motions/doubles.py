@@ -1,8 +1,10 @@
 """One recording in several files: which set of components is used.
 
 Two components are of one recording if they point alike, and their headers name one sensor and one event, their samples are
-the same, or, where headers do not decide, they correlate once aligned. The parts of a long recording, which claim one time
-of triggering, are not: each file is a whole set of components, processed alike, and its samples do not correlate.
+the same, or, where headers do not decide, they correlate once aligned. The rest of two sets that share such a component is of
+one recording, too, if both are alike in some frame: a copy may be turned, or labelled otherwise. The parts of a long
+recording, which claim one time of triggering, are not: each file is a whole set of components, processed alike, and its
+samples do not correlate.
 """
 
 import hashlib
@@ -10,6 +12,7 @@ import math
 import re
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +30,7 @@ from rockbatch.motions.stations import in_one_event, is_numbered
 _CORRECTED = {True: 0, None: 1, False: 2}
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
 _CERTAIN = 0.95  # correlation that decides where headers do not
+_IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in the time that both have
 _SIGNIFICANT = (
     4.0  # standard deviations of Fisher's transform of it: random walks have 3 at most, real files of one recording 27
 )
@@ -139,7 +143,53 @@ def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]
             scaled.append((i, j))
         elif _correlate(first, second):
             join(i, j)
+    for i, j in _rest_of_sets(components, pairs):
+        join(i, j)
     return pairs, sorted(scaled)
+
+
+def _rest_of_sets(components: Sequence[Component], pairs: Pairs) -> Iterator[tuple[int, int]]:
+    """Yield further pairs of two sets of which a component is of one recording already, each with what it resembles most."""
+    sets = list(_sets(components))
+    set_of = {i: number for number, members in enumerate(sets) for i in members}
+    linked = {(set_of[i], set_of[j]) for i, copies in pairs.items() for j in copies if set_of[i] < set_of[j]}
+    for pair, upright in product(sorted(linked), (True, False)):
+        first, second = ([i for i in sets[n] if components[i].orientation.vertical is upright] for n in pair)
+        left = [i for i in first if not pairs.get(i, set()).intersection(second)]
+        if left and len(first) == len(second) <= 2:
+            r, resemblance = _in_any_frame(*([components[i] for i in members] for members in (first, second)))
+            if r >= _CERTAIN:
+                yield from ((i, second[int(resemblance[first.index(i)].argmax())]) for i in left)
+
+
+def _in_any_frame(first: Sequence[Component], second: Sequence[Component]) -> tuple[float, Samples]:
+    """Return the correlation of two sets of one or two components in the frame that makes them most alike, and that of each two.
+
+    Over all shifts, the greatest trace of their covariances after a rotation or reflection is the sum of the singular values of
+    these; it is divided by the energies in the time that both have, where most of one of them lies. Shape of the second: (n, n).
+    """
+    dt = max(c.dt for c in (*first, *second))
+    a, b = (
+        np.array([x[:shortest] - x[:shortest].mean() for x in series])
+        for series in ([_at_step(c, dt) for c in side] for side in (first, second))
+        for shortest in (min(map(len, series)),)
+    )
+    n = a.shape[1] + b.shape[1]
+    spectra = np.einsum("if,jf->ijf", np.fft.rfft(a, n), np.conj(np.fft.rfft(b, n)))
+    covariances = 4.0 * np.fft.irfft(spectra, 4 * n)  # at quarters of a step
+    norms = np.square(covariances).sum(axis=(0, 1))
+    if len(a) == 2:
+        norms += 2.0 * np.abs(covariances[0, 0] * covariances[1, 1] - covariances[0, 1] * covariances[1, 0])
+    shift = np.arange(4 * n) // 4
+    shift[shift >= a.shape[1]] -= n
+    from_a, to_a = np.maximum(shift, 0), np.clip(b.shape[1] + shift, 0, a.shape[1])
+    energy = [np.concatenate(([0.0], np.cumsum(np.square(x).sum(axis=0)))) for x in (a, b)]
+    shared = [energy[0][to_a] - energy[0][from_a], energy[1][to_a - shift] - energy[1][from_a - shift]]
+    enough = np.maximum(shared[0] / (energy[0][-1] or 1.0), shared[1] / (energy[1][-1] or 1.0)) >= _IN_COMMON
+    with np.errstate(divide="ignore", invalid="ignore"):
+        r = np.where(enough, np.sqrt(norms / (shared[0] * shared[1])), 0.0)
+    best = int(np.nan_to_num(r).argmax())
+    return float(np.nan_to_num(r)[best]), np.abs(covariances[:, :, best])
 
 
 def _ranks(

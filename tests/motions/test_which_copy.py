@@ -220,6 +220,72 @@ def test_a_set_is_chosen_as_a_whole(tmp_path):
     assert all(motion.vertical_source.partition("/")[0] in used for motion in found.motions)
 
 
+def write_set(folder, first, second, upright, labels=("000", "090"), titled=title):
+    for way, values in ((labels[0], first), (labels[1], second), ("UP", upright)):
+        write_at2(folder, f"{folder.name}{way}.AT2", values, title=titled(way))
+
+
+def shaken(seed: int, n: int = 1500):
+    """Two horizontal components and a vertical one, the second horizontal one half as strong."""
+    return [scale * wiggle(n, seed + k) * np.hanning(n) for k, scale in enumerate((1.0, 0.5, 0.4))]
+
+
+def turned(first, second, angle: float):
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return c * first + s * second, c * second - s * first
+
+
+FRAMES = {
+    "turned by 37°": (lambda a, b: turned(a, b, 37.0), ("037", "127")),
+    "turned by 37°, as if it were not": (lambda a, b: turned(a, b, 37.0), ("000", "090")),
+    "an azimuth that is off by 180°": (lambda a, b: (a, b), ("180", "090")),
+    "both reversed": (lambda a, b: (-a, -b), ("000", "090")),
+    "swapped": (lambda a, b: (b, a), ("010", "100")),
+    "H1 and H2": (lambda a, b: turned(a, b, 12.0), ("H1", "H2")),
+    "a mirror image, 1.02 times as strong": (lambda a, b: (1.02 * b, 1.02 * a), ("020", "110")),
+}  # fmt: skip
+"""What was done to the horizontal components of a copy, and how they are labelled."""
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_copy_in_another_frame_is_left_out_whole(tmp_path, frame, seed):
+    change, labels = FRAMES[frame]
+    first, second, upright = shaken(10 * seed)
+    write_set(tmp_path / "a", first, second, upright)
+    write_set(tmp_path / "longer", *change(first, second), upright, labels)
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(role="horizontal"))
+    assert len(found.motions) == 2
+    assert {motion.source.partition("/")[0] for motion in found.motions} == {"a"}
+    assert all(motion.vertical_source == "a/aUP.AT2" for motion in found.motions)
+    assert sorted(double.source.partition("/")[0] for double in found.left_out) == ["longer"] * 3
+
+
+def test_a_cut_copy_is_left_out_whole_though_one_of_its_components_is_another_by_its_growth(tmp_path):
+    first, second, upright = (a * np.hanning(1500) ** 4 for a in shaken(5))
+    second = second + 0.012 * np.random.default_rng(1).standard_normal(
+        1500
+    )  # goes on from the first to the last sample
+    write_set(tmp_path / "a", first, second, upright)
+    write_set(
+        tmp_path / "longer", *(a[250:1250] for a in (first, second, upright)), titled=lambda way: f"a copy, {way}"
+    )
+    found = read_motions(tmp_path, confirmed=["*"])
+    assert [motion.source for motion in found.motions] == ["a/a000.AT2", "a/a090.AT2"]
+    assert len(found.left_out) == 3
+
+
+@pytest.mark.parametrize("share", [0.0, 0.9])
+def test_a_set_that_shares_its_vertical_only_is_another_recording(tmp_path, share):
+    """As of a neighbour's, whose horizontal components are alike to ``share``: they are used, in any frame."""
+    first, second, upright = shaken(1)
+    others = [share * a + np.sqrt(1.0 - share**2) * b for a, b in zip((first, second), shaken(51), strict=False)]
+    write_set(tmp_path / "a", first, second, upright)
+    write_set(tmp_path / "longer", *turned(*others, 25.0), upright, ("025", "115"))
+    found = read_motions(tmp_path, confirmed=["*"])
+    assert len(found.motions) == 4
+
+
 @pytest.fixture
 def correlations(monkeypatch):
     """The correlations that were computed, each of which takes a Fourier transform of the samples."""
