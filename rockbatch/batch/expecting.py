@@ -1,7 +1,7 @@
 """Estimate of the cost of a batch: runs, time and disk, measured on a few of its runs."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import accumulate
@@ -12,7 +12,7 @@ from rockbatch.batch.groups import least_steps, outcomes_of
 from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, some_of
-from rockbatch.batch.running import described
+from rockbatch.batch.running import check_records, described, share_of
 from rockbatch.common.errors import starting_threads
 from rockbatch.results.columns import StudyRun, columns, row
 from rockbatch.simulation.outcome import Outcome
@@ -60,12 +60,23 @@ class Expected:
     histories: float
 
 
-def expected(study: Study, jobs: int, listener: Listener) -> Expected:
-    """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples."""
+def expected(
+    study: Study,
+    jobs: int,
+    listener: Listener,
+    share: tuple[int, int] | None = None,
+    records: Collection[str] = (),
+) -> Expected:
+    """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples.
+
+    ``share`` and ``records`` as in :func:`rockbatch.batch.running.run_into`, of which a share keeps no histories.
+    """
     motions = ground_motions(study)
     listener.motions(motions)
+    check_records(records, motions)
     plan = Plan(study, motions)
-    simulated = some_of(plan, to_simulate(plan, range(len(plan))))
+    requested = share_of(len(plan), *share) if share else range(len(plan))
+    simulated = some_of(plan, to_simulate(plan, requested))
     steps = [least_steps(run, study.numerics) for run in simulated]
     make_ready(study, listener)
     started = time.perf_counter()
@@ -75,10 +86,13 @@ def expected(study: Study, jobs: int, listener: Listener) -> Expected:
     ended = [simulated[i]._replace(outcome=outcome) for i, outcome in tried.items()]
     size = sum(history_bytes(run, row(run)) for run in ended) / max(len(tried), 1)
     histories = {"none": 0.0, "all": len(plan) * size}.get(
-        study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
+        "none" if share else study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )
-    table = len(plan) * len(columns(study)) * BYTES_OF_A_CELL
-    return Expected(described(study, motions), len(simulated), len(tried), seconds, jobs, table, histories)
+    table = len(requested) * len(columns(study)) * BYTES_OF_A_CELL
+    what = described(study, motions) + (
+        f"; share {share[0]} of {share[1]} is {len(simulated)} of them" if share else ""
+    )
+    return Expected(what, len(simulated), len(tried), seconds, jobs, table, histories)
 
 
 def _tried(

@@ -147,9 +147,9 @@ def run_into(
     refuse_irregular(*(directory / name for name in OUTPUTS))
     motions = ground_motions(study)
     listener.motions(motions)
-    _check_records(records, motions)
+    check_records(records, motions)
     runs = Plan(study, motions)
-    requested = _share(len(runs), *share) if share else range(len(runs))
+    requested = share_of(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
     with Journal(directory / JOURNAL, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
@@ -222,8 +222,8 @@ def _ranges(numbers: Sequence[int], most: int = 5) -> str:
     return ", ".join(ranges[:most]) + (", …" if len(ranges) > most else "")
 
 
-def _check_records(records: Collection[str], motions: MotionSet) -> None:
-    """Refuse names of records that do not exist."""
+def check_records(records: Collection[str], motions: MotionSet) -> None:
+    """Raise ``InputError`` for names of records that do not exist."""
     names = [motion.name for motion in motions.motions]
     wrong = []
     for name in (name for name in records if name not in names):
@@ -236,7 +236,8 @@ def _check_records(records: Collection[str], motions: MotionSet) -> None:
         raise InputError(*wrong)
 
 
-def _share(runs: int, share: int, shares: int) -> range:
+def share_of(runs: int, share: int, shares: int) -> range:
+    """Return the indices of a share of so many runs; ``InputError`` for more shares than runs."""
     if shares > runs:
         raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
     return range(runs * (share - 1) // shares, runs * share // shares)

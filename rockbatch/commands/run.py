@@ -23,7 +23,7 @@ from rockbatch.study import Study
 def main(arguments: argparse.Namespace, study: Study) -> int:
     """Carry out the runs of a study, or a share of them."""
     if arguments.dry_run:
-        return _expect(study, arguments.jobs)
+        return _expect(study, arguments)
     directory = folder(arguments)
     if arguments.shard and not arguments.out:
         share, shares = arguments.shard
@@ -41,9 +41,9 @@ def merge_shares(arguments: argparse.Namespace, study: Study) -> int:
     return _finished(finished, study, arguments.csv)
 
 
-def _expect(study: Study, jobs: int | None) -> int:
-    """Print the time and the disk space that the study would take."""
-    estimate = expected(study, jobs or cores(), Terminal())
+def _expect(study: Study, arguments: argparse.Namespace) -> int:
+    """Print the time and the disk space that the study, or a share of it, would take."""
+    estimate = expected(study, arguments.jobs or cores(), Terminal(), arguments.shard, arguments.history)
     threads = count(estimate.jobs, "thread")
     show(estimate.what)
     show(f"{in_words(estimate.seconds)} on {threads}, as {estimate.tried} of them took; then the report")

@@ -67,6 +67,8 @@ def _value(cell: str, kind: Kind, delimiter: str, gaps: bool) -> Any:
         return math.nan
     if isinstance(kind, Text):
         return kind(cell)
+    if "_" in cell:  # 1_0 is 10 to Python, and a slip in a table
+        raise KindError(kind.words)
     try:
         value = float(cell.replace(",", ".") if delimiter == ";" else cell)
     except ValueError:

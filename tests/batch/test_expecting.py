@@ -34,6 +34,26 @@ def test_runs_and_sizes_are_those_that_come_out(study, tmp_path, monkeypatch):
     assert found.histories == pytest.approx((out / "histories.h5").stat().st_size, rel=0.5)
 
 
+def test_of_a_share_its_runs_count_and_no_histories(study):
+    whole, parts = load_study(study), []
+    for number in (1, 2, 3):
+        parts.append(expected(whole, 2, Listener(), (number, 3)))
+        assert parts[-1].what.endswith(f"; share {number} of 3 is {parts[-1].runs} of them")
+        assert parts[-1].histories == 0
+    every = expected(whole, 2, Listener())
+    assert sum(part.table for part in parts) == pytest.approx(every.table)
+    assert all(0 < part.runs < every.runs for part in parts)
+
+
+def test_what_a_run_refuses_its_dry_run_refuses(study, capsys):
+    for wrong, words in (
+        (["--shard", "1/100"], "make as many shares or fewer"),
+        (["--history", "one"], "no such record"),
+    ):
+        assert main(["run", str(study), "--dry-run", *wrong]) == 2
+        assert words in capsys.readouterr().err
+
+
 def test_time_of_a_few_stands_for_all(study, monkeypatch):
     """A clock that counts steps: whatever is tried, the same is foreseen for all."""
     loaded, foreseen = load_study(study), []

@@ -314,6 +314,10 @@ def test_mistakes_of_a_hazard_are_named_with_their_line(tmp_path, hazard, messag
             "levels_g,rate_per_year\n0.1,nan\n0.2,0.001\n",
             'hazard.csv:2: rate_per_year = "nan": expected a finite number',
         ),
+        (
+            "levels_g,rate_per_year\n1_0.1,0.01\n0.2,0.001\n",
+            'hazard.csv:2: levels_g = "1_0.1": expected',
+        ),
         ("rate_per_year,return_period_years\n0.1,10\n", "it needs levels_g and one of rate_per_year"),
     ],
 )
