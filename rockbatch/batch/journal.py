@@ -220,7 +220,7 @@ class Journal:
             self._remember(*place)
 
     def _append(self, block: bytes | bytearray) -> None:
-        with naming_full_disk(self.path, f"the {self._count} runs that are finished are kept"):
+        with naming_full_disk(self.path, f"the {self._count} rows that are finished are kept"):
             self._file.seek(self._end)
             rest = memoryview(block)
             while rest:  # of a disk that is almost full, a write may take a part

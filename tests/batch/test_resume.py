@@ -227,7 +227,7 @@ shutil.copy("{disk}/out/peaks.csv", "{kept}")
     assert (kept / "codes").read_text().split() == ["2", "2", "0"]
     remedy = "make room and give the same command again"
     assert f"{disk}/out/peaks.csv.part: cannot be written: No space left on device; the " in first
-    assert f"runs that are finished are kept: {remedy}" in first
+    assert f"rows that are finished are kept: {remedy}" in first
     assert f"{disk}/out/peaks.csv: cannot be written: No space left on device" in second
     assert remedy in second
     assert f"{SIMULATED} of them are finished already, 0 are left" in third
