@@ -14,10 +14,14 @@
           forces        what is sized, the columns of Response.forces, where it was asked for
           impacts       with them, the columns of Response.impacts
 
-Every dataset of numbers has an attribute ``unit``; "1" is none.
+Every dataset of numbers has an attribute ``unit``; "1" is none. In front lies a block of HDF5's own for users, with the digest of
+what follows: HDF5 may take the process with it on a damaged file.
 """
 
+import hashlib
+import io
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -29,7 +33,7 @@ from typing import Any, overload
 import numpy as np
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import opened, replacing
+from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, restraint_of
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
@@ -40,6 +44,11 @@ HISTORIES = "histories.h5"
 """File of the histories that were kept, beside peaks.csv."""
 
 FORMAT = "rockbatch histories"
+
+BLOCK = 512
+"""Bytes in front of what is HDF5."""
+
+MARK = b"rockbatch histories: HDF5 from byte 512 on, of sha256 "
 
 MARGIN = 10_000_000
 """Bytes of the disk that stay free."""
@@ -85,16 +94,31 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
     Raises ``InputError`` if the disk is full.
     """
-    with replacing(path) as temporary, h5py.File(temporary, "w") as file:
-        study = info["study"]
-        attributes = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
-        _set(file, attributes | {"title": study["title"], "study": study["text"], "sha256": study["sha256"]})
-        _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
-        runs = file.create_group("runs")
-        for number, response in enumerate(responses):
-            _check_room(path, response)
-            _write(runs.create_group(_name(number)), response)
-            file.flush()  # raises what HDF5 could not write, which it forgets when it closes a dataset
+    with replacing(path) as temporary:
+        with h5py.File(temporary, "w", userblock_size=BLOCK) as file:
+            study = info["study"]
+            attributes = {"format": FORMAT, "rockbatch": info["rockbatch"], "created": info["created"]}
+            _set(file, attributes | {"title": study["title"], "study": study["text"], "sha256": study["sha256"]})
+            _set(file.create_group("versions"), info["versions"] | {"hdf5": h5py.version.hdf5_version})
+            runs = file.create_group("runs")
+            for number, response in enumerate(responses):
+                _check_room(path, response)
+                _write(runs.create_group(_name(number)), response)
+                file.flush()  # raises what HDF5 could not write, which it forgets when it closes a dataset
+        seal(temporary)
+
+
+def seal(path: Path) -> None:
+    """Write the digest of a histories file into its first block."""
+    with path.open("r+b", buffering=0) as file:
+        digest = _digest(file)
+        file.seek(0)
+        file.write(MARK + digest)
+
+
+def _digest(file: io.FileIO) -> bytes:
+    file.seek(BLOCK)
+    return hashlib.file_digest(file, "sha256").hexdigest().encode()
 
 
 def _check_room(path: Path, response: Response) -> None:
@@ -165,6 +189,7 @@ class Responses(Sequence[Response]):
         self.path = path
         self._info = info
         self._peaks = peaks
+        self._intact: tuple[int, ...] = ()
 
     @cached_property
     def runs(self) -> "pd.DataFrame":
@@ -203,6 +228,7 @@ class Responses(Sequence[Response]):
     def _opened(self) -> Iterator["h5py.Group"]:
         """Yield the group of runs; errors on the way become ``InputError``."""
         with opened(self.path) as plain:
+            self._check_digest(plain)
             try:
                 with h5py.File(plain, "r") as file:
                     self._check(file)
@@ -211,6 +237,15 @@ class Responses(Sequence[Response]):
                 raise
             except _DAMAGE as error:
                 raise InputError(f"{self.path}: damaged ({error}); start `rockbatch run` again") from error
+
+    def _check_digest(self, plain: io.FileIO) -> None:
+        """Raise ``InputError`` where bytes were changed; what has no digest is read as it is."""
+        if (state := state_of(os.fstat(plain.fileno()))) != self._intact:
+            head = plain.read(BLOCK)
+            if head.startswith(MARK) and head[len(MARK) :].rstrip(b"\0") != _digest(plain):
+                raise InputError(f"{self.path}: damaged (not the bytes that were written); start `rockbatch run` again")
+            self._intact = state
+            plain.seek(0)
 
     def _check(self, file: "h5py.File") -> None:
         if attribute(file, "format") != FORMAT:

@@ -10,6 +10,7 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from altered_histories import altered
 from report_samples import response, write_results
 from studies import RIGID, SINE, study_text, write_study
 
@@ -194,7 +195,7 @@ HDF5 = (
 def test_histories_lead_nowhere_and_have_room_in_their_file(foreign, tmp_path, change):
     """Nothing of the file beside is in the report, and no memory is asked for that the file does not have."""
     (foreign / "report.html").unlink()
-    with h5py.File(foreign / "histories.h5", "r+") as file:
+    with altered(foreign / "histories.h5") as file:
         change(file, tmp_path / "secret")
     assert f"{foreign / 'histories.h5'}: damaged (" in told(foreign)
     assert not (foreign / "report.html").exists()
@@ -203,7 +204,7 @@ def test_histories_lead_nowhere_and_have_room_in_their_file(foreign, tmp_path, c
 
 
 def test_a_history_of_a_case_that_nobody_lists_is_reported(foreign):
-    with h5py.File(foreign / "histories.h5", "r+") as file:
+    with altered(foreign / "histories.h5") as file:
         file["runs/000000"].attrs["case"] = "unheard of"
     assert "there is a history of case unheard of that peaks.csv or run.json does not list" in told(foreign)
 

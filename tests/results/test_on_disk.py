@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pint
 import pytest
+from altered_histories import altered
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -20,7 +21,7 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
-from rockbatch.results.histories_file import FORMAT, UNITS, Responses, write
+from rockbatch.results.histories_file import FORMAT, UNITS, Responses, seal, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
@@ -203,7 +204,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
 def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_their_flight(tmp_path):
     responses = stored(tmp_path, at_rest())
     assert responses[0].base == rb.RigidBase()
-    with h5py.File(tmp_path / "histories.h5", "r+") as file:
+    with altered(tmp_path / "histories.h5") as file:
         for name in ("flight", "flight_limit_mm"):
             del file["runs/000000/base"].attrs[name]
     assert responses[0].base == rb.RigidBase(flight="stop")
@@ -212,7 +213,7 @@ def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_t
 def test_forces_of_an_earlier_version_have_no_base_moment(tmp_path, results):
     response = results.responses[0]
     responses = stored(tmp_path, response)
-    with h5py.File(tmp_path / "histories.h5", "r+") as file:
+    with altered(tmp_path / "histories.h5") as file:
         del file["runs/000000/forces/base_moment"]
     pd.testing.assert_frame_equal(responses[0].forces, response.forces.drop(columns="base_moment"))
 
@@ -506,7 +507,7 @@ def damaged(folder, change):
 
 def edited(change):
     def edit(path):
-        with h5py.File(path, "r+") as file:
+        with altered(path) as file:
             change(file)
 
     return edit
@@ -520,7 +521,22 @@ def test_a_file_that_is_no_hdf5_is_refused(tmp_path):
     assert "damaged" in damaged(tmp_path, lambda path: path.write_text("peaks"))
 
 
-@pytest.mark.parametrize("place", range(48, 56))
+def test_a_file_of_which_one_byte_is_another_is_refused_wherever_it_is(tmp_path):
+    """Beyond its first block; of many, HDF5 itself dies without a word."""
+    responses = stored(tmp_path, at_rest())
+    path = tmp_path / "histories.h5"
+    whole = path.read_bytes()
+    for place in range(512, len(whole), 97):
+        changed = bytearray(whole)
+        changed[place] ^= 0x5A
+        path.write_bytes(changed)
+        with pytest.raises(rb.InputError, match="damaged"):
+            Responses(path, INFO)[0]
+    path.write_bytes(whole)
+    assert len(responses) == 1
+
+
+@pytest.mark.parametrize("place", range(512 + 48, 512 + 56))
 def test_a_file_whose_list_lies_beyond_all_files_is_refused(tmp_path, place):
     """Addresses of the first block of HDF5, of which one byte is another: to h5py it lies where no file reaches."""
 
@@ -528,6 +544,7 @@ def test_a_file_whose_list_lies_beyond_all_files_is_refused(tmp_path, place):
         data = bytearray(path.read_bytes())
         data[place] = 0xF1
         path.write_bytes(data)
+        seal(path)
 
     assert "damaged" in damaged(tmp_path, lead_astray)
 
