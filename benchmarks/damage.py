@@ -38,6 +38,7 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable
 from rockbatch.reporting.finished_analysis import digest_of
 from rockbatch.results.columns import JOURNAL, columns
+from rockbatch.results.histories_file import seal
 from rockbatch.simulation import first_substeps, steps_of
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
@@ -453,6 +454,7 @@ class Sample:
         before = path.read_bytes()
         if path.suffix == ".h5" and rng.random() < 0.6:
             hdf5_value(path, rng)
+            seal(path)  # so that what it holds is looked at
         elif path.suffix == ".json" and rng.random() < 0.7:
             path.write_bytes(json_value(before, rng))
         else:
