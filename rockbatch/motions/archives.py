@@ -173,11 +173,10 @@ def content(path: Path, first: int | None = None) -> bytes:
     """
     if archive_of(path) is not None:
         data = _from_archive(path, first)
+    elif path.suffix.lower() == ".gz":
+        data = _from_gzip(_from_disk(path), first)
     else:
-        packed = path.suffix.lower() == ".gz"
-        data = _from_disk(path, None if packed else first)
-        if packed:
-            data = _from_gzip(data, first)
+        return _from_disk(path, first)
     if data.startswith(_MAGIC) or data[257:262] == b"ustar":
         raise InputError(_WITHIN)
     return data
