@@ -3,6 +3,7 @@
 import importlib
 from importlib.util import find_spec
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -170,3 +171,105 @@ def test_tables_that_differ_in_a_byte_or_are_missing_are_named(benchmark, monkey
 def test_a_study_has_the_tables_of_the_last_revision(benchmark):
     """This tree against its last commit, which in a clean clone is the same."""
     assert benchmark("same_rows").main("HEAD", ["fig6"]) == 0
+
+
+def workbook(path, rows):
+    """Write a workbook as spreadsheets do: shared texts, numbers in their cells, and an empty row."""
+    texts = sorted({cell for row in rows for cell in row if isinstance(cell, str)})
+    lines = [
+        "".join(
+            f'<c r="{chr(65 + i)}{n}" t="s"><v>{texts.index(cell)}</v></c>'
+            if isinstance(cell, str)
+            else f'<c r="{chr(65 + i)}{n}"><v>{cell}</v></c>'
+            for i, cell in enumerate(row)
+        )
+        for n, row in enumerate(rows, 1)
+    ]
+    space = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
+    with ZipFile(path, "w") as book:
+        shared = "".join(f"<si><t>{text}</t></si>" for text in texts)
+        book.writestr("xl/sharedStrings.xml", f"<sst {space}>{shared}</sst>")
+        data = "".join(f"<row>{line}</row>" for line in ["", *lines])
+        book.writestr("xl/worksheets/sheet1.xml", f"<worksheet {space}><sheetData>{data}</sheetData></worksheet>")
+
+
+@pytest.fixture
+def measured_folder(tmp_path):
+    """Seven tests in their authors' form: one-sines of 1 Hz; the weak cannot lift a block, the strong overturn it."""
+    strengths = {11: 0.05, 12: 0.06, 13: 0.07, 14: 0.60, 15: 0.65, 16: 0.70, 17: 0.70}
+    outcomes = {test: int(strength > 0.3) for test, strength in strengths.items()}
+    head = [
+        "Test Number",
+        "Response-Specimen 1",
+        "Response-Specimen 2",
+        "Specimen 1-Numerical A",
+        "Specimen 2-Numerical B",
+    ]
+    rows = [[test, over, 0, over, 1] for test, over in outcomes.items()]
+    workbook(tmp_path / "Results_Granite.xlsx", [head, *rows, [18, 1, 1, 1, 1]])  # 18 has no acceleration
+    time = np.arange(0.0, 8.0, 1 / 800)
+    shape = np.where((time > 3.0) & (time < 4.0), np.sin(2 * np.pi * (time - 3.0)), 0.0)
+    listed = []
+    for test, strength in strengths.items():
+        made = np.column_stack([time, 0.02 + strength * shape, time, 0.0 * time])  # an offset, which is taken off
+        np.savetxt(tmp_path / f"Test{test:03}.txt", made, fmt="%.6g", delimiter="\t", header="Time [s]", comments="")
+        stated = strength * (2.0 if test == 17 else 1.0)  # 17 is half as strong as it was meant to be
+        listed.append([test, 20210621 + test % 2, "Earthquake", f"'R{test % 3}.xlsx'", 0.1, stated])
+    workbook(
+        tmp_path / "Earthquake_Records_Info.xlsx", [["Test No. ", "Date"], *listed, [18, 20210621, "", "", 0.1, 0.5]]
+    )
+    return tmp_path
+
+
+def test_measured_tests_are_read_as_their_authors_publish_them(benchmark, measured_folder):
+    module = benchmark("measured")
+    kept = measured_folder / "kept.npz"
+    tests = module.read_tests(measured_folder, kept)
+    assert tests.number.tolist() == [11, 12, 13, 14, 15, 16]
+    assert tests.overturned.sum(axis=0).tolist() == [3, 0]
+    assert tests.record.tolist() == ["R2.xlsx", "R0.xlsx", "R1.xlsx"] * 2
+    assert tests.motions[0].dt == pytest.approx(0.005)
+    assert tests.pga / 9.81 == pytest.approx([0.05, 0.06, 0.07, 0.6, 0.65, 0.7], rel=0.05)
+    again = module.read_tests(measured_folder, kept)
+    assert all(a == b for a, b in zip(tests.motions, again.motions, strict=True))
+
+
+def test_the_block_overturns_where_made_up_specimens_did(benchmark, measured_folder, monkeypatch):
+    """Below g tan α it cannot; a one-sine six times as strong overturns so small a block. Only specimen 1 did so, too."""
+    module = benchmark("measured")
+    monkeypatch.setattr(module, "ALPHAS", (0.10, 0.11, 0.12))
+    tests = module.read_tests(measured_folder)
+    by_alpha = {alpha: module.predictions(tests.motions, alpha) for alpha in module.ALPHAS}
+    rows = cells(module.in_sample(tests, by_alpha))
+    assert [row[1:] for row in rows] == [["3", "3 3 0 0", "1.000", "0 3 3 0", "0.500"]] * 3
+    table = cells(module.out_of_sample(tests, by_alpha, 4, 0))
+    assert [row[2] for row in table if row[1] == "authors' simulations"] == ["1.000", "0.000"]
+    assert table[0][:3] == ["1", "block, α", "1.000"]
+    assert table[0][4] == "1.000 (1.000 to 1.000)"
+    shares = module.over_intensity(tests, by_alpha, 4, 0, bins=2)
+    assert [(row["observed"], row["block"]) for row in shares if row["specimen"] == 1] == [(0.0, 0.0), (1.0, 1.0)] * 2
+
+
+def test_methods_see_one_half_only_and_records_stay_whole(benchmark):
+    module = benchmark("measured")
+    observed = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 0.0])
+    seen = np.array([True, True, True, True, False, False])
+    strength = np.array([1.0, 2.0, 8.0, 9.0, 7.0, 3.0])
+    assert module.threshold(strength, observed, seen).value == pytest.approx(4.0)  # between 2 and 8
+    turned = np.where(seen, observed, 1.0 - observed)
+    for method in (
+        module.majority,
+        lambda *of: module.threshold(strength, *of),
+        lambda *of: module.logistic(strength[:, None], *of),
+    ):
+        assert (method(observed, seen).predicted == method(turned, seen).predicted).all()
+    records = np.array(["a", "a", "a", "b", "c", "c", "d", "e"])
+    for half in module.random_halves(records, 20, 0):
+        assert all(len(set(half[records == record])) == 1 for record in "abcde")
+
+
+def test_a_failed_run_counts_as_wrong(benchmark):
+    module = benchmark("measured")
+    predicted, observed = np.array([1.0, 0.0, np.nan, np.nan]), np.array([1.0, 0.0, 1.0, 0.0])
+    assert module.share_right(predicted, observed) == 0.5
+    assert module.counted(predicted, observed) == "1 1 0 0 (2 failed)"
