@@ -237,7 +237,7 @@ def study(tmp_path, fragility=None, motions=None, check=0.5, **more):
 
 
 def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tmp_path):
-    """The line and its intensities again from the CSV, by linregress: none of its demands is censored there."""
+    """The line again from the points of the CSV, and the marks of its figure read back."""
     found = rb.fragility(study(tmp_path))
     assert sorted(found.fragility_runs["scale"].unique()) == [0.6, 1.0, 1.7, 2.6]
     assert len(found.fragility_runs) == 7 * 4
