@@ -110,7 +110,7 @@ def write(path: Path, responses: Iterable[Response], info: Mapping[str, Any]) ->
 
 def seal(path: Path) -> None:
     """Write the digest of a histories file into its first block."""
-    with path.open("r+b", buffering=0) as file:
+    with opened(path, "r+b") as file:
         digest = _digest(file)
         file.seek(0)
         file.write(MARK + digest)
