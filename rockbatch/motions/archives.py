@@ -220,18 +220,19 @@ def _from_archive(path: Path, first: int | None = None) -> bytes:
 def _opened(archive: Path) -> Iterator[_Archive]:
     """Yield an archive, after a look at how much it lists; ``InputError`` where it is too much, or no archive."""
     if archive_of(archive) is not None or not archive.name.lower().endswith(".zip"):
-        data = _held(archive, state(archive))
-        yield _Zip(io.BytesIO(data), len(data)) if archive.name.lower().endswith(".zip") else _Tar(data)
+        yield _held(archive, state(archive))
         return
     with whole_input(archive) as (file, size):
         yield _Zip(file, size)
 
 
 @lru_cache(maxsize=2)
-def _held(archive: Path, state: tuple[int, ...]) -> bytes:
-    """Return the bytes of an archive that is not read where it lies: a .tar, without its .gz, or one in another."""
+def _held(archive: Path, state: tuple[int, ...]) -> _Archive:
+    """Return an archive that is not read where it lies, listed once: a .tar, without its .gz, or one in another."""
     data = _from_disk(archive) if archive_of(archive) is None else _from_archive(archive)
-    return _from_gzip(data) if archive.name.lower().endswith("gz") else data
+    if archive.name.lower().endswith(".zip"):
+        return _Zip(io.BytesIO(data), len(data))
+    return _Tar(_from_gzip(data) if archive.name.lower().endswith("gz") else data)
 
 
 class _Zip:
