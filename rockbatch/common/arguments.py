@@ -13,6 +13,8 @@ from rockbatch.common.errors import InputError
 Door = TypeVar("Door", bound=Callable[..., Any])
 
 _REFUSED = object()
+_AS_THEY_ARE = {float, bool, type(None)}
+"""Types whose values are taken without a further look, since every record has hundreds."""
 _WORDS: dict[Any, str] = {
     float: "a number", int: "a whole number", str: "a text", bool: "True or False", os.PathLike: "a path", Callable: "a function",
     None: "None",
@@ -28,13 +30,14 @@ def checked(door: Door) -> Door:
     function: Any = vars(door)["__init__"] if isinstance(door, type) else door
     parameters = inspect.signature(function).parameters
     kinds = {name: kinds for name, kinds in _kinds(parameters) if all(map(_is_known, kinds))}
+    plain = {name: _AS_THEY_ARE.intersection(map(_type_of, of_name)) for name, of_name in kinds.items()}
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
         wrong: list[str] = []
 
         def take(name: str, value: Any) -> Any:
-            if name not in kinds:
+            if name not in kinds or type(value) in plain[name]:
                 return value
             converted = _first_taken(value, kinds[name])
             if converted is _REFUSED:
@@ -68,6 +71,10 @@ def _alternatives(annotation: Any) -> tuple[Any, ...]:
     if get_origin(annotation) in (Union, types.UnionType):
         return tuple(kind for part in get_args(annotation) for kind in _alternatives(part))
     return (None if annotation is type(None) else annotation,)
+
+
+def _type_of(kind: Any) -> Any:
+    return type(None) if kind is None else kind
 
 
 def _is_known(kind: Any) -> bool:

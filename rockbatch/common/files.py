@@ -305,7 +305,7 @@ def legible(text: str, keep: str = "") -> str:
         byte = code - 0xDC00 if 0xDC80 <= code <= 0xDCFF else code  # how Python carries such a byte
         return f"\\x{byte:02x}" if byte <= 0xFF else f"\\u{byte:04x}" if byte <= 0xFFFF else f"\\U{byte:08x}"
 
-    return _UNPRINTABLE.sub(escaped, text)
+    return text if text.isascii() and text.isprintable() else _UNPRINTABLE.sub(escaped, text)
 
 
 def csv_safe(text: str) -> str:

@@ -7,17 +7,18 @@ its files and how far they grow.
 
 import gzip
 import io
+import re
 import stat
 import tarfile
 import zipfile
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path, PurePosixPath
-from typing import BinaryIO, NamedTuple, Protocol
+from typing import BinaryIO, NamedTuple
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import state_of, whole_input
@@ -33,6 +34,7 @@ _NEVER_TOO_LARGE = 2**20  # bytes
 _LISTING = 2**20  # bytes of an archive's list of files
 _END, _END_64, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", b"PK\x06\x07", 22, 2**16
 _TARS = (".tar", ".tar.gz", ".tgz")
+_NAMED = re.compile(r"\.(?:zip|t)", re.IGNORECASE)  # in paths of what is in one of these
 _PACKED = {".zip", ".gz", ".tar", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".tbz", ".txz", ".zst"}
 _MAGIC = (b"PK\x03\x04", b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"7z\xbc\xaf", b"Rar!")
 _BLOCK = 512  # bytes of a block of a .tar, which ends in two empty ones
@@ -79,12 +81,17 @@ class _Entry(NamedTuple):
     place: zipfile.ZipInfo | tarfile.TarInfo
 
 
-class _Archive(Protocol):
-    """An archive that is open."""
+class _Archive(ABC):
+    """An archive in memory, listed once; ``by_path`` has what may be opened."""
 
-    def entries(self) -> Iterator[_Entry]:
-        """Yield what it lists, but folders."""
+    def __init__(self, listed: Iterable[_Entry]) -> None:
+        self.entries = sorted(listed, key=lambda entry: entry.name)
+        self.by_path: dict[PurePosixPath, _Entry] = {}
+        for entry in self.entries:
+            if not _refusal(entry):
+                self.by_path.setdefault(_within(entry.name), entry)
 
+    @abstractmethod
     def opened(self, entry: _Entry) -> BinaryIO:
         """Return a file of it, to be read."""
 
@@ -112,9 +119,7 @@ def members(archive: Path) -> Iterator[Member]:
 
 def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
     """Yield the files of an archive, and of those in it, with their sizes; ``outer`` is the name of one in another."""
-    with _opened(archive) as opened:
-        entries = sorted(opened.entries(), key=lambda entry: entry.name)
-    for entry in entries:
+    for entry in _held(archive, state(archive)).entries:
         name, path = PurePosixPath(entry.name), archive / _within(entry.name)
         if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
             continue
@@ -147,6 +152,8 @@ def _paths_in(archive: Path, state: tuple[int, ...]) -> frozenset[Path]:
 
 def archive_of(path: Path) -> Path | None:
     """Return the archive on the disk that a path goes on within; ``None`` for a path of the disk."""
+    if not _NAMED.search(str(path)):
+        return None
     return next((above for above in path.parents if is_archive(above) and above.is_file()), None)
 
 
@@ -205,99 +212,84 @@ def _from_archive(path: Path, first: int | None = None) -> bytes:
     """Return what a file in an archive holds, or its ``first`` bytes."""
     disk = archive_of(path)
     archive = next(above for above in path.parents if is_archive(above) or above == disk)
-    with _opened(archive) as opened:
-        entry = next((e for e in opened.entries() if archive / _within(e.name) == path and not _refusal(e)), None)
-        if entry is None:
-            raise InputError("no longer in the archive")
-        try:
-            with opened.opened(entry) as file:
-                return file.read(entry.size if first is None else first)
-        except _DAMAGED:
-            raise InputError("damaged within its archive; fetch the archive again") from None
-
-
-@contextmanager
-def _opened(archive: Path) -> Iterator[_Archive]:
-    """Yield an archive, after a look at how much it lists; ``InputError`` where it is too much, or no archive."""
-    if archive_of(archive) is not None or not archive.name.lower().endswith(".zip"):
-        yield _held(archive, state(archive))
-        return
-    with whole_input(archive) as (file, size):
-        yield _Zip(file, size)
+    opened = _held(archive, state(archive))
+    entry = opened.by_path.get(PurePosixPath(path.relative_to(archive).as_posix()))
+    if entry is None:
+        raise InputError("no longer in the archive")
+    try:
+        with opened.opened(entry) as file:
+            return file.read(entry.size if first is None else first)
+    except _DAMAGED:
+        raise InputError("damaged within its archive; fetch the archive again") from None
 
 
 @lru_cache(maxsize=2)
 def _held(archive: Path, state: tuple[int, ...]) -> _Archive:
-    """Return an archive that is not read where it lies, listed once: a .tar, without its .gz, or one in another."""
+    """Return an archive, of the disk or in another one, listed once; ``InputError`` where it is none, or lists too much."""
     data = _from_disk(archive) if archive_of(archive) is None else _from_archive(archive)
     if archive.name.lower().endswith(".zip"):
-        return _Zip(io.BytesIO(data), len(data))
+        return _Zip(data)
     return _Tar(_from_gzip(data) if archive.name.lower().endswith("gz") else data)
 
 
-class _Zip:
-    """A .zip."""
+class _Zip(_Archive):
+    """A .zip; / stands between folders as some programs for Windows do not write it."""
 
-    def __init__(self, file: BinaryIO, size: int) -> None:
-        if not size:
+    def __init__(self, data: bytes) -> None:
+        if not data:
             raise InputError("the file is empty")
-        if size > LARGEST:
-            raise InputError(f"larger than {LARGEST // 2**20} MiB; unpack it")
-        file.seek(max(0, size - _END_SIZE - _LONGEST_COMMENT))
-        _refuse_long_lists(file.read(_END_SIZE + _LONGEST_COMMENT))
+        _refuse_long_lists(data[-_END_SIZE - _LONGEST_COMMENT :])
         try:
-            self._file = zipfile.ZipFile(file)
+            self._file = zipfile.ZipFile(io.BytesIO(data))
         except _DAMAGED:
             raise InputError("not a zip archive, or a damaged one; fetch it again") from None
-        if len(self._file.infolist()) > _MOST_FILES:
+        infos = self._file.infolist()
+        if len(infos) > _MOST_FILES:
             raise InputError(_TOO_MANY)
-
-    def entries(self) -> Iterator[_Entry]:
-        """Yield what it lists, but folders; / stands between folders as some programs for Windows do not write it."""
-        for info in self._file.infolist():
-            if not info.is_dir():
-                kind = (
-                    "encrypted; unpack it with its password" if info.flag_bits & 1
-                    else "a link; unpack the archive" if stat.S_ISLNK(info.external_attr >> 16)
-                    else "" if info.compress_type in _READ_METHODS
-                    else f"packed by method {info.compress_type}, which is not read; unpack it"
-                )  # fmt: skip
-                yield _Entry(info.filename.replace("\\", "/"), info.file_size, info.compress_size, kind, info)
+        super().__init__(_zip_entry(info) for info in infos if not info.is_dir())
 
     def opened(self, entry: _Entry) -> BinaryIO:
         """Return a file of it, to be read."""
         return self._file.open(entry.place)  # type: ignore[arg-type, return-value]
 
 
-class _Tar:
+def _zip_entry(info: zipfile.ZipInfo) -> _Entry:
+    kind = (
+        "encrypted; unpack it with its password" if info.flag_bits & 1
+        else "a link; unpack the archive" if stat.S_ISLNK(info.external_attr >> 16)
+        else "" if info.compress_type in _READ_METHODS
+        else f"packed by method {info.compress_type}, which is not read; unpack it"
+    )  # fmt: skip
+    return _Entry(info.filename.replace("\\", "/"), info.file_size, info.compress_size, kind, info)
+
+
+class _Tar(_Archive):
     """A .tar."""
 
     def __init__(self, data: bytes) -> None:
         if len(data) < _BLOCK or any(data[-_BLOCK:]):
             raise InputError("not a tar archive, or a cut one; fetch it again")
-        self._size = len(data)
         try:
             self._file = tarfile.open(fileobj=io.BytesIO(data), mode="r:")  # noqa: SIM115
-            self._infos = list(islice(self._file, _MOST_FILES + 1))
+            infos = list(islice(self._file, _MOST_FILES + 1))
         except _DAMAGED:
             raise InputError("not a tar archive, or a damaged one; fetch it again") from None
-        if len(self._infos) > _MOST_FILES:
+        if len(infos) > _MOST_FILES:
             raise InputError(_TOO_MANY)
-
-    def entries(self) -> Iterator[_Entry]:
-        """Yield what it lists, but folders."""
-        for info in self._infos:
-            if not info.isdir():
-                kind = (
-                    "a link; unpack the archive" if info.issym() or info.islnk()
-                    else "" if info.isreg() and not info.issparse() and info.size <= self._size
-                    else "no regular file; unpack the archive"
-                )  # fmt: skip
-                yield _Entry(info.name.removeprefix("./"), info.size, info.size, kind, info)
+        super().__init__(_tar_entry(info, len(data)) for info in infos if not info.isdir())
 
     def opened(self, entry: _Entry) -> BinaryIO:
         """Return a file of it, to be read."""
         return self._file.extractfile(entry.place)  # type: ignore[arg-type, return-value]
+
+
+def _tar_entry(info: tarfile.TarInfo, most: int) -> _Entry:
+    kind = (
+        "a link; unpack the archive" if info.issym() or info.islnk()
+        else "" if info.isreg() and not info.issparse() and info.size <= most
+        else "no regular file; unpack the archive"
+    )  # fmt: skip
+    return _Entry(info.name.removeprefix("./"), info.size, info.size, kind, info)
 
 
 def _refuse_long_lists(tail: bytes) -> None:

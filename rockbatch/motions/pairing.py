@@ -238,4 +238,5 @@ def _named(motions: Sequence[Motion], folders: Sequence[str]) -> list[Motion]:
         return f"{folders[i].rsplit('/', 1)[-1]}/{name}" if folders[i] else name
 
     names = distinct([motion.name for motion in motions], with_suffix, with_folder)
-    return [replace(motion, name=name) for motion, name in zip(motions, names, strict=True)]
+    pairs = zip(motions, names, strict=True)
+    return [motion if motion.name == name else replace(motion, name=name) for motion, name in pairs]

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
@@ -132,8 +131,11 @@ def alternating(samples: Samples) -> float:
         return 0.0
     swings = np.diff(samples)
     swings[1::2] *= -1.0  # of one sign where samples alternate
-    windows = sliding_window_view(swings, _SWINGS)
-    return max(0.0, float(windows.min(axis=1).max()), -float(windows.max(axis=1).min())) / 2.0
+    least, greatest = swings, swings
+    for shift in (1, 2, 3):  # of two, of four, of seven in a row
+        least = np.minimum(least[shift:], least[:-shift])
+        greatest = np.maximum(greatest[shift:], greatest[:-shift])
+    return max(0.0, float(least.max()), -float(greatest.min())) / 2.0
 
 
 def displacement(judged: Judged) -> Finding | None:

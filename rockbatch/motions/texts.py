@@ -1,6 +1,6 @@
 """Texts of headers, manifests and names of files, which go no further than the reader as they are."""
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from typing import Any, TypeVar, cast
 
 from rockbatch.common.files import legible
@@ -10,8 +10,7 @@ T = TypeVar("T")
 
 def with_legible_texts(record: T) -> T:
     """Return a dataclass with every text in it ``legible``, also those of tuples and of dataclasses within."""
-    values = {field.name: getattr(record, field.name) for field in fields(cast(Any, record))}
-    changed = {name: new for name, value in values.items() if (new := _legible(value)) is not value}
+    changed = {name: new for name, value in vars(record).items() if (new := _legible(value)) is not value}
     return cast(T, replace(cast(Any, record), **changed)) if changed else record
 
 
@@ -23,6 +22,4 @@ def _legible(value: Any) -> Any:
     if type(value) is tuple:
         shown_each = tuple(map(_legible, value))
         return value if all(new is old for new, old in zip(shown_each, value, strict=True)) else shown_each
-    if is_dataclass(value) and not isinstance(value, type):
-        return with_legible_texts(value)
-    return value
+    return with_legible_texts(value) if is_dataclass(value) else value

@@ -344,3 +344,34 @@ def test_a_record_in_a_file_without_a_known_suffix_is_recognised_by_its_header(t
     found = read_motions(tmp_path)
     assert [motion.source for motion in found.motions] == ["RSN1063_NORTHR_RRS228.AT2.90"]
     assert "write it as MiniSEED, or as text columns" in reasons_of(found)["unknown"]
+
+
+@pytest.mark.parametrize("name", ["x.zip", "x.tgz", "all.zip"])
+def test_an_archive_is_opened_and_listed_once_whatever_it_holds(tmp_path, monkeypatch, name):
+    """Where each file listed it again, 600 files took 15 s."""
+    files = {f"r{i}_000.AT2": at2_text(wiggle(50, i), title=f"Made-up, 1/17/1994, S{i}, 000") for i in range(30)}
+    if name == "x.tgz":
+        (tmp_path / name).write_bytes(tarred(files, "w:gz"))
+    else:
+        inner = write_zip(tmp_path / "x.zip", files)
+        if name == "all.zip":
+            write_zip(tmp_path / name, {"x.zip": inner.read_bytes()}, zipfile.ZIP_STORED)
+            inner.unlink()
+    listed = []
+    once = archives._Archive.__init__
+    monkeypatch.setattr(archives._Archive, "__init__", lambda *given: (listed.append(given), once(*given))[1])
+    assert len(read_motions(tmp_path).motions) == 30
+    assert len(listed) == (2 if name == "all.zip" else 1)
+
+
+def test_a_folder_is_looked_through_for_station_xml_once(tmp_path, monkeypatch):
+    looked: list[Path] = []
+    plain = archives.files_in
+    monkeypatch.setattr(archives, "files_in", lambda folder: (looked.append(folder), plain(folder))[1])
+    for channel in ("HNE", "HNN", "HNZ"):
+        write_mseed(tmp_path / f"{channel}.mseed", trace(channel))
+    station_xml(tmp_path, *map(channel_xml, ("HNE", "HNN", "HNZ")))
+    assert not read_motions(tmp_path).unusable
+    assert looked == [tmp_path]
+    (tmp_path / "stations.xml").unlink()
+    assert len(read_motions(tmp_path).unusable) == 3

@@ -12,7 +12,7 @@ import numpy as np
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.formats.fixed_width import LOOKED_AT, is_cut_short, number_in
+from rockbatch.motions.formats.fixed_width import LOOKED_AT, aligned_numbers, is_cut_short, number_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
@@ -165,10 +165,12 @@ def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
     while start < end:
         blank = _BLANK.search(text, start + _PIECE, end)
         stop = blank.end() if blank else end
-        tokens = text[start:stop].split()
-        if any("_" in token for token in tokens):  # Python would read 1_0 as ten
+        if "_" in (piece := text[start:stop]):  # Python would read 1_0 as ten
             raise ValueError
-        values.append(np.array([float(token) for token in tokens]))
+        lines = piece.splitlines()
+        aligned = aligned_numbers(lines, len(lines[0]) // max(len(lines[0].split()), 1))
+        tokens = (piece if aligned is None else piece[-_WIDEST * LOOKED_AT :]).split()
+        values.append(np.array(list(map(float, tokens))) if aligned is None else aligned)
         last = [*last, *tokens][-LOOKED_AT:]
         start = stop
     return np.concatenate(values), last

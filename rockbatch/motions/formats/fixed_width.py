@@ -3,6 +3,7 @@
 And in lines of numbers between blanks whose count is known.
 """
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from itertools import islice
 from typing import TypeVar
@@ -16,6 +17,16 @@ from rockbatch.motions.motion import Samples
 T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
 _MANY = 100  # numbers that do not have the same number of decimals by chance
+_PRINTED = re.compile(r" *[-+]?\d*(?P<fraction>\.\d+)?(?P<power>[Ee][-+]\d\d?)?")
+_OTHER, _BLANK, _PLUS, _MINUS, _DIGIT, _POINT, _POWER = 0x00, 0x20, 0x40, 0x50, 0x60, 0x80, 0xA0
+_CODES = bytes(
+    _DIGIT + int(character) if character in "0123456789"
+    else {" ": _BLANK, "+": _PLUS, "-": _MINUS, ".": _POINT, "E": _POWER, "e": _POWER}.get(character, _OTHER)
+    for character in map(chr, range(256))
+)  # fmt: skip
+"""Of characters: three bits of their kind, which grow along a number, one of its sign, four of a digit."""
+_DIGITS = 15  # that a float holds exactly
+_POWERS = np.array([float(f"1e{power}") for power in range(23)])  # as it does these
 LOOKED_AT = 1000
 """Numbers at the end of a file that ``is_cut_short`` needs."""
 
@@ -83,6 +94,9 @@ def _numbers(
     lines: Sequence[str], first: int, count: int, per_line: int, fields: Callable[[str, int, int], list[str]]
 ) -> Samples:
     """Return the numbers of lines that begin with number ``first``; ``fields`` takes a line, its index, and how many it has."""
+    aligned = aligned_numbers(lines, len(lines[0]) // min(per_line, count)) if count else None
+    if aligned is not None and len(aligned) == count and (np.abs(aligned) < HUGE).all():
+        return aligned
     values = np.empty(count)
     for i, line in enumerate(lines):
         place = i * per_line
@@ -95,6 +109,42 @@ def _numbers(
             numbers = [number_in(field, first + i) for field in row]
         values[place : place + per_line] = numbers
     return values
+
+
+def aligned_numbers(lines: Sequence[str], width: int) -> Samples | None:
+    """Return the numbers of lines in columns of one ``width``, all printed as the first one: F8.3, E15.7; ``None`` for others.
+
+    A decimal of up to 15 digits, times or over a power of ten up to 22, is rounded once, as by ``float`` (Clinger, 1990).
+    """
+    full, text = len(lines[0]), "".join(lines)
+    printed = _PRINTED.fullmatch(text[:width]) if width else None
+    if printed is None or full % width or len(lines[-1]) % width or not text.isascii():
+        return None
+    power = printed.start("power") if printed["power"] else width
+    point = printed.start("fraction") if printed["fraction"] else power
+    if power > _DIGITS or not set(map(len, lines[:-1])) <= {full}:
+        return None
+    codes = np.frombuffer(text.encode().translate(_CODES), np.uint8).reshape(-1, width).T.copy()
+    kinds, digits = codes & 0xE0, codes & 0x0F
+    whole, tail = kinds[:point], kinds[point:]
+    if not (
+        ((whole > _OTHER) & (whole <= _DIGIT)).all() and (whole[1:] >= whole[:-1]).all()
+        and ((whole == _PLUS).sum(axis=0) <= 1).all() and (tail == tail[:, :1]).all()
+        and (point < width or (whole[-1] == _DIGIT).all())
+    ):  # fmt: skip
+        return None
+    values, exponents = np.zeros(codes.shape[1]), np.zeros(codes.shape[1], dtype=int)
+    for row in (*digits[:point], *digits[point + 1 : power]):
+        values = 10.0 * values + row
+    for row in digits[power + 2 :]:
+        exponents = 10 * exponents + row
+    exponents[(codes[power + 1 : power + 2] == _MINUS).any(axis=0)] *= -1
+    exponents -= max(power - point - 1, 0)
+    if np.abs(exponents).max() >= len(_POWERS):
+        return None
+    powers = _POWERS[np.abs(exponents)]
+    values = np.where(exponents < 0, values / powers, values * powers)
+    return np.where((codes[:point] == _MINUS).any(axis=0), -values, values)
 
 
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:

@@ -43,9 +43,7 @@ def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channe
     channels: list[Channel] = []
     refused: list[str] = []
     inside = Path(os.path.realpath(root or folder))
-    for path in archives.files_in(folder):
-        if path.suffix.lower() != ".xml":
-            continue
+    for path in _files(folder, archives.state(folder)):
         real = Path(os.path.realpath(archives.archive_of(path) or path))
         try:
             if not real.is_relative_to(inside):
@@ -56,6 +54,12 @@ def channels_beside(folder: Path, root: Path | None = None) -> tuple[list[Channe
         except OSError as error:
             refused.append(f"{path.name}: {error.strerror or error}")
     return channels, refused
+
+
+@lru_cache(maxsize=64)
+def _files(folder: Path, state: tuple[int, ...]) -> list[Path]:
+    """Return the .xml files in a folder, whose ``state`` tells that others are in it now."""
+    return [path for path in archives.files_in(folder) if path.suffix.lower() == ".xml"]
 
 
 @lru_cache(maxsize=64)
