@@ -125,11 +125,23 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
         return row
 
     values = _numbers(lines[first:end], first, count, per_line, fields)
-    if is_cut_short(field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split())):
+    backwards = (field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split()))
+    if is_cut_short(backwards) or _ends_within_a_column(lines[first:end], count, per_line):
         raise InputError(
             f'line {end}: found "{lines[end - 1].split()[-1][:40]}", shorter than all others: the file is cut'
         )
     return values
+
+
+def _ends_within_a_column(lines: Sequence[str], count: int, per_line: int) -> bool:
+    """Return whether the last of ``count`` numbers ends before its column does, where all the others stand right-aligned.
+
+    So a whole number that has lost digits is found, which has no point.
+    """
+    widths = {len(line.rstrip()) for line in lines[:-1]}
+    width, remainder = divmod(max(widths, default=0), per_line)
+    aligned = per_line > 1 and len(widths) == 1 and not remainder
+    return aligned and len(lines[-1].rstrip()) != width * (count - per_line * (len(lines) - 1))
 
 
 def number_in(field: str, index: int) -> float:
