@@ -162,7 +162,7 @@ BBP = "\n".join(
 
 def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000, seed: int = 1) -> tuple[str, np.ndarray]:
     counts = np.round(wiggle(200, seed) * 1e5).astype(int) + offset
-    rows = "\n".join("".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, 200, 8))
+    rows = "\n".join("".join(f"{value:8d} " for value in counts[i : i + 8]) for i in range(0, 200, 8))
     header = (
         "Origin Time       2018/01/24 19:51:00\nLat.              41.0\nLong.             142.5\n"
         "Depth. (km)       30\nMag.              6.2\nStation Code      TST003\nStation Lat.      41.4053\n"

@@ -87,11 +87,12 @@ def test_a_knet_file_that_was_cut_within_its_last_count_is_refused(direction):
     """A last sample of -0.003 m/s² was 0.095 m/s² after the cut, without a word."""
     whole = OF["K-NET/KiK-net"]
     data = knet_text(direction)[0].encode()
-    assert read_as(whole, data[:-1]).motions
-    sound = read_as(whole, data).motions[0].horizontal
-    for lost in range(2, 40):
+    assert data.endswith(b" 4002 \n")
+    for lost in range(3):
+        assert len(read_as(whole, data[:-lost] if lost else data).motions) == 1
+    for lost in range(3, 40):
         found = read_as(whole, data[:-lost])
-        assert not found.motions or np.array_equal(found.motions[0].horizontal, sound), lost
+        assert not found.motions
         assert found.unusable[0].reason.startswith(("line 42: found ", "the header says 200 values"))
 
 
@@ -140,6 +141,15 @@ def test_a_bit_of_the_time_of_a_block_of_miniseed_makes_no_two_motions(block, by
     assert not found.motions
     reasons = ("by its number, but not by its time", "gaps or overlaps")
     assert all(any(reason in unusable.reason for reason in reasons) for unusable in found.unusable)
+
+
+def test_blocks_of_miniseed_without_a_rate_are_refused():
+    """Logs of recorders have none."""
+    data = bytearray(OF["MiniSEED"].data)
+    for block in range(0, len(data), 512):
+        data[block + 32 : block + 36] = bytes(4)
+    (refused,) = read_as(OF["MiniSEED"], bytes(data)).unusable
+    assert "gaps or overlaps" in refused.reason
 
 
 def test_a_second_that_is_cut_off_is_a_warning_and_more_waits():

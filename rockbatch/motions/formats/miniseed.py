@@ -105,11 +105,10 @@ def _broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
             codes[i:j].decode("latin-1").strip() for i, j in ((0, 5), (5, 7), (7, 10), (10, 12))
         )
         of_channel = blocks[blocks["codes"] == codes]
-        rate = rates.get(channel_id := f"{network}.{station}.{location}.{channel}", np.inf)
-        begins = _times(of_channel)
-        apart = np.abs(begins[1:] - begins[:-1] - of_channel["npts"][:-1] / rate)
+        channel_id = f"{network}.{station}.{location}.{channel}"
+        between = rates.get(channel_id, 0.0) * np.diff(_times(of_channel))  # samples; 0 of a channel of text
         goes_on = np.diff(of_channel["number"].astype(int)) == 1
-        if (goes_on & (apart > 1.0 / rate)).any():
+        if (goes_on & (np.abs(between - of_channel["npts"][:-1]) > 1.0)).any():
             broken.add(channel_id)
     return broken
 
