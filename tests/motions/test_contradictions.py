@@ -66,9 +66,10 @@ def test_a_time_of_a_nearly_equal_peak_and_one_that_counts_from_elsewhere_are_ri
     values = np.zeros(1000)
     values[[200, 800]] = 2.0, -1.92
     sampled = Sampled(values, 0.01, "m/s2", 1.0, values)
-    for stated in (Stated("time of the peak", "8.00"), Stated("time of the peak", "-3.0", begins=-5.0)):
-        assert not contradictions([stated], sampled, GRAVITY)
-    assert contradictions([Stated("time of the peak", "5.0")], sampled, GRAVITY)
+    for printed, begins in (("8.00", 0.0), ("-3.0", -5.0), ("3.0", -5.0), ("2.0", 0.0)):
+        assert not contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY)
+    for printed, begins in (("5.0", 0.0), ("2.0", -5.0), ("-2.0", 0.0)):
+        assert contradictions([Stated("time of the peak", printed, begins=begins)], sampled, GRAVITY)
 
 
 @pytest.mark.parametrize("rate", [20.0, 100.0, 220.0, 400.0])

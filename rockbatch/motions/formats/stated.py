@@ -2,7 +2,7 @@
 
 A reader hands its header's statements over as they are printed (``Stated``); they are compared here, of whatever format.
 A stated value that differs by rounding, or by little, is remarked; by more it is a warning; by much, the record waits to be
-confirmed (``_LIMITS``). A count that differs is an error: nobody can tell which samples are missing.
+confirmed (``QUANTITIES``). A count that differs is an error: nobody can tell which samples are missing.
 """
 
 import math
@@ -18,9 +18,6 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.motion import Finding, Samples
 
 _PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")
-_FIVE_DIGITS = 1e-4  # relative: half of the last of five digits, of 1.0000
-_SAME_STEP = 1e-3  # relative: what printing of times may cost their mean step
-_ENDS = 2  # samples: that a duration may count more, or less; and what times may be off
 _NEARLY = 0.95  # of the peak: samples beyond may have been it before they were rounded, or filtered
 _CUT = 1.0  # s: what a stated duration that is rounded may differ, in whatever digits it is printed
 
@@ -50,19 +47,16 @@ class Sampled:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A quantity that headers state: its words, what of it samples have, and what it may differ.
-
-    ``limits`` are relative differences up to which it is remarked, and beyond which the record waits.
-    """
+    """A quantity that headers state, what of it samples have, and what it may differ by rounding, and beyond."""
 
     words: str
     has: Callable[[Sampled, Stated], Sequence[float]]
-    allowed: Callable[
-        [Sampled, float, float], float
-    ]  # of the samples, what they have, and the last digit that is printed
-    limits: tuple[float, float]
     advice: str
-    unit: str = "s"  # "" for that of the samples
+    limits: tuple[float, float]  # relative differences up to which it is remarked, and beyond which the record waits
+    unit: str = "s"  # "" for that of the samples, of whatever sign
+    digits: int = 1  # units of the last digit that is printed
+    share: float = 0.0  # of what the samples have
+    samples: int = 0
 
 
 def _peaks(sampled: Sampled, stated: Stated) -> list[float]:
@@ -87,28 +81,29 @@ def _durations(sampled: Sampled, stated: Stated) -> list[float]:
     return [duration, stated.begins + duration]
 
 
-def _rounded(sampled: Sampled, has: float, printed: float) -> float:
-    return printed + _FIVE_DIGITS * has
+def _ranges(sampled: Sampled, stated: Stated) -> list[float]:
+    """Return the range from the least to the largest sample."""
+    return [float(np.ptp(sampled.as_read))]
 
 
-def _in_samples(sampled: Sampled, has: float, printed: float) -> float:
-    return printed + _ENDS * sampled.dt
+def _steps(sampled: Sampled, stated: Stated) -> list[float]:
+    """Return the sampling interval."""
+    return [sampled.dt]
 
 
-def _same_step(sampled: Sampled, has: float, printed: float) -> float:
-    return _SAME_STEP * has
+def _rates(sampled: Sampled, stated: Stated) -> list[float]:
+    """Return the sampling rate."""
+    return [1.0 / sampled.dt]
 
 
 _SCALE, _STEP = "check its scale", "check its step"
-QUANTITIES = {
-    "peak": _Quantity("a peak of", _peaks, _rounded, (0.05, 0.25), _SCALE, unit=""),
-    "range": _Quantity(
-        "a range of", lambda sampled, _: [float(np.ptp(sampled.as_read))], _rounded, (0.05, 0.25), _SCALE, ""
-    ),
-    "time of the peak": _Quantity("its peak after", _times_of_peak, _in_samples, (0.05, 0.25), _STEP),
-    "duration": _Quantity("a duration of", _durations, _in_samples, (0.01, 0.25), f"{_STEP}, and whether it is cut"),
-    "step": _Quantity("a step of", lambda sampled, _: [sampled.dt], _same_step, (0.01, 0.01), _STEP),
-    "rate": _Quantity("a rate of", lambda sampled, _: [1.0 / sampled.dt], _same_step, (0.01, 0.01), _STEP, "Hz"),
+QUANTITIES = {  # peaks in five digits, of 1.0000; times to a sample, durations to one more or less; steps as times are printed
+    "peak": _Quantity("a peak of", _peaks, _SCALE, (0.05, 0.25), unit="", share=1e-4),
+    "range": _Quantity("a range of", _ranges, _SCALE, (0.05, 0.25), unit="", share=1e-4),
+    "time of the peak": _Quantity("its peak after", _times_of_peak, _STEP, (0.05, 0.25), samples=2),
+    "duration": _Quantity("a duration of", _durations, f"{_STEP}, and whether it is cut", (0.01, 0.25), samples=2),
+    "step": _Quantity("a step of", _steps, _STEP, (0.01, 0.01), digits=0, share=1e-3),
+    "rate": _Quantity("a rate of", _rates, _STEP, (0.01, 0.01), "Hz", digits=0, share=1e-3),
 }
 
 
@@ -122,45 +117,37 @@ def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: floa
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    number = _PRINTED.fullmatch(stated.text.strip())
+    """Return how the samples differ from a statement, if they do."""
+    printed = stated.text.strip()
+    number = _PRINTED.fullmatch(printed)
     if number is None:
         return None
     power = int(number["power"] or 0)
-    value, printed = (
-        float(f"{digits}e{exponent}")  # as 10.0**999 is an error
-        for digits, exponent in ((number["number"].lstrip("+-"), power), (1, power - len(number["decimals"])))
-    )
-    if not math.isfinite(value):
+    value, digit = (float(f"{n}e{e}") for n, e in ((number["number"], power), (1, power - len(number["decimals"]))))
+    if not math.isfinite(value):  # as of 9e999
         return None
     if stated.quantity == "count":
-        if value != len(sampled.as_read):
-            raise InputError(
-                f"its header states {stated.text.strip()} samples, and there are {len(sampled.as_read)}; fetch it again"
-            )
+        if value != (npts := len(sampled.as_read)):
+            raise InputError(f"its header states {printed} samples, and there are {npts}; fetch it again")
         return None
-    quantity = QUANTITIES[stated.quantity]
-    scale = 1.0
+    quantity, scale = QUANTITIES[stated.quantity], 1.0
+    if not quantity.unit:
+        value = abs(value)
+    elif value == 0.0:  # not set
+        return None
     if stated.unit:
         try:
-            scale = acceleration_factor(stated.unit, gravity) / sampled.factor
+            scale = sampled.factor / acceleration_factor(stated.unit, gravity)
         except ValueError:  # a unit that is not understood states nothing
             return None
-    elif quantity.unit and value == 0.0:  # not set
-        return None
-    has = min((has / scale for has in quantity.has(sampled, stated)), key=lambda has: abs(has - value))
+    has = min((scale * has for has in quantity.has(sampled, stated)), key=lambda has: abs(has - value))
     off = abs(has - value)
-    if off <= stated.within + quantity.allowed(sampled, has, printed):
+    if off <= quantity.digits * digit + quantity.share * has + quantity.samples * sampled.dt + stated.within:
         return None
-    unit = quantity.unit or stated.unit or sampled.unit
-    text = " ".join(
-        f"its header states {quantity.words} {stated.text.strip()} {unit}, and its samples have {has:.6g} {unit}".split()
-    )
-    return _judged(stated, quantity, off, off / max(min(has, value), sys.float_info.min), text.replace(" ,", ","))
-
-
-def _judged(stated: Stated, quantity: _Quantity, off: float, apart: float, text: str) -> Finding:
-    """Return the finding of a statement that is ``off``, or relatively ``apart``."""
+    unit = f" {quantity.unit or stated.unit or sampled.unit}".rstrip()
+    text = f"its header states {quantity.words} {printed}{unit}, and its samples have {has:.6g}{unit}"
     noted, gross = stated.limits or quantity.limits
+    apart = off / max(min(abs(has), abs(value)), sys.float_info.min)
     if apart <= noted:
         return Finding("", text)
     cut = stated.quantity == "duration" and gross < math.inf and off > _CUT
