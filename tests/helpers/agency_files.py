@@ -24,7 +24,8 @@ def geonet_component(label: str, values, *, volume: int = 1, dt: float = 0.005, 
     ints = [2016, 11, 13, 11, 2, 560, 0, 0, 2016, 11, *[0] * 8, 13, 11, *[0] * 10]
     ints += [npts, 0, 0, npts, *[npts if volume == 2 else 0] * 2, 0, 0, 2, 19715]
     reals = [*[0.0] * 20, npts * dt, pad, pad, npts * dt, 0.005, dt, 0.0, 0.0, 0.0, 9806.6, *[0.0] * 30]
-    peak = values[np.abs(values).argmax()]
+    place = np.abs(values).argmax()
+    peak = values[place]
     lines = [
         f"{'Unc' if volume == 1 else 'C'}orrected accelerogram 20161113_110256_WTMC_20 GNS Science",
         "Site WTMC      42 37 10S  173 03 13E     Cusp file:  20161113_110259_WTMC",
@@ -41,7 +42,7 @@ def geonet_component(label: str, values, *, volume: int = 1, dt: float = 0.005, 
         else f"Instrument corrected data at {dt:.3f} sec intervals",
         "Data is unfiltered",
         f"Component {label}",
-        f"Acceleration:  Peak   {peak:.1f} mm/s/s at  48.13 s     RMS   209.89 mm/s/s",
+        f"Acceleration:  Peak   {peak:.1f} mm/s/s at {place * dt - pad:6.3f} s     RMS   209.89 mm/s/s",
         "Velocity record unevaluated",
         "Displacement record unevaluated",
         *in_columns(ints, "8.0f", 10),
@@ -75,6 +76,7 @@ def dyna_text(values=A, stream: str = "HNE", **changed: str | None) -> str:
         "STREAM": stream,
         "UNITS": "cm/s^2",
         "PGA_CM/S^2": f"{values[np.abs(values).argmax()]:.6f}",
+        "TIME_PGA_S": f"{0.005 * np.abs(values).argmax():.6f}",
         "BASELINE_CORRECTION": "BASELINE REMOVED",
         "HEADER_FORMAT": "DYNA 1.2",
         "DATA_TYPE": "ACCELERATION",
@@ -90,7 +92,8 @@ def renadic_channel(label: str, values, times=None, *, number: int = 1, trigger:
     """Return one channel; ``values`` in g/10."""
     times = 0.005 * np.arange(len(values)) if times is None else times
     pairs = np.column_stack([times, values]).ravel()
-    peak = values[np.abs(values).argmax()] / 10
+    place = np.abs(values).argmax()
+    peak = values[place] / 10
     return [
         "UNCORRECTED ACCELEROGRAM DATA              PROCESSED: 06/01/2010",
         "MAULE 2010",
@@ -102,8 +105,8 @@ def renadic_channel(label: str, values, times=None, *, number: int = 1, trigger:
         "UNIVERSIDAD DE CHILE - RENADIC",
         "HYPOCENTER:   0.000N    0.000E  H=   0.0KM   MW= 8.8",
         "INSTR PERIOD = 0.0250 SEC,  DAMPING =0.6000,  SENSITIVITY =1.000 VDC/G",
-        f"NO. OF POINTS = {len(values):6d}  RECORD LENGTH = {len(values) * 0.005:.3f} SEC",
-        f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {peak:6.3f} G, AT  46.955 SEC",
+        f"NO. OF POINTS = {len(values):6d}  RECORD LENGTH = {times[-1] - times[0] + 0.005:.3f} SEC",
+        f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {peak:6.3f} G, AT  {times[place]:6.3f} SEC",
         "RMS ACCEL OF COMPLETE RECORD = 0.045 G",
         *in_columns([0] * 100, "5.0f", 16),
         *in_columns([0.0] * 50, "10.3f", 8),
@@ -121,6 +124,7 @@ def cwa_text(start: str = "#StartTime: 1999/09/20-17:47:02.000", unit: str = "ga
     header = {
         "RecordLength(sec)": "   0.215",
         "SampleRate(Hz)": " 200",
+        **{f"AmplitudeMAX. {label}": f" {max(x):8.3f}~ {min(x):8.3f}" for label, x in (("U", C), ("N", A), ("E", B))},
         "DataSequence": " Time U(+); N(+); E(+)",
         **changed,
     }
@@ -158,7 +162,7 @@ BBP = "\n".join(
 
 def knet_text(direction: str = "E-W", seconds: int = 2, offset: int = 4000, seed: int = 1) -> tuple[str, np.ndarray]:
     counts = np.round(wiggle(200, seed) * 1e5).astype(int) + offset
-    rows = "\n".join("".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, 200, 8))
+    rows = "\n".join("".join(f"{value:8d} " for value in counts[i : i + 8]) for i in range(0, 200, 8))
     header = (
         "Origin Time       2018/01/24 19:51:00\nLat.              41.0\nLong.             142.5\n"
         "Depth. (km)       30\nMag.              6.2\nStation Code      TST003\nStation Lat.      41.4053\n"

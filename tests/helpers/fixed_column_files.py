@@ -37,6 +37,10 @@ def peak_of(values) -> float:
     return float(values[np.abs(values).argmax()])
 
 
+def time_of_peak(values, dt: float) -> float:
+    return float(np.abs(values).argmax()) * dt
+
+
 def cosmos_header(
     what: str,
     values,
@@ -58,6 +62,7 @@ def cosmos_header(
     integers[53] = azimuth_code
     reals = [-999.0] * 100
     reals[29], reals[33], reals[61] = 6.332, 0.02, interval_ms  # number 34 is the recorder's interval
+    reals[62], reals[64] = len(values) * interval_ms / 1000, time_of_peak(values, interval_ms / 1000)
     reals[63] = peak_of(values) if peak is None else peak
     return [
         f"{what}  (Format v{version} with 13 text lines)",
@@ -137,7 +142,7 @@ def csmip_channel(
         "Hypocenter:  To be determined.               ML:  To be determined.             ",
         "Instr Period =  .0050 sec,  Damping =  .707,  Sensitivity = 4.99 v/g  (Nominal) ",
         f"No. of Points = {npts:6d}  Record Length ={npts * 0.01:7.3f} sec   at 100 Samples/sec",
-        f"Units of uncor data are sec and g.         Max  ={peak:7.3f} g, at   39.410 sec.    ",
+        f"Units of uncor data are sec and g.         Max  ={peak:7.3f} g, at {time_of_peak(values, 0.01):8.3f} sec.    ",
         "RMS calc for complete record =        .   Chn. metadata effective date:         ",
     ]
     if volume == 2:
@@ -151,7 +156,7 @@ def csmip_channel(
             "Accelerogram bandpass filtered with 3 dB pts at   .10 and 40.00 cyc/sec         ",
             f"{npts:6d} points of instrument- and baseline-corrected accel, veloc and displ data ",
             "At equally-spaced intervals of    .010  sec.                                    ",
-            f"Peak acceleration ={peak:10.3f}    cm/sec/sec  at   39.410   sec.               ",
+            f"Peak acceleration ={peak:10.3f}    cm/sec/sec  at {time_of_peak(values, 0.01):8.3f}   sec.               ",
             "Peak   velocity   =    -6.863      cm/sec    at   14.680   sec.                 ",
             "Peak displacement =     -.836        cm      at   17.580   sec.                 ",
             "Initial velocity  =      .000   cm/sec;   Initial displacement =    -.003   cm  ",
@@ -203,6 +208,7 @@ def smc_text(
     digits: int = -32768,
     flag: int = -32768,
     peak: float | None = None,
+    at: float | None = None,
 ) -> str:
     """Return an SMC file in cm/s²; unknown integers are -32768, unknown real numbers 1.7E38."""
     integers = [-32768] * 48
@@ -212,7 +218,8 @@ def smc_text(
     integers[14:18] = [101, comments, len(values) if count is None else count, flag]
     integers[29], integers[46] = 1675, digits
     reals = [1.7e38] * 50
-    reals[1], reals[29] = rate, abs(peak_of(values)) if peak is None else peak
+    reals[1], reals[28] = rate, time_of_peak(values, 1 / rate) if at is None else at
+    reals[29] = abs(peak_of(values)) if peak is None else peak
     layout = ("14.7", 5) if digits == 8 else ("10.4", 8)
     lines = [
         title,
@@ -238,5 +245,12 @@ def film_text(values=A, times=None, **header) -> str:
     times = np.cumsum(np.r_[0.0, np.resize([0.00137, 0.00147], len(values) - 1)]) if times is None else times
     pairs = np.column_stack([times, values]).ravel()
     return smc_text(
-        pairs, **{"title": "1 UNCORRECTED ACCELEROGRAM", "rate": 1.7e38, "peak": np.abs(values).max(), **header}
+        pairs,
+        **{
+            "title": "1 UNCORRECTED ACCELEROGRAM",
+            "rate": 1.7e38,
+            "peak": np.abs(values).max(),
+            "at": times[np.abs(values).argmax()],
+            **header,
+        },
     )

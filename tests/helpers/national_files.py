@@ -30,7 +30,8 @@ def csmnc_text(values=A, label: str = "EW", *, kind: str = "UNCORRECTED ACCELERA
             f"COMP. {label}",
             f"{kind}          UNIT: CM/SEC/SEC",
             f"NO. OF POINTS:  {len(values) if count is None else count}  EQUALLY SPACED INTERVALS OF:  0.005  SEC",
-            f"PEAK VALUE:    {peak_of(values):.3f}   AT   26.35 SEC    DURATION:  60 SEC",
+            f"PEAK VALUE:    {peak_of(values):.3f}   AT   {0.005 * np.abs(values).argmax():.3f} SEC    "
+            f"DURATION:  {0.005 * len(values):.3f} SEC",
             "PRE-EVENT TIME:  20  SEC",
             "CSMNC",
             "",
@@ -185,14 +186,15 @@ def usc_corrected_channel(label: str, values) -> list[str]:
     velocities, displacements = np.full(npts, 0.8344), np.full(npts, -0.1515)
     velocities[1:] += np.cumsum(values[1:] + values[:-1]) * 0.01
     displacements[1:] += np.cumsum(velocities[1:] + velocities[:-1]) * 0.01
+    at = 0.02 * np.abs(values).argmax()
     spaced = f"EQUALLY SPACED AT {0.02:6.3f} SEC.  IN UNITS"
     return [
         f"CORRECTED ACCELEROGRAM  IIBB101  94.160.0 COMP {label:6} FILE   0  CORRESPONDING T ",
-        *usc_channel(label, np.zeros(4))[:13],
+        *usc_channel(label, np.zeros(npts), 0.02 * np.arange(npts))[:13],
         "ACCELEROGRAM IS BAND-PASS FILTERED BETWEEN  .225- .325 AND 25.00-27.00 HZ.      ",
         f"{npts:6d}  INSTRUMENT AND BASELINE CORRECTED DATA                                  ",
         "AT EQUALLY-SPACED INTERVALS OF    .020  SEC.                                    ",
-        f"PEAK ACCELERATION = {-np.abs(values).max():11.5f}  CMS/SEC/SEC AT    4.580   SEC.                 ",
+        f"PEAK ACCELERATION = {-np.abs(values).max():11.5f}  CMS/SEC/SEC AT {at:8.3f}   SEC.                 ",
         "PEAK   VELOCITY   =    12.05681    CMS/SEC   AT    4.500   SEC.                 ",
         "PEAK DISPLACEMENT =     1.42006      CMS     AT    4.580   SEC.                 ",
         "INITIAL VELOCITY  =      .8344  CMS/SEC;  INITIAL DISPLACEMENT =    -.1515  CMS ",

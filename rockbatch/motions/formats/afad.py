@@ -12,6 +12,7 @@ from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.origin import TURKISH, origin_of
 
 _MOST = 40  # lines of header
@@ -56,7 +57,7 @@ def parse(text: str) -> list[Recording]:
             sensor=Sensor(station, "TK"),
             event=header.get("EARTHQUAKE DATE", ""),
             origin=origin_of(date=header.get("EARTHQUAKE DATE", ""), station=header.get("PLACE") or station),
-            stated_peak=(peaks[label], fields["unit"]),
+            stated=(Stated("peak", peaks[label], fields["unit"]),),
             header={"station": header.get("PLACE", ""), "event": header.get("EARTHQUAKE DATE", "")},
         )
         for i, label in enumerate(labels)

@@ -13,6 +13,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_
 from rockbatch.motions.formats.header_lines import layout, line_at, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
 
@@ -46,12 +47,12 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
     if title["volume"] != "1":
         raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")
     fields = read_header(lines, start, _TEXT)
-    label, npts, duration = fields["label"], int(fields["npts"]), number_in(fields["duration"], start + 10)
+    label, npts = fields["label"], int(fields["npts"])
     rate = number_in(line_at(lines, start + _RATE)[:_WIDTH], start + _RATE)
-    if npts < 2 or not 0.1 <= rate <= 1e5 or abs(npts / rate - duration) > 2 / rate:
+    if npts < 2 or not 0.1 <= rate <= 1e5:
         raise InputError(
-            f"line {start + 11} says {npts} points in {duration:g} s, line {start + _RATE + 1} {rate:g} samples per second; "
-            "expected them to agree"
+            f"line {start + 11} says {npts} points, line {start + _RATE + 1} {rate:g} samples per second; expected two or more, "
+            "and a rate"
         )
     values, end = fixed_numbers(lines, start + _HEADER, npts, _WIDTH, _PER_LINE)
     station, event = fields["name"].strip(), line_at(lines, start + 2).strip()
@@ -67,6 +68,7 @@ def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
         processed=False,
         sensor=Sensor(station.upper()),
         event=title["file"],
+        stated=(Stated("duration", fields["duration"]),),
         origin=origin_of(date=event.removeprefix("Origin Time :"), station=station),
         header={"station": station, "event": event},
     )

@@ -19,6 +19,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, numbe
 from rockbatch.motions.formats.header_lines import layout, line_at, match_line, moment, read_header, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.motion import Initial, Samples
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
@@ -162,15 +163,9 @@ def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Sample
 
 def _recording(header: _Header, series: re.Match[str], values: Samples, index: int) -> Recording:
     """Return the accelerations that ``lines[index]`` declares, with what their header says; ``InputError`` if it contradicts."""
-    interval = header.reals[61]
-    dt = float(f"{interval / 1000:.12g}")
-    seconds = int(series["seconds"])
-    if not 0 < interval < 1e5 or abs(len(values) * dt - seconds) > 1 + 0.01 * seconds:
-        raise InputError(
-            f"line {index + 1}: {len(values)} values in approximately {seconds} s, but an interval of {interval:g} ms "
-            "(real number 62 of the header); expected both to agree"
-        )
-    peak = header.reals[63]
+    interval, length, peak, time_of_peak = header.reals[61:65]
+    if not 0 < interval < 1e5:
+        raise InputError(f"real number 62 of the header says an interval of {interval:g} ms; expected a number above 0")
     missing = int((values == header.unknown).sum())
     if missing and (peak == header.unknown or abs(peak) < abs(header.unknown)):
         raise InputError(
@@ -188,7 +183,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
     year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
     return Recording(
         label=_label(header, channel),
-        dt=dt,
+        dt=float(f"{interval / 1000:.12g}"),
         values=values,
         unit=_unit(header, series, index),
         station=f"{network}-{station}, {description}" if station else "",
@@ -201,7 +196,14 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         event=event,
         initial=_initial(header) if corrected else None,
         origin=origin_of(event, name or station, line_at(header.text, 3)),
-        stated_peak=("" if peak == header.unknown else f"{peak:.5f}", ""),
+        stated=(
+            Stated("duration", series["seconds"]),
+            *(
+                Stated(quantity, f"{value:.5f}")
+                for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak))
+                if value != header.unknown
+            ),
+        ),
         notes=(f"location: {place}",) if place else (),
         header={"station": line_at(header.text, _STATION).strip(), "event": event.strip()},
     )

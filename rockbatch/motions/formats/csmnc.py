@@ -5,6 +5,7 @@ eight to a line between blanks. The layout is that of the Center's own files, su
 description of them; lines in between differ from year to year.
 """
 
+import math
 import re
 
 from rockbatch.common.errors import InputError, NoRecordError
@@ -13,6 +14,7 @@ from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_nu
 from rockbatch.motions.formats.header_lines import line_with, search_lines
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.origin import origin_of
 
 _MOST = 30  # lines of header
@@ -24,7 +26,11 @@ _COUNT = re.compile(
 _COMPONENT = re.compile(r"^ *COMP\. *(?P<label>\S+)", re.IGNORECASE)
 _STATION = re.compile(r"^ *STATION: *(?P<code>\S+)", re.IGNORECASE)
 _POINT = re.compile(r"^ *OBSERVING POINT: *(?P<place>\S.*)", re.IGNORECASE)
-_PEAK = re.compile(r"PEAK VALUE: *(?P<peak>[-+]?[0-9.]{1,15}(?:E[-+]?[0-9]{1,3})?)", re.IGNORECASE)
+_PEAK = re.compile(
+    r"PEAK VALUE: *(?P<peak>[-+]?[0-9.]{1,15}(?:E[-+]?[0-9]{1,3})?)(?: *AT *(?P<at>[0-9.]{1,12}) *SEC)?", re.IGNORECASE
+)
+_DURATION = re.compile(r"DURATION: *(?P<duration>[0-9.]{1,12}) *SEC", re.IGNORECASE)
+_WITHOUT_ENDS = (0.01, math.inf)  # the example in the Center's description has 120 s of 150 s
 _NUMBERS = re.compile(r"\s*[-+]?[0-9.][-+0-9.E\s]*", re.IGNORECASE)
 
 
@@ -47,7 +53,8 @@ def parse(text: str) -> list[Recording]:
     if npts < 2 or not 0 < dt < 10:
         raise InputError(f'line {index + 1}: found "{count[0].strip()}"; expected two points or more and an interval')
     first = next((i for i in range(index + 1, min(len(lines), _MOST + 1)) if _NUMBERS.fullmatch(lines[i])), index + 1)
-    peak, place = search_lines(_PEAK, lines[index:first]), search_lines(_POINT, lines[:_MOST])
+    peak, duration = (search_lines(pattern, lines[index:first]) for pattern in (_PEAK, _DURATION))
+    place = search_lines(_POINT, lines[:_MOST])
     return [
         Recording(
             label=label,
@@ -59,7 +66,11 @@ def parse(text: str) -> list[Recording]:
             sensor=Sensor(station, "CN", place=place["place"].strip().upper() if place else None),
             event=lines[1][:60],
             origin=origin_of(lines[2], station, lines[1]),
-            stated_peak=(peak["peak"] if peak else "", ""),
+            stated=(
+                Stated("peak", peak["peak"] if peak else ""),
+                Stated("time of the peak", (peak["at"] or "") if peak else ""),
+                Stated("duration", duration["duration"] if duration else "", limits=_WITHOUT_ENDS),
+            ),
             header={"station": station, "event": lines[2].strip()[:60]},
         )
     ]

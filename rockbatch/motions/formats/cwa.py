@@ -4,9 +4,10 @@ import re
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.formats.header_lines import keys_of, moment_in, number_if_any
+from rockbatch.motions.formats.header_lines import keys_of, moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import on_even_steps
 from rockbatch.motions.origin import origin_of
@@ -16,9 +17,8 @@ _MOMENT = re.compile(
     r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})-(?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d(?:\.\d{1,6})?)",
     re.ASCII,
 )
+_EXTREMES = re.compile(r"\s*(-?\d{1,6}\.\d{1,6})\s*~\s*(-?\d{1,6}\.\d{1,6})\s*", re.ASCII)
 _TAIPEI = 8 * 3600.0  # s ahead of UTC
-_SAME_RATE = 1e-3  # relative: what printing of the times may cost their mean step
-_WITHIN = 1.0  # s: the stated length is rounded, to whole seconds in some files
 
 
 def is_cwa(head: bytes) -> bool:
@@ -35,7 +35,6 @@ def parse(text: str) -> list[Recording]:
     if len(labels) + 1 != table.shape[1]:
         raise InputError(f"found {table.shape[1]} columns; the header says time and {', '.join(labels)}")
     dt, values, notes = on_even_steps(table[:, 0], table[:, 1:])
-    _check_rate_and_length(header, dt, len(values))
     station = header.get("StationCode", "")
     local = header.get("StartTime(GMT+08)", "")
     began = local or header.get("StartTime", "")
@@ -53,6 +52,11 @@ def parse(text: str) -> list[Recording]:
             processed=False,
             sensor=Sensor(station, "TW"),
             event=began,
+            stated=(
+                Stated("rate", header.get("SampleRate(Hz)", "")),
+                Stated("duration", header.get("RecordLength(sec)", "")),
+                Stated("peak", _peak(header.get(f"AmplitudeMAX. {label}", ""))),
+            ),
             origin=origin_of(date=began.partition("-")[0], station=station),
             notes=notes,
             header={"start": began, "instrument": header.get("InstrumentKind", "")},
@@ -70,13 +74,10 @@ def _labels(sequence: str) -> list[str]:
     return [match["label"] for match in matches if match]
 
 
-def _check_rate_and_length(header: dict[str, str], dt: float, npts: int) -> None:
-    """Raise ``InputError`` unless the stated rate and length, if given as numbers, are those of the columns."""
-    rate, length = (number_if_any(header, key) for key in ("SampleRate(Hz)", "RecordLength(sec)"))
-    if rate is not None and not abs(rate * dt - 1) <= _SAME_RATE:
-        raise InputError(f"the header says {rate:g} Hz, but time grows by {dt:g} s")
-    if length is not None and not abs(npts * dt - length) <= _WITHIN + dt:
-        raise InputError(f"the header says {length:g} s, but there are {npts * dt:g} s; fetch the file again")
+def _peak(extremes: str) -> str:
+    """Return the larger of a column's extremes, which are written "4.094~   -4.353"; "" where they are not."""
+    match = _EXTREMES.fullmatch(extremes)
+    return max(match.groups(), key=lambda extreme: abs(float(extreme))) if match else ""
 
 
 is_cwa_file, read_cwa_stream = plugin("CWA", is_cwa, parse)

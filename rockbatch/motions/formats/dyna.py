@@ -6,17 +6,17 @@ files; empty ones are unknown.
 
 import re
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import NoRecordError
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
-from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in, number_if_any
+from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.origin import TURKISH, origin_of
 
 _MOST_KEYS = 200
 _TURKISH = ("TK", "TU", "KO")  # networks whose texts are in Windows-1254
-_ROUGHLY = 0.01  # relative: what the stated duration, rounded or off by a sample, may differ
 _MOMENT = re.compile(
     r"(?P<year>\d{4})/?(?P<month>\d\d)/?(?P<day>\d\d)[_ T]"
     r"(?P<hour>\d\d):?(?P<minute>\d\d):?(?P<second>\d\d(?:\.\d{1,6})?)",
@@ -35,7 +35,7 @@ def parse(text: str) -> list[Recording]:
     header = _header(lines)
     if header.get("NETWORK") in _TURKISH:
         header = {key: value.translate(TURKISH) for key, value in header.items()}
-    npts, dt = _count_and_step(header)
+    npts, dt = count_and_step(header, "NDATA", "SAMPLING_INTERVAL_S")
     codes = tuple(header.get(key, "") for key in ("NETWORK", "STATION_CODE", "LOCATION"))
     stream = header["STREAM"]
     year = header.get("EVENT_DATE_YYYYMMDD", "")[:4]
@@ -54,7 +54,11 @@ def parse(text: str) -> list[Recording]:
             sensor=Sensor(codes[1], codes[0], codes[2]),
             event=event,
             origin=origin_of(header["EVENT_NAME"], header.get("STATION_NAME") or codes[1], year),
-            stated_peak=(header.get("PGA_CM/S^2", ""), "cm/s^2"),
+            stated=(
+                Stated("duration", header.get("DURATION_S", "")),
+                Stated("peak", header.get("PGA_CM/S^2", ""), "cm/s^2"),
+                Stated("time of the peak", header.get("TIME_PGA_S", "")),
+            ),
             header={key.lower(): value for key, value in header.items() if value},
         )
     ]
@@ -70,15 +74,6 @@ def _header(lines: list[str]) -> dict[str, str]:
             f"the header says DATA_TYPE: {kind[:40]}; expected ACCELERATION: take that file of this record"
         )
     return header
-
-
-def _count_and_step(header: dict[str, str]) -> tuple[int, float]:
-    """Return the number of values and the sampling interval [s], which must agree with the stated duration, if any."""
-    npts, dt = count_and_step(header, "NDATA", "SAMPLING_INTERVAL_S")
-    duration = number_if_any(header, "DURATION_S")
-    if duration and duration > 0 and abs(npts * dt - duration) > max(2 * dt, _ROUGHLY * duration):
-        raise InputError(f"the header says {npts} values every {dt:g} s, but also {duration:g} s in all")
-    return npts, dt
 
 
 is_dyna_file, read_dyna_stream = plugin("DYNA", is_dyna, parse)

@@ -16,6 +16,8 @@ from rockbatch.motions.motion import Samples
 
 T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
+_ALIGNED = 20  # lines that do not have numbers in the same columns by chance
+_WORD = re.compile(r"\S+")
 _MANY = 100  # numbers that do not have the same number of decimals by chance
 _PRINTED = re.compile(r" *[-+]?\d*(?P<fraction>\.\d+)?(?P<power>[Ee][-+]\d\d?)?")
 _OTHER, _BLANK, _PLUS, _MINUS, _DIGIT, _POINT, _POWER = 0x00, 0x20, 0x40, 0x50, 0x60, 0x80, 0xA0
@@ -175,11 +177,21 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
         return row
 
     values = _numbers(lines[first:end], first, count, per_line, fields)
-    if is_cut_short(field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split())):
+    backwards = (field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split()))
+    if is_cut_short(backwards) or _ends_within_a_column(lines[first:end], per_line):
         raise InputError(
             f'line {end}: found "{lines[end - 1].split()[-1][:40]}", shorter than all others: the file is cut'
         )
     return values
+
+
+def _ends_within_a_column(lines: Sequence[str], per_line: int) -> bool:
+    """Return whether the last number ends before its column does, where those of the lines before stand right-aligned.
+
+    So a whole number that has lost digits is found, which has no point.
+    """
+    *full, last = ([match.end() for match in _WORD.finditer(line)] for line in lines[-_ALIGNED - 1 :])
+    return per_line > 1 and len(full) > 1 and full.count(full[0]) == len(full) and last[-1] < full[0][len(last) - 1]
 
 
 def number_in(field: str, index: int) -> float:

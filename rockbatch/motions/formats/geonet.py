@@ -12,6 +12,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.origin import origin_of
 
 _WIDTH, _PER_LINE = 8, 10
@@ -25,7 +26,13 @@ _TEXT = layout(
         "Number of points … Duration … s",
     ),
     (12, r"(?i)component\s+(?P<label>\S+)", "Component …"),
-    (13, r"(?i)acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)", "Acceleration: peak … mm/s/s"),
+    (
+        *(
+            13,
+            r"(?i)acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)(?:\s+at\s+(?P<at>[0-9.]{1,15})\s*s)?",
+        ),
+        "Acceleration: peak … mm/s/s",
+    ),
     (1, r"(?i)site\s+(?P<site>\S+)", "Site …"),
     (14, rf"(?i)^\s*velocity:\s+{_OF_PEAK}(?P<velocity>\S+)", ""),
     (15, rf"(?i)^\s*displacement:\s+{_OF_PEAK}(?P<displacement>\S+)", ""),
@@ -59,17 +66,15 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
     fields = read_header(lines, first_line, _TEXT)
     integers = [int(n) for n in fixed_numbers(lines, first_line + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]
     reals, _ = fixed_numbers(lines, first_line + _REALS + 2, 10, _WIDTH, _PER_LINE)
-    npts, duration, dt = int(fields["npts"]), number_in(fields["duration"], first_line + 9), float(reals[5])
+    npts, dt = int(fields["npts"]), float(reals[5])
     counts = integers[33:36]
     if npts < 1 or counts[0] != npts or min(counts) < 0:
         raise InputError(
             f"line {first_line + 10} says {npts} points, line {first_line + _INTEGERS + 4} {counts} accelerations, velocities "
             "and displacements; expected the same number above 0"
         )
-    if not dt > 0 or abs(npts * dt - duration) > dt + 0.01:
-        raise InputError(
-            f"line {first_line + 10} says {npts} points in {duration:g} s, line {first_line + _REALS + 3} an interval of {dt:g} s"
-        )
+    if not dt > 0:
+        raise InputError(f"line {first_line + _REALS + 3} says an interval of {dt:g} s; expected a number above 0")
     factor, unit = 1.0, fields["of_peak"]
     if fields["un"]:
         raw = read_header(lines, first_line, _OF_RAW)
@@ -93,7 +98,11 @@ def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
         origin=origin_of(line_at(lines, first_line + 6), lines[first_line + 2] or site, line_at(lines, first_line + 7)),
         velocities=(blocks[1], fields["velocity"]) if fields["velocity"] and len(blocks[1]) else None,
         displacements=(blocks[2], fields["displacement"]) if fields["displacement"] and len(blocks[2]) else None,
-        stated_peak=(fields["peak"], fields["of_peak"]),
+        stated=(
+            Stated("duration", fields["duration"]),
+            Stated("peak", fields["peak"], fields["of_peak"]),
+            Stated("time of the peak", fields["at"], begins=-float(reals[1])),  # from the recorder's first sample
+        ),
         header={"accelerogram": fields["id"], "site": lines[first_line + 2].strip()},
     )
     return recording, end

@@ -11,6 +11,7 @@ from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import layout, moment_of, read_header
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 
@@ -63,7 +64,7 @@ def parse(text: str) -> list[Recording]:
             processed=False,
             origin=origin_of(date=day, station=station),
             sensor=Sensor(station, location=level, place=_PLACES.get(level)),
-            stated_peak=(header["peak"], "gal"),
+            stated=(Stated("peak", header["peak"], "gal"),),
             notes=(_LEVELS[level],) if level in _LEVELS else (),
         )
     ]

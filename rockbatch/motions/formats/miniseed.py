@@ -1,6 +1,8 @@
 """MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
 
 import re
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.record_file import RecordFile, no_acceleration
 from rockbatch.motions.formats.with_obspy import read_stream
-from rockbatch.motions.motion import Unusable
+from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
 
@@ -20,6 +22,19 @@ _YEARS = 1900, 2100
 _MOST_NAMED = 5  # of the .xml files that could not be read
 _MOST_PIECES = 1000  # of channels in a file: a network of three hundred stations
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
+_BLOCK = {  # of a fixed header: its fields, as numpy.dtype has them
+    "names": ["number", "quality", "codes", "year", "day", "hour", "minute", "second", "fraction", "npts"],
+    "formats": ["S6", "S1", "S12", "u2", "u2", "u1", "u1", "u1", "u2", "u2"],
+    "offsets": [0, 6, 8, 20, 22, 24, 25, 26, 28, 30],
+}
+_BROKEN_OFF = (
+    Finding(
+        "time of blocks",
+        "a block goes on from the one before by its number, but not by its time: check whether the file "
+        "holds two events",
+        gross=True,
+    ),
+)
 
 
 def is_miniseed(head: bytes) -> bool:
@@ -51,6 +66,7 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     segments = grouped(stream, lambda trace: str(trace.id))
     entries, refused = stationxml.channels_beside(file.path.parent, file.root)
     channels = grouped(entries, lambda channel: channel.id)
+    broken = _broken_off(file.data, stream)
     unread = f" (not read: {', '.join(refused[:_MOST_NAMED])})" if refused else ""
     readings: list[Component | Unusable] = []
     for channel_id, traces in segments.items():
@@ -64,10 +80,44 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
-                readings.append(_component(name, source, file, pieces[0], channels.get(channel_id, []), unread))
+                component = _component(name, source, file, pieces[0], channels.get(channel_id, []), unread)
+                readings.append(replace(component, findings=_BROKEN_OFF) if channel_id in broken else component)
             except InputError as error:
                 readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
     return readings
+
+
+def _broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
+    """Return the channels of which a block goes on from the one before by its number, but not by its time.
+
+    Between two events numbers are left out, or begin anew. Files with blocks of several lengths are not looked at.
+    """
+    lengths = {trace.stats.mseed.record_length for trace in stream}
+    rates = {trace.id: trace.stats.sampling_rate for trace in stream}
+    if len(lengths) > 1 or len(rates) == len(stream):
+        return set()
+    block: Any = {**_BLOCK, "itemsize": lengths.pop()}
+    blocks = np.frombuffer(data, np.dtype(block).newbyteorder(stream[0].stats.mseed.byteorder))
+    blocks = blocks[np.isin(blocks["quality"], [b"D", b"R", b"Q", b"M"]) & np.char.isdigit(blocks["number"])]
+    broken = set[str]()
+    for codes in np.unique(blocks["codes"]):
+        station, location, channel, network = (
+            codes[i:j].decode("latin-1").strip() for i, j in ((0, 5), (5, 7), (7, 10), (10, 12))
+        )
+        of_channel = blocks[blocks["codes"] == codes]
+        channel_id = f"{network}.{station}.{location}.{channel}"
+        between = rates.get(channel_id, 0.0) * np.diff(_times(of_channel))  # samples; 0 of a channel of text
+        goes_on = np.diff(of_channel["number"].astype(int)) == 1
+        if (goes_on & (np.abs(between - of_channel["npts"][:-1]) > 1.0)).any():
+            broken.add(channel_id)
+    return broken
+
+
+def _times(blocks: "np.ndarray[Any, Any]") -> Samples:
+    """Return the times of the first samples of blocks [s since 1970], shape (blocks,)."""
+    midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + (blocks["day"].astype(int) - 1)
+    day, hour, minute = midnight.astype(float), blocks["hour"].astype(float), blocks["minute"].astype(float)
+    return ((24.0 * day + hour) * 60.0 + minute) * 60.0 + blocks["second"] + 1e-4 * blocks["fraction"]
 
 
 def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":

@@ -4,14 +4,16 @@ A format's module makes its two entry points by ``is_x, read_x = plugin("X", …
 """
 
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import obspy
+from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.formats.record_file import text_of
-from rockbatch.motions.formats.recording import Recording, letters
+from rockbatch.motions.formats.recording import Recording, contradictions_of, letters
 
 HEAD = 4096
 """Bytes that a format is known by."""
@@ -62,11 +64,23 @@ def plugin(
         place, data = name_and_bytes(filename)
         try:
             recordings = parse(text_of(data))
+            _warn_of_contradictions(place, recordings)
         except InputError as error:
             raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
         return obspy.Stream([_trace(name, recording, headonly) for recording in recordings])
 
     return is_format, read_format
+
+
+def _warn_of_contradictions(place: str, recordings: Sequence[Recording]) -> None:
+    """Warn of recordings whose samples are not what their header states; of those in g and m/s² alike, in standard gravity."""
+    for recording in recordings:
+        try:
+            factor = acceleration_factor(recording.unit)
+        except ValueError:
+            continue
+        for finding in contradictions_of(recording, factor, GRAVITY):
+            warnings.warn(f"{place} ({recording.label}): {finding.text}", stacklevel=4)
 
 
 def _trace(name: str, recording: Recording, headonly: bool) -> "obspy.Trace":

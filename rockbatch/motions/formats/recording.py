@@ -1,26 +1,17 @@
 """One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
 
-import re
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
 from rockbatch.motions.formats.record_file import RecordFile
+from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
-
-_SAME_PEAK = 1e-4  # relative: half of the last of five digits, of 1.0000
-_NOTED, _GROSS = 0.05, 0.25
-"""Relative differences up to which a stated peak is remarked, and beyond which the record waits."""
-_PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")
-
 
 Series = tuple[Samples, str]
 """Values, shape (npts,), and their unit."""
@@ -45,9 +36,9 @@ class Recording:
     initial: Initial | None = None  # the ground's state at the first sample, where the header has it
     velocities: Series | None = None  # beside the accelerations
     displacements: Series | None = None  # likewise
-    stated_peak: tuple[str, str] = ("", "")  # of the header, as it is printed, of any sign; its unit, "" for unit
+    stated: tuple[Stated, ...] = ()  # what else the header states of the samples
     counts: bool = False  # whether the file has counts, and their scale: no unit of its own
-    as_read: Samples | None = None  # accelerations before they were interpolated, which have the stated peak
+    as_read: Samples | None = None  # accelerations before they were interpolated, which have the stated peak and count
     notes: tuple[str, ...] = ()  # what was done to the data
     origin: Origin = UNKNOWN_ORIGIN  # what the header calls event and station
     header: dict[str, str] = field(default_factory=dict)  # what else it says, for ObsPy
@@ -96,7 +87,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         raise InputError(f'component "{recording.label}": {error}') from None
     acceleration = recording.values * factor
     series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
-    peak = _peak_differs(recording, factor, file.gravity)
+    findings = contradictions_of(recording, factor, file.gravity)
     return Component(
         name=name,
         dt=recording.dt,
@@ -112,9 +103,16 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         processed=recording.processed,
         origin=recording.origin,
         initial=initial_of(acceleration, recording.dt, *series) or recording.initial,
-        notes=(*recording.notes, *([peak.text] if peak and not peak.what else [])),
-        findings=(peak,) if peak and peak.what else (),
+        notes=(*recording.notes, *(finding.text for finding in findings if not finding.what)),
+        findings=tuple(finding for finding in findings if finding.what),
     )
+
+
+def contradictions_of(recording: Recording, factor: float, gravity: float) -> list[Finding]:
+    """Return how a recording's samples, which ``factor`` brings into m/s², differ from what its header states."""
+    as_read = recording.values if recording.as_read is None else recording.as_read
+    sampled = Sampled(recording.values, recording.dt, recording.unit, factor, as_read)
+    return contradictions(recording.stated, sampled, gravity)
 
 
 def _in_metres(series: Series | None) -> Samples | None:
@@ -122,36 +120,3 @@ def _in_metres(series: Series | None) -> Samples | None:
     if series is None or (factor := length_factor(series[1])) is None:
         return None
     return series[0] * factor
-
-
-def _peak_differs(recording: Recording, factor: float, gravity: float) -> Finding | None:
-    """Return that the samples do not have the peak that the header states, with their offset or without it.
-
-    ``factor`` brings samples into m/s². They may be off by a unit of the last digit of the stated peak, and by a part in
-    ten thousand, since some formats print five digits. By up to :data:`_NOTED` it is remarked, without ``what``, beyond
-    :data:`_GROSS` the record waits. A unit that is not understood states nothing.
-    """
-    text, unit = recording.stated_peak
-    number = _PRINTED.fullmatch(text.strip())
-    try:
-        scale = acceleration_factor(unit or recording.unit, gravity)
-    except ValueError:
-        number = None
-    if number is None:
-        return None
-    power = int(number["power"] or 0)
-    stated, printed = (
-        abs(float(number["number"])) * scale * 10.0**power,
-        scale * 10.0 ** (power - len(number["decimals"])),
-    )
-    samples = factor * (recording.values if recording.as_read is None else recording.as_read)
-    peaks = [float(np.abs(samples - offset).max(initial=0.0)) for offset in (0.0, samples.mean())]
-    if any(abs(peak - stated) <= printed + _SAME_PEAK * peak for peak in peaks):
-        return None
-    nearest = min(peaks, key=lambda peak: abs(peak - stated)) / scale
-    apart = abs(nearest * scale - stated) / max(min(nearest * scale, stated), sys.float_info.min)
-    unit = unit or recording.unit
-    message = f"its header states a peak of {text.strip()} {unit}, and its samples have {nearest:.6g} {unit}"
-    if apart <= _NOTED:
-        return Finding("", message)
-    return Finding("peak", f"{message}: check its scale", gross=apart > _GROSS)

@@ -10,6 +10,7 @@ from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, refuse_more
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, line_with
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.origin import origin_of
 
 _WIDTH, _PER_LINE = 14, 5
@@ -40,7 +41,7 @@ def parse(text: str) -> list[Recording]:
             unit=unit["unit"],
             station=f"{code}, {event}" if code else "",
             processed=True,
-            stated_peak=(header.get("PGA (m/s/s)", ""), "m/s/s"),
+            stated=(Stated("peak", header.get("PGA (m/s/s)", ""), "m/s/s"),),
             sensor=Sensor(code),
             event=event,
             origin=origin_of(date=event, station=name or code),

@@ -4,6 +4,7 @@ A header of 70 floats and 40 integers of four bytes and 24 words of eight letter
 floats. Words whose value is -12345 are undefined. Source: SAC's manual, "SAC data file format".
 """
 
+import math
 from datetime import UTC, datetime
 
 import numpy as np
@@ -13,19 +14,24 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.record_file import RecordFile, no_acceleration, unstated
+from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import origin_of
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _DAY = 86400.0  # s
+_STALE = (1.0, 1.0)  # limits of extremes: a factor of 2
 _KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
 _HEADER, _FLOATS, _INTEGERS, _TEXTS = 632, 70, 40, 24  # bytes; words
 _VERSION_AT = 76 * 4  # bytes: NVHDR, 6 or 7
 _UNDEFINED = -12345
 _NUMBERS = {  # word, the least and the largest value; floats are the first of them
     "DELTA": (0, 1e-5, 1.0),
+    "DEPMIN": (1, -math.inf, math.inf),
+    "DEPMAX": (2, -math.inf, math.inf),
     "B": (5, -1e10, 1e10),  # some count from 1970
+    "E": (6, -1e10, 1e10),
     "CMPAZ": (57, -360.0, 720.0),
     "CMPINC": (58, -180.0, 180.0),
     "NZYEAR": (70, 1900, 2100),
@@ -76,21 +82,26 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
         )
     start, day = _start(numbers)
-    factor = acceleration_factor(options.unit or "m/s2", file.gravity) / (options.sensitivity or 1.0)
+    unit = options.unit or "m/s2"
+    factor = acceleration_factor(unit, file.gravity) / (options.sensitivity or 1.0)
+    dt = float(str(np.float32(numbers["DELTA"])))  # the shortest decimal that a header of four bytes may mean
+    sampled = Sampled(samples, dt, unit if options.sensitivity is None else "counts", factor, samples)
+    findings = contradictions(_statements(numbers), sampled, file.gravity)
     return [
         Component(
             name=file.stem,
-            dt=float(str(np.float32(numbers["DELTA"]))),  # the shortest decimal that a header of four bytes may mean
+            dt=dt,
             acceleration=samples * factor,
             orientation=orientation_of(channel) or _by_angles(numbers) or split_stem(file.stem)[1] or unknown(channel),
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
             start=start,
             sensor=Sensor(station if start >= FIRST_YEAR else "", network, location),
-            unit=options.unit or "m/s2",
+            unit=unit,
             raw=True,
             origin=origin_of(names["KEVNM"], f"{network}.{station}".strip("."), day),
-            notes=(f"unit {options.unit or 'm/s2'} as stated",),
+            notes=(f"unit {unit} as stated", *(finding.text for finding in findings if not finding.what)),
+            findings=tuple(finding for finding in findings if finding.what),
         )
     ]
 
@@ -121,6 +132,18 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
     names = {name: text[8 * first : 8 * end].partition("\0")[0].strip() for name, (first, end) in _NAMES.items()}
     names = {name: "" if value.startswith(str(_UNDEFINED)) else value for name, value in names.items()}
     return numbers, names, np.frombuffer(data, f"{order}f4", npts, _HEADER).astype(float)
+
+
+def _statements(numbers: dict[str, float]) -> list[Stated]:
+    """Return what the header states of its samples: their times from B to E, and DEPMIN and DEPMAX, which some programs leave."""
+    statements = []
+    if "B" in numbers and "E" in numbers:
+        begins, ends = numbers["B"], numbers["E"]
+        rounded = float(np.spacing(np.float32(begins)) + np.spacing(np.float32(ends)))  # by four bytes
+        statements.append(Stated("duration", f"{ends - begins:.6g}", within=abs(rounded)))
+    if "DEPMIN" in numbers and "DEPMAX" in numbers and numbers["DEPMAX"] > numbers["DEPMIN"]:
+        statements.append(Stated("range", f"{numbers['DEPMAX'] - numbers['DEPMIN']:.6g}", limits=_STALE))
+    return statements
 
 
 def _start(numbers: dict[str, float]) -> tuple[float, str]:

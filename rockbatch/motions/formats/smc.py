@@ -14,6 +14,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, numbe
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, letters
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
@@ -63,7 +64,8 @@ def parse(text: str) -> list[Recording]:
     dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
     start = None if unknown in (second, ms) or not 0 <= second < 60 else moment(year, 1, 1, hour, minute, second)
-    peaks = [peak for n in (30, 32) if (peak := _real(lines, n))]
+    extremes = [(peak, _real(lines, n - 1)) for n in (30, 32) if (peak := _real(lines, n))]
+    peak, time_of_peak = max(extremes, key=lambda extreme: abs(number_in(extreme[0], 22)), default=("", ""))
     origin_line = line_at(lines, 3)
     return [
         Recording(
@@ -78,7 +80,7 @@ def parse(text: str) -> list[Recording]:
             sensor=Sensor(number, place=name.upper()),
             event="" if unknown in (year, day, hour, minute) else f"{year}-{day:03d} {hour}:{minute}",
             origin=origin_of(origin_line[25:], name, origin_line[:25]),
-            stated_peak=(max(peaks, key=lambda peak: abs(number_in(peak, 22)), default=""), ""),
+            stated=(Stated("peak", peak), Stated("time of the peak", time_of_peak)),
             as_read=numbers[1::2] if rate is None else None,
             notes=(*notes, *(["its header flags a problem: read its comments"] if integers[17] == 1 else [])),
             header={"station": name, "event": origin_line[25:].strip()},

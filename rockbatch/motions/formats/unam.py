@@ -25,6 +25,7 @@ from rockbatch.motions.formats.header_lines import (
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.origin import origin_of
@@ -39,12 +40,13 @@ _FORMAT = re.compile(r"\(?(?P<per_line>[0-9]{1,2})[FEDG](?P<width>[0-9]{1,2})\.[
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:[.,]\d{1,6})?)", re.ASCII)
 _DAY = 86400.0  # s
 _COUNT, _STEP, _DECIMATION = "NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6", "FACTOR DE DECIMACION"
+_RATE, _PEAK, _PEAK_SAMPLE = "VEL. DE MUESTREO, C1-C6", "ACEL. MAX.(Gal), C1-C6", "ACEL. MAX., C1-C6, EN LA MUESTRA"
 _NEEDED = (
     *("NUMERO DE CANALES", "ORIENTACION C1-C6", _COUNT, _STEP, "FORMATO DATOS", "UNIDADES DE LOS DATOS"),
     "CLAVE DE LA ESTACION",
 )
 _ELSE = (
-    *(_DECIMATION, "ACEL. MAX.(Gal), C1-C6", "FECHA DEL SISMO", "HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"),
+    *(_DECIMATION, _RATE, _PEAK, _PEAK_SAMPLE, "FECHA DEL SISMO", "HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"),
     *("NOMBRE DE LA ESTACION", "NOMBRE DEL ARCHIVO"),
 )
 
@@ -69,7 +71,7 @@ def parse(text: str) -> list[Recording]:
     npts, dt = count_and_step({key: _common_value(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
     first = _first(lines, index, [label.strip() for label, _ in labels])
     values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
-    peaks = header["ACEL. MAX.(Gal), C1-C6"].strip("/ ").split("/")
+    rates, peaks, peak_samples = (_texts_of(header[key], count) for key in (_RATE, _PEAK, _PEAK_SAMPLE))
     station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
     start, event = _start(header), f"{date} {header['HORA EPICENTRO']}".strip()
     notes = (f"its header says {npts} samples, and {more} more follow, which are left out",) if more else ()
@@ -89,7 +91,11 @@ def parse(text: str) -> list[Recording]:
             sensor=Sensor(station),
             event=event,
             origin=origin_of("", name or station, date),
-            stated_peak=(peaks[i] if len(peaks) == count else "", "gal"),
+            stated=(
+                Stated("rate", rates[i]),
+                Stated("peak", peaks[i], "gal"),
+                Stated("time of the peak", _time_of_sample(peak_samples[i], dt)),
+            ),
             notes=notes,
             header={"station": name, "file": header["NOMBRE DEL ARCHIVO"]},
         )
@@ -116,6 +122,17 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
     if len(values) != count:
         raise InputError(f"the header says {count} channels, but {key}: {header[key][:60]}")
     return values
+
+
+def _texts_of(text: str, count: int) -> list[str]:
+    """Return what a key that may be empty states of each channel; "" of all where it has another number of values."""
+    texts = [part.strip() for part in text.strip("/ ").split("/")]
+    return texts if len(texts) == count else [""] * count
+
+
+def _time_of_sample(number: str, dt: float) -> str:
+    """Return the time of a sample [s], counted from 1; "" where none is stated."""
+    return f"{(int(number) - 1) * dt:.6f}" if number.isdecimal() and 0 < len(number) < 10 else ""
 
 
 def _common_value(header: dict[str, str], key: str, count: int) -> str:

@@ -9,6 +9,7 @@ in files of USC not all. Volume III has spectra. Sources: Shakal & Huang (1985),
 strong-motion data tapes", OSMS 85-03, which tells Caltech's; else the agencies' own files.
 """
 
+import math
 import re
 from functools import partial
 from typing import Any
@@ -20,6 +21,7 @@ from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_
 from rockbatch.motions.formats.header_lines import CLOCK, layout, line_at, moment_of, past_mark, read_header
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
+from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.orientation import is_clock
 from rockbatch.motions.origin import origin_of
@@ -27,7 +29,7 @@ from rockbatch.motions.origin import origin_of
 _DATA = {1: 27, 2: 45}  # lines of a channel's header, by volume
 _COMPONENT = 6  # line of the text that names it: "CHAN  1: 90 DEG", or USC's and Caltech's "COMP N90E"
 _WIDTH, _PER_LINE = 7, 10  # of pairs
-_LATE = 0.05  # s: what a stated duration may differ from the last time
+_OF_RAW = (0.05, math.inf)  # limits of the duration before the correction, which may cut and pad
 _TITLE = re.compile(
     r"^\s*uncorrected accelerogram data\b|\bof uncorrected accelerogram data of volume i\b", re.IGNORECASE
 )
@@ -49,17 +51,23 @@ _TEXT = layout(  # of Volume I, which Volume II repeats
 _STATED = {  # where the text says once more, or alone, what the samples are; CSMIP does not everywhere
     1: layout(
         (10, r"(?ai)no\. of points\s*=\s*(?P<npts>\d{1,9})", "NO. OF POINTS = …"),
-        (10, r"(?ai)duration *= *(?P<duration>[\d.]{1,12}) *sec", "DURATION = … SEC"),
+        (10, r"(?ai)(?:duration|record length) *= *(?P<duration>[\d.]{1,12}) *sec", "DURATION = … SEC"),
         (10, r"(?ai)at +(?P<rate>[\d.]{1,12}) *samples/sec", ""),
         (11, r"(?ai)\bare sec and\s+(?P<unit>[A-Z0-9/]+)", "UNITS ARE SEC AND G/10"),
-        (11, r"(?ai)max\s*=\s*(?P<peak>[-+]?\d{0,5}\.\d{1,6})\s*(?P<of_peak>g)\b", ""),
+        (
+            11,
+            r"(?ai)max\s*=\s*(?P<peak>[-+]?\d{0,5}\.\d{1,6})\s*(?P<of_peak>g)\b(?:, *at +(?P<at>[\d.]{1,12}) *sec)?",
+            "",
+        ),
     ),
     2: layout(
         (15, r"(?ai)^ *(?P<npts>\d{1,9}) +(?:points of|instrument and)", "… INSTRUMENT AND BASELINE CORRECTED DATA"),
+        (11, r"(?ai)(?:duration|record length) *= *(?P<duration>[\d.]{1,12}) *sec", ""),
         (16, r"(?ai)intervals of +(?P<dt>[\d.]{1,12}) *sec", "AT EQUALLY-SPACED INTERVALS OF … SEC."),
         (
             17,
-            r"(?ai)peak acceleration *= *[-+]?(?P<peak>\d*\.\d+) *(?P<of_peak>[cm]ms?/sec/sec)",
+            r"(?ai)peak acceleration *= *[-+]?(?P<peak>\d*\.\d+) *(?P<of_peak>[cm]ms?/sec/sec)"
+            r"(?: +at +(?P<at>[\d.]{1,12}) *sec)?",
             "PEAK ACCELERATION = …",
         ),
     ),
@@ -137,7 +145,7 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
         ),
         event=f"{event} {date}",
         origin=origin_of(event, name or number, date),
-        stated_peak=(fields["peak"], _unit_of_peak(fields)),
+        stated=_statements(fields, begins, volume),
         notes=notes,
         header={"station": name, "event": event, "record": fields["record"]},
         **samples,
@@ -178,7 +186,6 @@ def _samples(
     else:
         dt, series, end = declared_series(lines, start)
     values, unit = series["acc"]
-    _check_stated(lines, first, volume, {"npts": len(values), "rate": 1.0 / dt, "dt": dt})
     of_others = {"velocities": series.get("vel"), "displacements": series.get("dis")}  # the header's initial velocity
     return {"dt": dt, "values": values, "unit": unit} | of_others, None, end  # has the wrong sign in files of the USGS
 
@@ -195,7 +202,6 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[dict[s
         raise InputError(f'line {shifted + 1}: found "{lines[shifted][:40]}"; expected a blank and ten columns')
     block = [""] * start + [line[indent:] for line in lines[start:end]]
     pairs = fixed_numbers(block, start, 2 * npts, _WIDTH, _PER_LINE)[0].reshape(npts, 2)
-    _check_stated(lines, first, 1, {"duration": pairs[-1, 0]})
     dt, values, notes = from_pairs(pairs, f"channel {fields['label']} from line {first + 1} on")
     samples = {"dt": dt, "values": values, "unit": fields["unit"], "notes": notes, "as_read": pairs[:, 1]}
     return samples, float(pairs[0, 0]), end
@@ -216,18 +222,17 @@ def _unit_of_peak(fields: dict[str, str]) -> str:
     return fields["of_peak"].upper().replace("MS/", "M/")
 
 
-def _check_stated(lines: list[str], first: int, volume: int, found: dict[str, float]) -> None:
-    """Raise ``InputError`` where the header's text contradicts the count, rate, interval or duration that were ``found``."""
-    for offset, pattern, _ in _STATED[volume]:
-        match, key = pattern.search(line_at(lines, first + offset)), next(iter(pattern.groupindex))
-        if match is None or key not in found:
-            continue
-        within = _LATE if key == "duration" else 1e-6 * found[key]
-        if abs(number_in(match[key], first + offset) - found[key]) > within:
-            raise InputError(
-                f'line {first + offset + 1}: "{match[0].strip()}" contradicts line {first + _DATA[volume] + 1} and its '
-                f"samples: {found[key]:g}"
-            )
+def _statements(fields: dict[str, str], begins: float | None, volume: int) -> tuple[Stated, ...]:
+    """Return what the header's text states of the samples, whose times, of pairs, begin at ``begins`` [s]."""
+    start = begins or 0.0
+    return (
+        Stated("count", fields["npts"]),
+        Stated("rate", fields.get("rate", "")),
+        Stated("step", fields.get("dt", "")),
+        Stated("duration", fields["duration"], begins=start, limits=_OF_RAW if volume == 2 else None),
+        Stated("peak", fields["peak"], _unit_of_peak(fields)),
+        Stated("time of the peak", fields["at"], begins=start),
+    )
 
 
 is_csmip, is_renadic, is_usc = (partial(_is_dialect, name) for name in ("CSMIP", "RENADIC", "USC"))
