@@ -43,6 +43,10 @@ BOUNDS = {
 LOWEST, HIGHEST = 0.25, 2.5
 """Bounds of the heights of deck and drift, over the pier's height."""
 
+THINNEST, THICKEST = 0.03, 1000.0
+"""Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
+0.2, walls with a deck some 30, slender frames more."""
+
 LIGHTEST, HEAVIEST = 0.005, 100.0
 """Bounds of the mass of a deck over that of what carries it."""
 
@@ -80,6 +84,21 @@ def _unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], *
         if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
             doubts[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
     return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+
+
+def unlikely_mass(pier: "Pier", confirm: Collection[str], name: str = "mass_t") -> list[str]:
+    """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
+
+    ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
+    """
+    volume = 8.0 * pier.half_width**2 * pier.height
+    if pier.mass_t is None or THINNEST <= pier.mass_t / volume <= THICKEST or name in confirm:
+        return []
+    width, density = 2.0 * pier.half_width, pier.mass_t / volume
+    return [
+        f"{name} = {pier.mass_t if name == 'mass_t' else width:g}: a block {width:.3g} m wide and as thick, "
+        f"{2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have {density:.2g} t/m³; {remedy(name)}"
+    ]
 
 
 def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
@@ -184,13 +203,15 @@ class Pier(InNotebook):
         """Return a pier of the size R0 [m], the distance from a pivot to the centre of mass.
 
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
-        "top_m", "deck_height_m", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
+        "top_m", "deck_height_m", "mass_t", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
         """
         _refuse(
             out_of_bounds(size_m=size_m, mu=mu)
             or _unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         )
-        return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
+        pier = cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
+        _refuse(unlikely_mass(pier, confirm))
+        return pier
 
     @classmethod
     @checked
@@ -208,7 +229,7 @@ class Pier(InNotebook):
         wrong = out_of_bounds(width_m=width_m, height_m=height_m)
         _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
-        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=("top_m",))
+        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=(*confirm, "top_m"))
 
     @classmethod
     @checked
@@ -267,7 +288,9 @@ class Pier(InNotebook):
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=("top_m",))
+        confirmed = ("top_m", "mass_t")
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
+        _refuse(unlikely_mass(pier, confirm, "width_m"))
         return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
@@ -301,7 +324,9 @@ class Pier(InNotebook):
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
         confirmed = ("width_m", "top_m", "deck_height_m")
-        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
+        pier = cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
+        _refuse(unlikely_mass(pier, confirm))
+        return pier
 
     @classmethod
     @checked

@@ -343,7 +343,15 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
     )
-    rows = [{"case": case.name, "base": case.base.name, "pier": described(case.pier)} for case in cases]
+    rows = [
+        {
+            "case": case.name,
+            "base": case.base.name,
+            "pier": described(case.pier),
+            "parameters": case.base.parameters(case.pier),
+        }
+        for case in cases
+    ]
     yield from implausible(rule, rows)
 
 

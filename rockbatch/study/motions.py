@@ -60,7 +60,7 @@ MOTIONS = Section(("motions",), (
     "polarity": Key(choice("+", "-", called=_SIGNS), '["+", "-"]',
         '"+" as recorded, "-" with the horizontal component reversed.', many=True),
     "scale": Key(positive, "[1.0]", "Factors on all components of every record.", many=True,
-        usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
+        usual=Usual(10.0, "times as recorded; 150 % are 1.5", 0.01)),
     "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, for files that do not state it."),
     "dt": Key(kinds.step, "0.01", "Sampling interval [s], for files that do not state it."),
     "columns": Key(text, '["time", "000", "090", "up"]',

@@ -49,11 +49,11 @@ _PAIR_SCHEMA = {"type": "array", "items": [not_negative.schema(), positive.schem
 _ENTRY = Other(f"the name of a code or of a file, or {_PAIRS}", _entry, {"anyOf": [text.schema(), _PAIR_SCHEMA]})
 _MEASURE = {
     "pga_g": Key(positive, "0.4", "Peak ground acceleration of the horizontal component.",
-        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g")),
+        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g", 0.005)),
     "pgv_m_s": Key(positive, "0.5", "Peak ground velocity of the horizontal component.",
-        usual=Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s")),
+        usual=Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s", 0.005)),
     "sa_g": Key(positive, "0.8", "Pseudo-spectral acceleration at `period_s`.",
-        usual=Usual(10.0, "g: the strongest earthquakes had 5 to 8 g")),
+        usual=Usual(10.0, "g: the strongest earthquakes had 5 to 8 g", 0.001)),
     "period_s": Key(positive, "1.0", "Period of the oscillator of `sa_g`."),
     "damping": Key(Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True), "0.05",
         "Damping of the oscillators, as a fraction of critical damping."),
@@ -63,7 +63,7 @@ _EUROCODE = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
     "ag_g": Key(positive, "0.25", "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
-        required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g", 0.005)),
     "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; default: that of the ground type."),
     "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; default: that of the ground type."),
     "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; default: that of the ground type."),
@@ -71,9 +71,9 @@ _EUROCODE = {
 }  # fmt: skip
 _SHORT_AND_1_S = {
     "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods.",
-        required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
+        required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g", 0.005)),
     "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7 or AASHTO, at 1 s.",
-        required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
+        required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g", 0.002)),
 }  # fmt: skip
 _ASCE = {
     **_SHORT_AND_1_S,
@@ -81,16 +81,16 @@ _ASCE = {
 }
 _AASHTO = {
     "as_g": Key(positive, "0.4", "Acceleration A_s of AASHTO at 0 s; this spectrum has not been checked against its articles.",
-        required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g")),
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g", 0.005)),
     **_SHORT_AND_1_S,
 }  # fmt: skip
 _NZS = {
     "subsoil": Key(choice(*NZS_1170_5), '"C"',
         "Site subsoil class of NZS 1170.5; this spectrum has not been checked against the standard.", required=True),
     "hazard_factor": Key(positive, "0.4", "Hazard factor Z of NZS 1170.5.", required=True,
-        usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)")),
+        usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)", 0.01)),
     "return_period_factor": Key(positive, "1.3", "Return period factor R of NZS 1170.5, 1 at 500 years.",
-        usual=Usual(2.0, "(2,500 years have 1.8)"), default=1.0),
+        usual=Usual(2.0, "(2,500 years have 1.8)", 0.1), default=1.0),
     "fault_km": Key(not_negative, "8.0",
         "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; default: beyond 20 km."),
 }  # fmt: skip
