@@ -125,8 +125,10 @@ class Part(NamedTuple):
     inertia_t_m2: float = 0.0
 
     @classmethod
+    @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
         """Return a uniform shaft that stands on the pivots: a rectangle."""
+        _refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
         return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
 
 
@@ -206,7 +208,7 @@ class Pier(InNotebook):
         "top_m", "deck_height_m", "mass_t", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
         """
         _refuse(
-            out_of_bounds(size_m=size_m, mu=mu)
+            out_of_bounds(alpha=alpha, size_m=size_m, mu=mu, gravity=gravity)
             or _unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         )
         pier = cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
@@ -268,7 +270,10 @@ class Pier(InNotebook):
         InputError
             With every impossible number; part 1 is the first.
         """
-        parts = [Part(*part) for part in parts]
+        try:
+            parts = [Part(*map(float, part)) for part in parts]
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
         wrong = out_of_bounds(width_m=width_m)
         for n, part in enumerate(parts, 1):
             wrong += BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
@@ -356,8 +361,10 @@ class Pier(InNotebook):
         InputError
             With every impossible number.
         """
+        if not isinstance(column, cls):
+            raise InputError("column: must be a Pier, a solid rectangle with its mass")
         wrong = out_of_bounds(deck_mass_t=deck_mass_t)
-        if isinstance(columns, bool) or not isinstance(columns, int) or columns < 2:
+        if columns < 2:
             wrong.append(f"columns = {columns}: must be a whole number, 2 or above; a single one is a pier with a deck")
         if column.mass_t is None:
             wrong.append("mass_t is missing, of one column [t]")
