@@ -64,7 +64,7 @@ PIER = Section(("pier",), (
     "deck_mass_t": "superstructuremass superstructure topmass tributarymass", "width_m": "diameter breadth basewidth",
     Times("width_m", 2.0, "twice the half"): "halfwidth", Times("height_m", 2.0, "twice the half"): "halfheight",
     "size_m": "r0 r radius halfdiagonal", Times("size_m", 0.5, "half the diagonal"): "diagonal",
-    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "p": "frequencyparameter",
+    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "alpha": "alfa", "p": "frequencyparameter",
     "mu": "shapefactor", "columns": "ncolumns numberofcolumns", "initial_rotation_rad": "theta0 initialtilt initialangle",
 }), instead=names({
     "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",

@@ -21,7 +21,12 @@ _OR_DECK = Choice(
 )
 _ALSO_AT = names({"at": "location position place offset x eccentricity where"})
 _ALSO_SPRING = _ALSO_AT | names(
-    {"stiffness_kN_m": "k", "gap_mm": "clearance distance", "restitution": "cor e coefficientofrestitution"}
+    {
+        "stiffness_kN_m": "k",
+        "lambda": "lamda",
+        "gap_mm": "clearance distance",
+        "restitution": "cor e coefficientofrestitution",
+    }
 )
 _ONE_EACH = names({"write a table for each": "number quantity count"})
 _KINDS = names({
