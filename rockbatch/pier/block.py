@@ -47,6 +47,9 @@ THINNEST, THICKEST = 0.03, 1000.0
 """Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
 0.2, walls with a deck some 30, slender frames more."""
 
+NARROWEST, BROADEST = 0.01, 5.0
+"""Bounds of a deck's radius of gyration over its height: a deck 10 m wide has 3 m."""
+
 LIGHTEST, HEAVIEST = 0.005, 100.0
 """Bounds of the mass of a deck over that of what carries it."""
 
@@ -108,6 +111,17 @@ def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -
         return []
     return [
         f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
+    ]
+
+
+def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]) -> list[str]:
+    """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
+    radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
+    if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
+        return []
+    return [
+        f"deck_inertia_t_m2 = {inertia_t_m2:g}: that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck "
+        f"at {height_m:g} m; {remedy('deck_inertia_t_m2')}"
     ]
 
 
@@ -205,7 +219,8 @@ class Pier(InNotebook):
         """Return a pier of the size R0 [m], the distance from a pivot to the centre of mass.
 
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
-        "top_m", "deck_height_m", "mass_t", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
+        "top_m", "deck_height_m", "mass_t", "deck_mass_t", "deck_inertia_t_m2".
+        Raises ``InputError`` for what is impossible or not confirmed.
         """
         _refuse(
             out_of_bounds(alpha=alpha, size_m=size_m, mu=mu, gravity=gravity)
@@ -326,6 +341,7 @@ class Pier(InNotebook):
             + unlikely_deck(mass_t, deck_mass_t, confirm)
         )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
+        _refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
         confirmed = ("width_m", "top_m", "deck_height_m")

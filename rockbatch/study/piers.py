@@ -6,7 +6,7 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.pier.block import BOUNDS, unlikely_deck, unlikely_mass
+from rockbatch.pier.block import BOUNDS, unlikely_deck, unlikely_inertia, unlikely_mass
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
@@ -56,7 +56,8 @@ PIER = Section(("pier",), (
         "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
     "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
         "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
-        "still ground, `still_s` of [motions], makes it a release test.", many=True),
+        "still ground, `still_s` of [motions], makes it a release test.", many=True,
+        usual=Usual(2.0, "rad: release tests have 0.2 to 0.9 of alpha", 1e-4)),
     **CONFIRM,
 }, required=True, homes=(Pier,), also=names({
     Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight selfweight w",
@@ -198,7 +199,10 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
         if wrong:
             raise InputError(*wrong)
         deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
-        all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
+        inertia = values.get("deck_inertia_t_m2", 0.0)
+        if wrong := unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]):
+            raise InputError(*wrong)
+        all_of_them.append(Part(values["deck_mass_t"], deck, inertia))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
     return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | common)
 

@@ -3,7 +3,6 @@
 From them follow the reader (:mod:`reader`), the JSON schemas, the reference in the documentation and the messages.
 """
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields
@@ -14,18 +13,22 @@ from rockbatch.toml.meant import Also, Meant, in_another_unit, known_as, plain, 
 
 
 class Usual(NamedTuple):
-    """The largest and the least value that are usual, and a word on them; others have to be confirmed."""
+    """The largest and the least size of a value that are usual, and a word on them; others, but for 0, have to be confirmed."""
 
     most: float
     words: str
-    least: float = -math.inf
+    least: float = 0.0
+
+    def holds(self, value: float) -> bool:
+        """Return whether a value is usual."""
+        return value == 0 or self.least <= abs(value) <= self.most
 
     def doubt(self, name: str, value: float) -> str:
         """Return what is odd about a value of the key ``name``, and in which unit it would be usual; empty if nothing is."""
-        if self.least <= value <= self.most:
+        if self.holds(value):
             return ""
-        bound = f"more than {self.most:g}" if value > self.most else f"less than {self.least:g}"
-        other = in_another_unit(name, value, lambda other_value: self.least <= other_value <= self.most)
+        bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"
+        other = in_another_unit(name, value, self.holds)
         return f"{name} = {value:g}: {bound} {self.words}{other}"
 
 

@@ -1,7 +1,7 @@
 """Values a thousand times too small or too large: refused until they are confirmed, with what to write instead."""
 
 import pytest
-from studies import study_text, write_study
+from studies import SINE, study_text, write_study
 
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
@@ -15,13 +15,16 @@ OIL = {"kind": "viscous", "coefficient_kN_s_m": 900.0, "brace_kN_m": 2e5}
 TENDON = {"prestress_kN": 5000.0, "stiffness_kN_m": 40e3, "yield_kN": 15e3}
 STOP = {"gap_mm": 100.0, "stiffness_kN_m": 5e5}
 DECK_SPRING = {"gap_mm": 50.0, "stiffness_kN_m": 5e4, "height_m": 31.5}
+DECK = {"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 1000.0, "deck_inertia_t_m2": 12e3}
 TABLES = {  # by the table that is varied: all that is usual
     "pier": PIER | {"flexural_period_s": 0.6, "top_m": 31.5},
+    "deck": DECK, "held": {"alpha": 0.2, "p": 1.0, "initial_rotation_rad": 0.05},
     "size": {"alpha": 0.2, "size_m": 20.0}, "p": {"alpha": 0.2, "p": 0.4},
     "springs": SPRINGS | {"area_m2": 6.0, "flight_limit_mm": 20.0}, "ratios": RATIOS,
     "friction": {"kind": "friction", "force_kN": 450.0}, "hysteretic": STEEL, "viscous": OIL, "tendon": TENDON, "stop": STOP,
     "deck_spring": DECK_SPRING,
 }  # fmt: skip
+PIERS = ("pier", "deck", "held", "size", "p")
 NOTHING = "as good as nothing"
 SMALL = [  # table, key, value as written, what is said of it, and what to write
     ("pier", "width_m", 0.008, "less than 0.01 m", "0.008 km are width_m = 8"),
@@ -29,6 +32,8 @@ SMALL = [  # table, key, value as written, what is said of it, and what to write
     ("pier", "mass_t", 3.0, "of 3 t would have 0.0016 t/m³", ""),
     ("pier", "flexural_period_s", 6e-4, "less than 0.02 s", ""),
     ("pier", "top_m", 0.0315, "less than 0.05 m", "0.0315 km are top_m = 31.5"),
+    ("deck", "deck_inertia_t_m2", 12.0, "of a mass of 1000 t at 0.11 m from its axis", ""),
+    ("held", "initial_rotation_rad", 5e-5, "less than 0.0001 rad", ""),
     ("size", "size_m", 0.02, "less than 0.1 m", "0.02 km are size_m = 20"),
     ("p", "p", 0.02, "less than 0.1 rad/s", ""),
     ("springs", "area_m2", 0.006, "presses 2.5e+06 kPa", ""),
@@ -51,6 +56,7 @@ LARGE = [
     ("pier", "height_m", 30e3, "more than 400 m", "30000 mm are height_m = 30"),
     ("pier", "mass_t", 3e6, "more than 1e+06 t", "3e+06 kg are mass_t = 3000"),
     ("pier", "flexural_period_s", 600.0, "more than 10 s", "600 ms are flexural_period_s = 0.6"),
+    ("deck", "deck_inertia_t_m2", 12e6 * 30, "at 6e+02 m from its axis", ""),
     ("size", "size_m", 20e3, "more than 400 m", "20000 mm are size_m = 20"),
     ("p", "p", 400.0, "more than 30 rad/s", ""),
     ("springs", "stiffness_kN_m", 2e9, "in by 0.0074 mm only", "2e+09 N/m are stiffness_kN_m = 2e+06"),
@@ -77,7 +83,7 @@ def problems_with(folder, table, **keys):
     """What is said about a study with these keys in a table; nothing if it is accepted."""
     written = TABLES[table] | keys
     pier, case = PIER, {"name": "a", "base": "rigid"}
-    if table in ("pier", "size", "p"):
+    if table in PIERS:
         pier = written
     elif table in ("springs", "ratios"):
         case = written
@@ -152,6 +158,21 @@ def test_a_limit_in_another_unit_is_refused_until_it_is_confirmed(tmp_path, limi
 def test_limits_near_what_is_there_are_accepted(tmp_path):
     for limit in ({"demand": "yield_kN", "at_least": 26e3}, {"demand": "base_shear_kN", "at_most": 9000.0}):
         of_check(tmp_path, **limit)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("amplitude_g", -5e-4, "less than 0.001 g"),
+        ("period_s", 1000.0, "more than 100 s: pulses of near-fault records have 0.5 to 10; 1000 ms are period_s = 1;"),
+        ("period_s", 1e-3, "less than 0.01 s"),
+    ],
+)
+def test_a_pulse_in_another_unit_is_refused_until_it_is_confirmed(tmp_path, key, value, said):
+    pulse = SINE | {"dt_s": 1e-5 if value == 1e-3 else 0.01, "duration_s": 2.0 if value < 1.0 else 2e3, key: value}
+    with pytest.raises(InputError, match=f"{key} = {value:g}: {said}"):
+        load_study(write_study(tmp_path, study_text(pulses=(pulse,))))
+    load_study(write_study(tmp_path, study_text(pulses=(pulse | {"confirm": [key]},))))
 
 
 FRAGILITY = {"measure": "PGV", "levels_m_s": [0.25, 0.5, 1.0]}

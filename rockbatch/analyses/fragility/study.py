@@ -24,6 +24,7 @@ from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.rules import Rule
+from rockbatch.study.target import PERIOD
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
@@ -116,7 +117,7 @@ FRAGILITY = Section(("fragility",), (
         '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
         default="stripes"),
     "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
-    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA, usual=PERIOD),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
     "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
         "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True,
