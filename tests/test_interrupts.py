@@ -45,6 +45,37 @@ def test_an_interrupt_while_something_is_compiled_is_answered_and_ends_it(tmp_pa
         assert process.stderr.read() == "rockbatch: interrupted\n"
 
 
+WHILE_LOADED = """
+import runpy, sys
+
+class Interrupting:  # as if Ctrl-C were pressed when this module is about to be loaded
+    def find_spec(self, name, *_):
+        if name == {module!r}:
+            sys.meta_path.remove(self)
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupting())
+sys.argv = ["rockbatch", "run", {study!r}, "--out", {out!r}]
+runpy.run_module("rockbatch", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "gc", "rockbatch.common.garbage", "rockbatch.commands.cli", "argparse", "rockbatch.commands.interrupts",
+        "rockbatch.common.analyses", "rockbatch.study.load", "rockbatch.batch.running", "numpy", "pandas", "numba",
+        "rockbatch.simulation.runs",
+    ],
+)  # fmt: skip
+def test_an_interrupt_while_modules_are_loaded_is_answered_in_one_line(tmp_path, module):
+    study, out = write_study(tmp_path, study_text(cases=(RIGID,))), tmp_path / "out"
+    code = WHILE_LOADED.format(module=module, study=str(study), out=str(out))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.splitlines()[-1]) == (130, "rockbatch: interrupted")
+    assert "Traceback" not in done.stderr
+
+
 def test_an_interrupt_of_what_ends_at_once_is_not_remarked_upon(capsys):
     from rockbatch.commands.interrupts import answered_interrupts
 

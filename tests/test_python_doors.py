@@ -264,6 +264,11 @@ def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
         rb.report(tmp_path)
 
 
+def test_a_report_goes_to_the_standard_output_as_by_the_command(commanded, capfd):
+    rb.report(commanded / "run", out="-")
+    assert capfd.readouterr().out == (commanded / "run/report.html").read_text(encoding="utf-8")
+
+
 def test_the_report_is_called_by_its_name_before_and_after_its_package_is_loaded(commanded):
     code = (
         f"import rockbatch as rb\nprint(callable(rb.report))\nprint(rb.report({str(commanded / 'run')!r}).path.name)\n"

@@ -17,7 +17,7 @@ from rockbatch.batch.threads import cores
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions import Motion
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation.compilation import kernel_of, load_numba, on_compilation
+from rockbatch.simulation.compilation import compiles, kernel_of, load_numba, on_compilation
 from rockbatch.study import Numerics, Output, Study
 
 Task = tuple[StudyRun, Numerics, Output]
@@ -30,6 +30,11 @@ def make_ready(study: Study, listener: Listener) -> None:
     Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
     on the other processors compile the last ones, and leave them there.
     """
+    if not compiles():
+        listener.say(
+            "NUMBA_DISABLE_JIT is set: nothing is compiled, and runs take a thousand times as long; `unset NUMBA_DISABLE_JIT` "
+            "ends this"
+        )
     load_numba()
     tasks = _tasks(study)
     waiting, assistants = deque(tasks), list[Thread]()

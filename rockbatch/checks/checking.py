@@ -8,6 +8,7 @@ from typing import Any
 from rockbatch.checks.judging import judge
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
+from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.results.reading import Saved, read_saved
@@ -23,6 +24,7 @@ from rockbatch.toml.reader import TomlFile
 PathLike = str | os.PathLike[str]
 
 
+@checked
 def check(
     results: "PathLike | Saved | pd.DataFrame",
     rules: PathLike | Iterable[Rule] | None = None,
@@ -98,7 +100,12 @@ def verdicts(
 def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
     if rules is None:
         return None
-    return load_rules(rules) if isinstance(rules, str | os.PathLike) else tuple(rules)
+    if isinstance(rules, str | os.PathLike):
+        return load_rules(rules)
+    listed = tuple(rules) if isinstance(rules, Iterable) else ()
+    if isinstance(rules, Iterable) and all(isinstance(rule, Rule) for rule in listed):
+        return listed
+    raise InputError("rules: must be a file with [[check]] tables, or a list of Rule")
 
 
 def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:

@@ -15,7 +15,7 @@ from rockbatch.quantities.cases import Case, creeps, has_device
 from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
-from rockbatch.study.rule_choices import chooses, unmet
+from rockbatch.study.rule_choices import FAR, chooses, limit_key, unmet
 from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 
@@ -147,6 +147,7 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
     deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         reason,
+        _far(rule, value) if verdict == PASS else "",
         remark(bounds.high) if remark and n else "",
         unknown,
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
@@ -167,6 +168,14 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
         count=count,
         note="; ".join(filter(None, notes)),
     )
+
+
+def _far(rule: Rule, value: float) -> str:
+    """Return the remark that no run comes near the limit, as where its unit is wrong; empty where one does or it is confirmed."""
+    key = limit_key(rule)
+    if rule.statistic == "count" or key in rule.confirm or not 0.0 < FAR * value < rule.limit:
+        return ""
+    return f"{value:.4g} is below {1 / FAR:g} of the limit; check its unit, or write confirm = [{shown(key)}]"
 
 
 def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -> str:

@@ -7,7 +7,6 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext, redirect_stdout, suppress
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -18,6 +17,15 @@ from rockbatch.common.errors import AboutResults, InputError
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import __version__
+from rockbatch.toml.meant import names
+
+_COMMANDS_MEANT = names({
+    "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",
+    "check": "verify", "report": "plot show view html", "fragility": "ida curves", "spectrum": "spectra map",
+})  # fmt: skip
+"""Commands by other words for what they do."""
+
+_OPTIONS_MEANT = {"-v": "--version", "-V": "--version", "-o": "--out", "-j": "--jobs"}
 
 EXIT_CODES = """exit codes:
   0    all is fine
@@ -63,11 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             argcomplete.autocomplete(root)
     parsed, unknown = root.parse_known_args(_with_command(sys.argv[1:] if arguments is None else arguments, root))
     if unknown:
-        options = COMMANDS[parsed.command].arguments if parsed.command else ()
-        words = [word.partition("=")[0] for word in unknown if word.startswith("--")]
-        matches = [match for word in words for match in get_close_matches(word, options, 1)]
-        hint = f"; did you mean {', '.join(matches)}?" if matches else ""
-        root.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
+        root.error(f"unrecognized arguments: {' '.join(unknown)}{_options_meant(parsed.command, unknown)}")
     if parsed.command is None:
         root.print_help()
         return 2
@@ -83,8 +87,19 @@ def _with_command(arguments: Sequence[str], root: argparse.ArgumentParser) -> Se
         return arguments
     if word.lower() in ("help", "version"):
         return [*rest[:1], "--help"] if word.lower() == "help" else ["--version"]
-    meant = closest(word, COMMANDS)
+    meant = _COMMANDS_MEANT.get(word.lower()) or closest(word, COMMANDS)
     root.error(f"there is no command {word}" + (f"; did you mean {meant}?" if meant else ""))
+
+
+def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
+    """Return which options of a command, or of rockbatch without one, were probably meant, to follow a message."""
+    options = [name for name in COMMANDS[command].arguments if name.startswith("-")] if command else ["--version"]
+    if not options:
+        return f"; `rockbatch {command}` takes none"
+    words = [word.partition("=")[0] for word in unknown if word.startswith("-")]
+    matches = [_OPTIONS_MEANT.get(word) or closest(word, options) for word in words]
+    known = ", ".join(match for match in matches if match in options)
+    return f"; did you mean {known}?" if known else ""
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:

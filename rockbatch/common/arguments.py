@@ -12,6 +12,9 @@ from rockbatch.common.errors import InputError
 
 Door = TypeVar("Door", bound=Callable[..., Any])
 
+MOST_WHOLE = 10**18
+"""Greatest whole number, in size, that an argument may be."""
+
 _REFUSED = object()
 _AS_THEY_ARE = {float, bool, type(None)}
 """Types whose values are taken without a further look, since every record has hundreds."""
@@ -29,7 +32,9 @@ def checked(door: Door) -> Door:
     """
     function: Any = vars(door)["__init__"] if isinstance(door, type) else door
     parameters = inspect.signature(function).parameters
-    kinds = {name: kinds for name, kinds in _kinds(parameters) if all(map(_is_known, kinds))}
+    kinds = dict(_kinds(parameters))
+    keywords = kinds.keys() - parameters.keys() if any(map(_is_unpacked, parameters.values())) else None
+    kinds = {name: alternatives for name, alternatives in kinds.items() if all(map(_is_known, alternatives))}
     plain = {name: _AS_THEY_ARE.intersection(map(_type_of, of_name)) for name, of_name in kinds.items()}
 
     @functools.wraps(function)
@@ -44,6 +49,8 @@ def checked(door: Door) -> Door:
                 wrong.append(f"{name} = {_shown(value)}: {_message(value, kinds[name])}")
             return converted
 
+        if keywords is not None and (unknown := kwargs.keys() - parameters.keys() - keywords):
+            raise TypeError(f"{function.__name__}() got an unexpected keyword argument {min(unknown)!r}")
         args = (*map(take, parameters, args), *args[len(parameters) :])
         kwargs = {name: take(name, value) for name, value in kwargs.items()}
         if wrong:
@@ -59,12 +66,16 @@ def checked(door: Door) -> Door:
 def _kinds(parameters: Mapping[str, inspect.Parameter]) -> Iterator[tuple[str, tuple[Any, ...]]]:
     """Yield each parameter's name and alternatives, also those of keywords whose types a TypedDict has."""
     for name, parameter in parameters.items():
-        if get_origin(parameter.annotation) is Unpack:
+        if _is_unpacked(parameter):
             yield from (
                 (key, _alternatives(kind)) for key, kind in get_type_hints(get_args(parameter.annotation)[0]).items()
             )
         elif parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             yield name, _alternatives(parameter.annotation)
+
+
+def _is_unpacked(parameter: inspect.Parameter) -> bool:
+    return get_origin(parameter.annotation) is Unpack
 
 
 def _alternatives(annotation: Any) -> tuple[Any, ...]:
@@ -96,7 +107,11 @@ def _take(value: Any, kind: Any) -> Any:
     plain = get_origin(kind) or kind
     fits = False
     if plain in (int, float):
-        if isinstance(value, Integral if plain is int else Real) and not isinstance(value, bool):
+        if (
+            isinstance(value, Integral if plain is int else Real)
+            and not isinstance(value, bool)
+            and not _is_endless(value)
+        ):
             return plain(value)
     elif plain in (tuple, Sequence) and isinstance(value, tuple | list):
         return _members(value, get_args(kind))
@@ -105,14 +120,29 @@ def _take(value: Any, kind: Any) -> Any:
     elif plain is Literal:
         fits = type(value) in map(type, get_args(kind))  # which words there are is said where they are read
     elif isinstance(value, str):
-        fits = plain is str and not _has_nul(value)
+        fits = plain is str and not _unfit_for_a_name(value)
     else:
-        fits = isinstance(value, plain) and not isinstance(value, bytes) and not _has_nul(value)
+        fits = isinstance(value, plain) and not isinstance(value, bytes) and not _unfit_for_a_name(value)
     return value if fits else _REFUSED
 
 
-def _has_nul(value: object) -> bool:
-    return "\0" in os.fspath(value) if isinstance(value, os.PathLike) else isinstance(value, str) and "\0" in value
+def _is_endless(value: object) -> bool:
+    """Return whether it is a whole number of more digits than floats or integers of 64 bits have."""
+    return isinstance(value, Integral) and not -MOST_WHOLE <= int(value) <= MOST_WHOLE
+
+
+def _unfit_for_a_name(value: object) -> str:
+    """Return what keeps a text or a path from being the name of a file; empty if nothing does."""
+    name = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(name, str):
+        return ""
+    if "\0" in name:
+        return "has a NUL character"
+    try:
+        os.fsencode(name)
+    except UnicodeEncodeError as error:
+        return f"has {name[error.start]!a}, half of a character, which no file's name has"
+    return ""
 
 
 def _members(values: Any, inner: tuple[Any, ...]) -> Any:
@@ -123,13 +153,18 @@ def _members(values: Any, inner: tuple[Any, ...]) -> Any:
 
 
 def _shown(value: Any) -> str:
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # more digits than Python writes
+        text = f"a {type(value).__name__} of thousands of digits"
     return text if len(text) <= 60 else f"{text[:57]}…"
 
 
 def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
-    if _has_nul(value):
-        return "has a NUL character"
+    if unfit := _unfit_for_a_name(value):
+        return unfit
+    if _is_endless(value):
+        return f"must be within −{MOST_WHOLE:.0e} and {MOST_WHOLE:.0e}"
     *others, last = dict.fromkeys(map(_words, alternatives))
     must = f"must be {', '.join(others) + ' or ' if others else ''}{last}"
     return f"is a class; {must}, such as {value.__name__}(…)" if isinstance(value, type) else must

@@ -16,7 +16,7 @@ from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
-from rockbatch.motions.spectrum import PERIODS, Samples, spectral_acceleration
+from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -186,7 +186,7 @@ class Motion(Shown):
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
         for component, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
-            if samples is None:
+            if samples is None and component == "vertical":
                 continue
             try:
                 samples = _frozen(samples)
@@ -299,6 +299,13 @@ class Motion(Shown):
             trace.data, trace.stats.delta, unit, name=name or trace.id, vertical=vertical[0] if vertical else None
         )
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Take the state of a copy, or of a motion from another process, whose samples nobody can change either."""
+        vars(self).update(state)
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Motion):
             return NotImplemented
@@ -368,6 +375,7 @@ class Motion(Shown):
         """Return the motion with both components ``factor`` times as large."""
         return self.times(factor)
 
+    @checked
     def spectrum(self, periods: Samples | Sequence[float] | None = None, damping: float = 0.05) -> "pd.Series[float]":
         """Return the elastic response spectrum of the horizontal component.
 
@@ -385,7 +393,7 @@ class Motion(Shown):
 
         Raises ``InputError`` for impossible periods and damping.
         """
-        undamped = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+        undamped = PERIODS if periods is None else as_periods(periods)
         sa = spectral_acceleration(self.horizontal, self.dt, undamped, damping) / GRAVITY
         return pd.Series(sa, index=pd.Index(undamped, name="period_s"), name="sa_g")
 
@@ -406,7 +414,8 @@ class Motion(Shown):
         vars(times).pop("pga", None)
         for name, by in (("horizontal", along), ("vertical", factor), ("across", factor)):
             if (samples := getattr(self, name)) is not None:
-                vars(times)[name] = samples * by
+                with np.errstate(over="ignore", invalid="ignore"):  # refused below
+                    vars(times)[name] = samples * by
                 vars(times)[name].flags.writeable = False
         if self.initial is not None:
             vars(times)["initial"] = self.initial.times(along)

@@ -17,7 +17,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.orientation import not_square
-from rockbatch.motions.spectrum import PERIODS, Samples, responses
+from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, responses
 
 Array = npt.NDArray[np.float64]
 
@@ -165,8 +165,9 @@ def pair_spectrum(
     0.5         0.589     0.641   0.871      0.615     0.666      0.763
     1.0         0.419     0.365   0.556      0.391     0.392      0.547
     """
-    undamped = PERIODS if periods is None else np.asarray(periods, dtype=np.float64)
+    undamped = PERIODS if periods is None else as_periods(periods)
     histories = [responses(a, first.dt, undamped, damping) for a in aligned(first, second)]
     rows = [[_most(u), _most(v), *measured(u, v).values()] for u, v in zip(*histories, strict=True)]
     names = [f"{name}_g" for name in ("first", "second", *PAIR_RULES)]
-    return pd.DataFrame(np.array(rows) / GRAVITY, columns=names, index=pd.Index(undamped, name="period_s"))
+    sa = np.array(rows).reshape(-1, len(names)) / GRAVITY
+    return pd.DataFrame(sa, columns=names, index=pd.Index(undamped, name="period_s"))

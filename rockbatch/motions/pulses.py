@@ -27,6 +27,7 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY
+from rockbatch.motions.limits import MOST_SAMPLES
 from rockbatch.motions.motion import Initial, Motion, Samples
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
@@ -142,6 +143,8 @@ def _problems(
         for name, value in (("period", period), ("dt", dt), ("duration", duration))
         if not (math.isfinite(value) and value > 0)
     ]
+    if not wrong and duration / dt > MOST_SAMPLES:
+        wrong.append(f"duration = {duration:g}: more than {MOST_SAMPLES:,} samples of {dt:g} s; take a shorter one")
     times_are_sound = not wrong
     if not math.isfinite(amplitude) or amplitude == 0:
         wrong.append(f"amplitude = {amplitude:g}: must be a number other than 0 [m/s²]")

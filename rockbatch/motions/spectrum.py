@@ -26,6 +26,17 @@ _TOGETHER = 16  # oscillators whose histories are held at a time
 _PER_PERIOD = 20  # samples a period at least, so that a peak between them is missed by less than 1.3 %
 
 
+def as_periods(periods: npt.ArrayLike) -> Samples:
+    """Return periods as an array, shape (n,); raise ``InputError`` if they are no numbers in a row."""
+    try:
+        values = np.asarray(periods, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError("periods: must be a list of numbers above 0 [s]") from error
+    if values.ndim != 1:
+        raise InputError(f"periods: must be a list of numbers [s], not of shape {values.shape}")
+    return values
+
+
 def spectral_acceleration(
     acceleration: Samples, dt: float, periods: npt.ArrayLike, damping: float = 0.05
 ) -> npt.NDArray[np.float64]:
@@ -53,7 +64,7 @@ def spectral_acceleration(
     InputError
         For periods and damping that are out of range.
     """
-    periods = np.asarray(periods, dtype=np.float64)
+    periods = as_periods(periods)
     peaks = np.empty(len(periods))
     for among, finer, step in _sampled(acceleration, dt, periods, damping):
         peaks[among] = _peaks(finer, step, 2.0 * math.pi / periods[among], damping)
@@ -65,7 +76,7 @@ def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping:
 
     Each has the sampling interval that its period takes, the same for every record of this ``dt``.
     """
-    periods = np.asarray(periods, dtype=np.float64)
+    periods = as_periods(periods)
     every: dict[int, Samples] = {}
     for among, finer, step in _sampled(acceleration, dt, periods, damping):
         places = np.flatnonzero(among)

@@ -43,6 +43,13 @@ BOUNDS = {
 LOWEST, HIGHEST = 0.25, 2.5
 """Bounds of the heights of deck and drift, over the pier's height."""
 
+THINNEST, THICKEST = 0.03, 1000.0
+"""Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
+0.2, walls with a deck some 30, slender frames more."""
+
+NARROWEST, BROADEST = 0.01, 5.0
+"""Bounds of a deck's radius of gyration over its height: a deck 10 m wide has 3 m."""
+
 LIGHTEST, HEAVIEST = 0.005, 100.0
 """Bounds of the mass of a deck over that of what carries it."""
 
@@ -82,6 +89,21 @@ def _unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], *
     return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
 
 
+def unlikely_mass(pier: "Pier", confirm: Collection[str], name: str = "mass_t") -> list[str]:
+    """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
+
+    ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
+    """
+    volume = 8.0 * pier.half_width**2 * pier.height
+    if pier.mass_t is None or THINNEST <= pier.mass_t / volume <= THICKEST or name in confirm:
+        return []
+    width, density = 2.0 * pier.half_width, pier.mass_t / volume
+    return [
+        f"{name} = {pier.mass_t if name == 'mass_t' else width:g}: a block {width:.3g} m wide and as thick, "
+        f"{2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have {density:.2g} t/m³; {remedy(name)}"
+    ]
+
+
 def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
     """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
     ratio = deck_mass_t / mass_t
@@ -89,6 +111,17 @@ def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -
         return []
     return [
         f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
+    ]
+
+
+def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]) -> list[str]:
+    """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
+    radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
+    if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
+        return []
+    return [
+        f"deck_inertia_t_m2 = {inertia_t_m2:g}: that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck "
+        f"at {height_m:g} m; {remedy('deck_inertia_t_m2')}"
     ]
 
 
@@ -106,8 +139,10 @@ class Part(NamedTuple):
     inertia_t_m2: float = 0.0
 
     @classmethod
+    @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
         """Return a uniform shaft that stands on the pivots: a rectangle."""
+        _refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
         return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
 
 
@@ -184,13 +219,16 @@ class Pier(InNotebook):
         """Return a pier of the size R0 [m], the distance from a pivot to the centre of mass.
 
         Here and in the other constructors from lengths, ``confirm`` names values that are right though unusual: "width_m",
-        "top_m", "deck_height_m", "deck_mass_t". Raises ``InputError`` for what is impossible or not confirmed.
+        "top_m", "deck_height_m", "mass_t", "deck_mass_t", "deck_inertia_t_m2".
+        Raises ``InputError`` for what is impossible or not confirmed.
         """
         _refuse(
-            out_of_bounds(size_m=size_m, mu=mu)
+            out_of_bounds(alpha=alpha, size_m=size_m, mu=mu, gravity=gravity)
             or _unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         )
-        return cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
+        pier = cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
+        _refuse(unlikely_mass(pier, confirm))
+        return pier
 
     @classmethod
     @checked
@@ -208,7 +246,7 @@ class Pier(InNotebook):
         wrong = out_of_bounds(width_m=width_m, height_m=height_m)
         _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
-        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=("top_m",))
+        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=(*confirm, "top_m"))
 
     @classmethod
     @checked
@@ -247,7 +285,10 @@ class Pier(InNotebook):
         InputError
             With every impossible number; part 1 is the first.
         """
-        parts = [Part(*part) for part in parts]
+        try:
+            parts = [Part(*map(float, part)) for part in parts]
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
         wrong = out_of_bounds(width_m=width_m)
         for n, part in enumerate(parts, 1):
             wrong += BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
@@ -267,7 +308,9 @@ class Pier(InNotebook):
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=("top_m",))
+        confirmed = ("top_m", "mass_t")
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
+        _refuse(unlikely_mass(pier, confirm, "width_m"))
         return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
 
     @classmethod
@@ -298,10 +341,13 @@ class Pier(InNotebook):
             + unlikely_deck(mass_t, deck_mass_t, confirm)
         )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
+        _refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
         confirmed = ("width_m", "top_m", "deck_height_m")
-        return cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
+        pier = cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
+        _refuse(unlikely_mass(pier, confirm))
+        return pier
 
     @classmethod
     @checked
@@ -331,8 +377,10 @@ class Pier(InNotebook):
         InputError
             With every impossible number.
         """
+        if not isinstance(column, cls):
+            raise InputError("column: must be a Pier, a solid rectangle with its mass")
         wrong = out_of_bounds(deck_mass_t=deck_mass_t)
-        if isinstance(columns, bool) or not isinstance(columns, int) or columns < 2:
+        if columns < 2:
             wrong.append(f"columns = {columns}: must be a whole number, 2 or above; a single one is a pier with a deck")
         if column.mass_t is None:
             wrong.append("mass_t is missing, of one column [t]")

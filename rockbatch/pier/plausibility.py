@@ -4,11 +4,12 @@ Implausible ones, as of a wrong unit, are refused until their ``confirm`` names 
 """
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple, get_args
 
 from rockbatch.common.errors import remedy
 from rockbatch.common.units import POSITIVE
-from rockbatch.pier.block import HIGHEST, Pier
+from rockbatch.pier.block import HIGHEST, LOWEST, Pier
 from rockbatch.pier.places import WAYS, offsets, symmetric
 from rockbatch.pier.restraints import (
     BOUNDS,
@@ -29,16 +30,25 @@ SPEED = 0.1
 THINNEST, WIDEST = 2.5e-5, 0.5
 """Yield deflection of a hysteretic damper [m]; steel ones have 1 to 20 mm."""
 
-FIRMEST = 2e-5
-"""Least deflection of a stop under the weight of the whole pier [m]: a steel block of a metre gives way by a tenth of a
-millimetre."""
+FIRMEST = {"stop": 1e-4, "deck_spring": 1e-3, "damper": 1e-3}
+"""Least deflection under the weight of the whole pier [m] of a stop, deck spring or damper's brace: a steel block of a
+metre gives way by a tenth of a millimetre, abutments and braces by 5 to 500 mm."""
+
+LEAST_FORCE = 1e-3
+"""Force over the weight below which a damper, at 1 m/s if it is viscous, or a tendon might as well not be there."""
+
+MOST_STRENGTH = 10.0
+"""Greatest yield force of a tendon over the weight."""
+
+SOFTEST = {"tendon": 0.01, "stop": 0.05, "deck_spring": 0.05, "damper": 0.05}
+"""Least force of a device, or of a damper's brace, that yields by as much as a rotation of α asks, over the weight."""
 
 QUICKEST = 1e4
 """Rate [1/s] at which a damper on a brace relaxes, about that force which it has at SPEED: beyond it the brace might as well be
 rigid, and takes steps without number."""
 
 MOST_LAMBDA = 100.0
-"""Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.1 to 10."""
+"""Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.03 to 10."""
 
 
 def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
@@ -133,7 +143,7 @@ def doubt(pier: Pier, device: Restraint) -> Doubt | None:
         doubts = _of_damper(pier, device)
     else:
         doubts = _of_tendon(pier, device) if isinstance(device, Tendon) else _of_contact(pier, device)
-    return None if doubts is None or doubts.name in device.confirm else doubts
+    return next((doubt for doubt in doubts if doubt.name not in device.confirm), None)
 
 
 def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
@@ -146,70 +156,97 @@ def unlikely_devices(pier: Pier, devices: tuple[Restraint, ...]) -> list[str]:
     ]
 
 
-def _of_brace(pier: Pier, damper: Damper) -> Doubt | None:
+def _of_brace(pier: Pier, damper: Damper) -> Iterator[Doubt]:
     if damper.brace == math.inf:
-        return None
+        return
     stiffness = damper.brace * pier.gravity * pier.size / pier.half_width**2
     deflection = pier.gravity / stiffness
-    if deflection < FIRMEST:
+    if deflection < FIRMEST[damper.what]:
         message = f"the brace gives by {1000.0 * deflection:.2g} mm under the pier's weight"
-        return Doubt("brace", f"{message}; leave out one that is rigid")
-    if damper.kind == "viscous" and damper.nu > 0.0:
+        yield Doubt("brace", f"{message}; leave out one that is rigid")
+    elif 2.0 * damper.brace < SOFTEST[damper.what]:
+        share = f"{200.0 * damper.brace:.2g} % of the pier's weight"
+        yield Doubt("brace", f"it bears {share} at a rotation of α, so that the damper hardly moves")
+    elif damper.kind == "viscous" and damper.nu > 0.0:
         rate = stiffness / (damper.exponent * damper.nu * pier.p) * SPEED ** (1.0 - damper.exponent)
         if rate > QUICKEST:
-            return Doubt(
+            yield Doubt(
                 "brace", f"beside this damper it is rigid, it follows within {1000.0 / rate:.2g} ms; leave it out"
             )
-    return None
 
 
-def _of_damper(pier: Pier, damper: Damper) -> Doubt | None:
-    if of_brace := _of_brace(pier, damper):
-        return of_brace
+def _of_damper(pier: Pier, damper: Damper) -> Iterator[Doubt]:
     if damper.kind == "viscous":
         share = damper.nu * pier.p / pier.gravity  # of the weight, at 1 m/s
         if share * SPEED**damper.exponent > 1.0:
             speed = share ** (-1.0 / damper.exponent)
-            return Doubt("nu", f"at {1000.0 * speed:.2g} mm/s one damper has the force of the pier's weight already")
-    elif damper.kind == "hysteretic" and not THINNEST <= damper.yield_m <= WIDEST:
-        return Doubt(
+            yield Doubt("nu", f"at {1000.0 * speed:.2g} mm/s one damper has the force of the pier's weight already")
+        elif 0.0 < share < LEAST_FORCE:
+            yield Doubt("nu", f"at 1 m/s it has {100.0 * share:.2g} % of the pier's weight, as good as nothing")
+    elif damper.f > 1.0:
+        yield Doubt("f", f"one damper has {damper.f:.3g} times the pier's weight")
+    elif 0.0 < damper.f < LEAST_FORCE:
+        yield Doubt("f", f"it has {100.0 * damper.f:.2g} % of the pier's weight, as good as nothing")
+    if damper.kind == "hysteretic" and not THINNEST <= damper.yield_m <= WIDEST:
+        yield Doubt(
             "yield_m", f"the damper yields at {1000.0 * damper.yield_m:.2g} mm, where steel ones do at 1 to 20 mm"
         )
-    return None
+    yield from _of_brace(pier, damper)
 
 
-def _of_tendon(pier: Pier, tendon: Tendon) -> Doubt | None:
+def _of_tendon(pier: Pier, tendon: Tendon) -> Iterator[Doubt]:
+    for name, force, words in (("psi", tendon.psi, "its prestress is"), ("strength", tendon.strength, "it yields at")):
+        if 0.0 < force < LEAST_FORCE:
+            yield Doubt(name, f"{words} {100.0 * force:.2g} % of the pier's weight, as good as nothing")
+    if MOST_STRENGTH < tendon.strength < math.inf:
+        yield Doubt("strength", f"it yields at {tendon.strength:.3g} times the pier's weight")
     if tendon.lam > MOST_LAMBDA:
         arm = pier.half_width  # a tendon on the axis: its force over the weight is λ R0 θ/b
         share = tendon.lam * pier.size * 0.01 * pier.alpha / arm
-        return Doubt("lam", f"it adds {share:.3g} times the pier's weight at a rotation of 0.01 α already")
+        yield Doubt("lam", f"it adds {share:.3g} times the pier's weight at a rotation of 0.01 α already")
+    elif 0.0 < tendon.lam < SOFTEST[tendon.what]:
+        yield Doubt(
+            "lam", f"it adds {100.0 * tendon.lam:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+        )
     if tendon.psi == 0.0 == tendon.lam:
-        return Doubt(
+        yield Doubt(
             "psi", "with no prestress and no stiffness the tendon is not there; give one, or leave the tendon out"
         )
-    return None
 
 
-def _of_contact(pier: Pier, stop: Stop | DeckSpring) -> Doubt | None:
-    name = "stop" if isinstance(stop, Stop) else "spring"
-    if stop.lam == 0.0:
-        return Doubt("lam", f"with no stiffness the {name} is not there; give one, or leave the {name} out")
-    deflection = pier.half_width**2 / (stop.lam * pier.size)  # under the weight
-    if deflection < FIRMEST:
-        return Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 * deflection:.2g} mm")
+def _of_contact(pier: Pier, stop: Stop | DeckSpring) -> Iterator[Doubt]:
     if 0.0 < stop.gap_m < 5e-4:
-        return Doubt("gap_m", f"it is met after {1000.0 * stop.gap_m:.2g} mm already")
+        yield Doubt("gap_m", f"it is met after {1000.0 * stop.gap_m:.2g} mm already")
     if isinstance(stop, Stop):
         if stop.gap_m > 2.0 * pier.half_width:
-            return Doubt("gap_m", f"it is met at a rise of {stop.gap_m:.3g} m, more than the pier is wide")
-        return None
-    height = pier.deck if stop.height_m is None else stop.height_m
-    if height > HIGHEST * 2.0 * pier.height:
-        return Doubt(
+            yield Doubt("gap_m", f"it is met at a rise of {stop.gap_m:.3g} m, more than the pier is wide")
+    else:
+        yield from _of_deck_spring(pier, stop)
+    yield from _of_stiffness(pier, stop)
+
+
+def _of_deck_spring(pier: Pier, spring: DeckSpring) -> Iterator[Doubt]:
+    height = pier.deck if spring.height_m is None else spring.height_m
+    if not LOWEST * 2.0 * pier.height <= height <= HIGHEST * 2.0 * pier.height:
+        yield Doubt(
             "height_m", f"{0.5 * height / pier.height:.3g} times the height of the pier, {2 * pier.height:.3g} m"
         )
-    if stop.gap_m > height * math.tan(pier.alpha):
-        return Doubt(
-            "gap_m", f"the deck is only there, {stop.gap_m:.3g} m away, when the pier leans by more than alpha"
+    elif spring.gap_m > height * math.tan(pier.alpha):
+        yield Doubt(
+            "gap_m", f"the deck is only there, {spring.gap_m:.3g} m away, when the pier leans by more than alpha"
         )
-    return None
+
+
+def _of_stiffness(pier: Pier, stop: Stop | DeckSpring) -> Iterator[Doubt]:
+    name = "stop" if isinstance(stop, Stop) else "spring"
+    if stop.lam == 0.0:
+        yield Doubt("lam", f"with no stiffness the {name} is not there; give one, or leave the {name} out")
+        return
+    stiffness = stop.lam * pier.size / pier.half_width**2  # over the weight [1/m]
+    if 1.0 / stiffness < FIRMEST[stop.what]:
+        yield Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 / stiffness:.2g} mm")
+    travel = 2.0 * pier.half_width if isinstance(stop, Stop) else pier.deck if stop.height_m is None else stop.height_m
+    if (share := stiffness * travel * pier.alpha) < SOFTEST[stop.what]:
+        yield Doubt(
+            "lam", f"it bears {100.0 * share:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+        )

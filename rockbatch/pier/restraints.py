@@ -65,7 +65,7 @@ class Damper(InNotebook):
         λ = k b²/(M g R0) of the stiffness k of what the damper hangs on, in series with it; infinite if that is rigid. Of a
         viscous damper whose exponent is 1 at most, or a hysteretic one.
     confirm : sequence of str
-        "nu", "yield_m" or "brace", if the value is right though unusual.
+        "f", "nu", "yield_m" or "brace", if the value is right though unusual.
 
     Examples
     --------
@@ -145,7 +145,7 @@ class Tendon(InNotebook):
     at : float, "left" or "right"
         Offset from the centre of the base [m], positive to the right.
     confirm : sequence of str
-        "lam", or "psi" of one that has neither prestress nor stiffness, if the value is right though unusual.
+        "lam", "psi" or "strength", if the value is right though unusual.
 
     Examples
     --------

@@ -139,7 +139,8 @@ def report(
     other : path, optional
         A second folder, to compare with the first.
     out : path, optional
-        File to write; by default ``report.html`` in the folder, or ``compare-OTHER.html``.
+        File to write, or "-" for the standard output, as on the command line; by default ``report.html`` in the folder, or
+        ``compare-OTHER.html``.
     whole : bool, optional
         Whether sections that are folded on the screen are unfolded, and printed.
 

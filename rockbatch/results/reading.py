@@ -68,7 +68,7 @@ def read_saved(directory: Path) -> Saved:
     and of an ``EditedTable``.
     """
     directory = Path(directory)
-    if directory.is_file():
+    if directory.exists() and not directory.is_dir():
         raise InputError(
             f"{directory}: a file, not a folder of results; write the folder, such as {Path('reports') / directory.stem}"
         )

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from numba.core import event
+from numba.core import config, event
 from numba.np import linalg
 
 from rockbatch.core.system import System
@@ -16,6 +16,11 @@ from rockbatch.simulation.models import model, system_of
 def kernel_of(pier: Pier, base: Base) -> tuple[System, bool]:
     """Return what runs of ``pier`` on ``base`` are compiled for: their system, and whether there are devices."""
     return system_of(model(pier, base)), bool(base.restraints)
+
+
+def compiles() -> bool:
+    """Return whether Numba compiles at all, or its users have told it not to."""
+    return not config.DISABLE_JIT  # type: ignore[attr-defined]
 
 
 def load_numba() -> None:

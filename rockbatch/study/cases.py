@@ -1,7 +1,9 @@
 """The cases of a study file, with every combination of listed values: [[case]]."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import remedy
@@ -18,16 +20,16 @@ from rockbatch.pier import (
     eta_of,
     least_beta,
     problems,
-    static_deflection,
 )
 from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import choice, positive, shown, text, within
-from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
+from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
@@ -53,7 +55,8 @@ BASE_KEYS = {
         only={"base": ("rigid",)}),
     "beta": Key(positive, "40.0",
         "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
-        only=_ON_SPRINGS),
+        only=_ON_SPRINGS,
+        usual=Usual(5000.0, 'of ω_v/p: supports have 10 to 500, and ground that does not give is base = "rigid"')),
     "stiffness_kN_m": Key(positive, "2.0e6",
         "Stiffness K of one support, if the mass is given; or give `beta`.", many=True, only=_ON_SPRINGS),
     "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
@@ -66,7 +69,8 @@ BASE_KEYS = {
     "kinematics": Key(choice(*WORDS["kinematics"], called=_CALLED["kinematics"]), '"first-order"',
         "The paper's equations, \"first-order\", or equations for rotations of any size.", many=True, only=_ON_SPRINGS),
     "eta": Key(within(BOUNDS["eta"]), "2.5",
-        "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS),
+        "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS,
+        usual=Usual(1000.0, 'times what they carry: supports bear 2 to 20 times that; without a limit base = "elastic"')),
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
@@ -80,13 +84,13 @@ BASE_KEYS = {
         'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '
         'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True),
     "flight_limit_mm": Key(within(BOUNDS["flight_limit_mm"]), "20.0",
-        "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True),
+        "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True,
+        usual=Usual(1e4, "mm: shear keys reach 5 to 500 mm", 0.1)),
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True),
     "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
-        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True,
-        usual=Usual(1000.0, "m²: the largest footings of bridge piers have some 500")),
+        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True),
 }  # fmt: skip
 """Keys that describe a base; in a list each value is a case."""
 CASE = Section(("case",), (
@@ -112,8 +116,11 @@ CASE = Section(("case",), (
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
-LEAST_DEFLECTION = 2e-5
-"""Static deflection [m] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
+LIGHTEST, HEAVIEST = 5.0, 1e5
+"""Bounds of the stress under a support at rest [kPa]: footings have 100 to 1000, steel bearings some 30 000."""
+
+LEAST_DEFLECTION_MM = 0.02
+"""Static deflection [mm] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
 """Pier used if none can be read, so that everything independent of it is still checked."""
@@ -179,7 +186,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
         if not (any_pier and problem.startswith("beta")):
             _complain(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
-        _complain_unless_usual(case.table, chosen, pier, base)
+        _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
     applying.pop("restraints", None)  # their own keys say them
     if "zeta" in applying:
@@ -266,20 +273,44 @@ def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base
     complain_where_due(table, chosen, problem)
 
 
-def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier, base: Base) -> None:
-    """Note an implausible stiffness or yield force of a support under this pier, unless they are confirmed.
+class _Usual(NamedTuple):
+    """What a value of a key comes to under a pier, its bounds, and words for it beyond them."""
 
-    A wrong unit explains them better than the ground. The ratios beta and eta have no unit and are not judged: their limits, too,
-    are something to study.
+    comes_to: Callable[[Pier, float], float]
+    least: float
+    most: float
+    words: str
+
+    def holds(self, pier: Pier, value: float) -> bool:
+        return self.least <= self.comes_to(pier, value) <= self.most
+
+
+def _half_weight(pier: Pier) -> float:
+    return 0.5 * (pier.mass_t or 0.0) * pier.gravity
+
+
+_USUAL = {
+    "stiffness_kN_m": _Usual(lambda pier, value: 1000.0 * _half_weight(pier) / value, LEAST_DEFLECTION_MM, math.inf,
+        "the pier's weight presses the supports in by {:.2g} mm only, where sound rock gives some 0.1 mm"),
+    "yield_kN": _Usual(eta_of, 0.0, MOST_ETA, "{:.3g} times what the support carries at rest, where 2 to 20 times is usual"),
+    "area_m2": _Usual(lambda pier, value: _half_weight(pier) / value, LIGHTEST, HEAVIEST,
+        "the pier's weight presses {:.2g} kPa on it, where footings have 100 to 1000 kPa"),
+}  # fmt: skip
+
+
+def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
+    """Note an implausible mass, stiffness, yield force or area of a support under this pier, unless they are confirmed.
+
+    A wrong unit explains them better than the ground.
     """
-    deflection = static_deflection(pier, base)
-    doubts = {}
-    if deflection < LEAST_DEFLECTION:
-        compression = f"the pier's weight presses the supports in by {1000 * deflection:.2g} mm only"
-        doubts["stiffness_kN_m"] = f"{compression}, where sound rock gives some 0.1 mm"
-    if "yield_kN" in chosen and (eta := eta_of(pier, chosen["yield_kN"].value)) > MOST_ETA:
-        doubts["yield_kN"] = f"{eta:.3g} times what the support carries at rest, where 2 to 20 times is usual"
-    for name, meaning in doubts.items():
-        if name in chosen and name not in table.confirmed:
-            message = f"{name} = {chosen[name].value:g}: {meaning}; {remedy(name)} in this table"
-            table.complain_about(chosen[name], message)
+    if "mass_t" in chosen:
+        for problem in unlikely_mass(pier, table.confirmed):
+            table.complain_about(chosen["mass_t"], f"{problem} in this table")
+    for name, usual in _USUAL.items():
+        if name not in chosen or name in table.confirmed:
+            continue
+        value = float(chosen[name].value)
+        if not usual.holds(pier, value):
+            other = in_another_unit(name, value, partial(usual.holds, pier))
+            meaning = usual.words.format(usual.comes_to(pier, value))
+            table.complain_about(chosen[name], f"{name} = {value:g}: {meaning}{other}; {remedy(name)} in this table")

@@ -51,7 +51,8 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
     "substeps": Key(count, "4",
         "Instead of a tolerance: a fixed number of steps per sample, without an estimate of the error."),
     "quiet_s": Key(not_negative, "2.0",
-        "Time at rest after the record, at least; a run continues as long as anything larger may follow."),
+        "Time at rest after the record, at least; a run continues as long as anything larger may follow.",
+        usual=Usual(600.0, "s: a pier that rocks comes to rest in less", 0.01)),
     **CONFIRM,
 }, homes=(Numerics,), also=names({
     "tolerance": "tol rtol atol error accuracy precision maxerror", "quiet_s": "freevibration timeafter after tail rest padding",
@@ -343,7 +344,15 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
     )
-    rows = [{"case": case.name, "base": case.base.name, "pier": described(case.pier)} for case in cases]
+    rows = [
+        {
+            "case": case.name,
+            "base": case.base.name,
+            "pier": described(case.pier),
+            "parameters": case.base.parameters(case.pier),
+        }
+        for case in cases
+    ]
     yield from implausible(rule, rows)
 
 

@@ -6,14 +6,16 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.pier.block import BOUNDS, unlikely_deck
+from rockbatch.pier.block import BOUNDS, unlikely_deck, unlikely_inertia, unlikely_mass
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
-_LENGTH = Usual(400.0, "m: the highest bridge piers reach some 300 m")
+_HEIGHT = Usual(400.0, "m: the highest bridge piers reach some 300 m, blocks in laboratories 0.1 m at least", 0.05)
+_WIDTH = _HEIGHT._replace(least=0.01)
+_SIZE = _HEIGHT._replace(least=0.1)
 _MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
 PIER = Section(("pier",), (
     "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
@@ -27,33 +29,35 @@ PIER = Section(("pier",), (
         "`height_m`, and is then left out.", many=True),
     "gravity": Key(within(BOUNDS["gravity"]), "9.81",
         "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
-        usual=Usual(30.0, "m/s²: on Earth it is 9.81")),
-    "p": Key(within(BOUNDS["p"]), "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.", many=True),
-    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True, usual=_LENGTH),
+        usual=Usual(30.0, "m/s²: on Earth it is 9.81", 1.0)),
+    "p": Key(within(BOUNDS["p"]), "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.", many=True,
+        usual=Usual(30.0, "rad/s: piers have 0.2 to 2, which are 200 to 2 m of R0, blocks in laboratories up to 10", 0.1)),
+    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True, usual=_SIZE),
     "width_m": Key(within(BOUNDS["width_m"]), "4.0",
-        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=_LENGTH),
-    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=_LENGTH),
+        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=_WIDTH),
+    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=_HEIGHT),
     "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
         "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
         many=True, usual=_MASS),
     "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
         "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=_MASS),
     "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
-        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=_LENGTH),
+        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=_HEIGHT),
     "deck_inertia_t_m2": Key(not_negative, "0.0",
         "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.", many=True),
     "top_m": Key(within(BOUNDS["top_m"]), "31.5",
         "Height above the pivots at which drift is read; default: the highest known point.", many=True,
-        usual=_LENGTH),
+        usual=_HEIGHT),
     "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
         "First period of the pier with its deck, fixed at its base. The pier is rigid in every run; the statics sheet holds this "
         "against the period of rocking, to see whether it is.", many=True,
-        usual=Usual(10.0, "s: bridge piers have 0.1 to 3")),
+        usual=Usual(10.0, "s: bridge piers have 0.1 to 3", 0.02)),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
         "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
     "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
         "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
-        "still ground, `still_s` of [motions], makes it a release test.", many=True),
+        "still ground, `still_s` of [motions], makes it a release test.", many=True,
+        usual=Usual(2.0, "rad: release tests have 0.2 to 0.9 of alpha", 1e-4)),
     **CONFIRM,
 }, required=True, homes=(Pier,), also=names({
     Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight selfweight w",
@@ -61,7 +65,7 @@ PIER = Section(("pier",), (
     "deck_mass_t": "superstructuremass superstructure topmass tributarymass", "width_m": "diameter breadth basewidth",
     Times("width_m", 2.0, "twice the half"): "halfwidth", Times("height_m", 2.0, "twice the half"): "halfheight",
     "size_m": "r0 r radius halfdiagonal", Times("size_m", 0.5, "half the diagonal"): "diagonal",
-    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "p": "frequencyparameter",
+    "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "alpha": "alfa", "p": "frequencyparameter",
     "mu": "shapefactor", "columns": "ncolumns numberofcolumns", "initial_rotation_rad": "theta0 initialtilt initialangle",
 }), instead=names({
     "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
@@ -100,7 +104,7 @@ PART = Section(("pier", "part"), (
 ), {
     "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=_MASS),
     "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
-        required=True, many=True, usual=_LENGTH),
+        required=True, many=True, usual=_HEIGHT._replace(least=0.0)),
     "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; default 0.", many=True),
     **CONFIRM,
 }, many=True)  # fmt: skip
@@ -174,6 +178,8 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
     else:
         del common["confirm"]
         pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
+        if wrong := unlikely_mass(pier, confirmed):
+            raise InputError(*wrong)
         if "top_m" in common:
             Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
     if "columns" in values:
@@ -193,7 +199,10 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
         if wrong:
             raise InputError(*wrong)
         deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
-        all_of_them.append(Part(values["deck_mass_t"], deck, values.get("deck_inertia_t_m2", 0.0)))
+        inertia = values.get("deck_inertia_t_m2", 0.0)
+        if wrong := unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]):
+            raise InputError(*wrong)
+        all_of_them.append(Part(values["deck_mass_t"], deck, inertia))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
     return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | common)
 

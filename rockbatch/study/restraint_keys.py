@@ -10,7 +10,7 @@ from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
-from rockbatch.toml.meant import names
+from rockbatch.toml.meant import in_another_unit, names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
@@ -21,7 +21,12 @@ _OR_DECK = Choice(
 )
 _ALSO_AT = names({"at": "location position place offset x eccentricity where"})
 _ALSO_SPRING = _ALSO_AT | names(
-    {"stiffness_kN_m": "k", "gap_mm": "clearance distance", "restitution": "cor e coefficientofrestitution"}
+    {
+        "stiffness_kN_m": "k",
+        "lambda": "lamda",
+        "gap_mm": "clearance distance",
+        "restitution": "cor e coefficientofrestitution",
+    }
 )
 _ONE_EACH = names({"write a table for each": "number quantity count"})
 _KINDS = names({
@@ -183,7 +188,15 @@ class Device:
         doubts = doubt(pier, device)
         if doubts is not None and doubts.name in keys and not problems:
             key = keys[doubts.name]
-            message = f"{key} = {values[key].value:g}: {doubts.meaning}; {remedy(key)} in [[case.{self.what}]]"
+            value = float(values[key].value)
+            field, unit = fields_of(pier).get(key, (key, 1.0))
+
+            def fits(other: float) -> bool:
+                changed: dict[str, Any] = {field: other / unit}
+                return doubt(pier, replace(device, **changed)) is None
+
+            other = in_another_unit(key, value, fits)
+            message = f"{key} = {value:g}: {doubts.meaning}{other}; {remedy(key)} in [[case.{self.what}]]"
             self.table.complain_about(values[key], message)
 
 

@@ -5,10 +5,18 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 
 from rockbatch.common.grouping import closest
-from rockbatch.quantities.cases import Case
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
+from rockbatch.toml.meant import in_another_unit
+
+FAR = 100.0
+"""How many times a limit may be what is limited, or the reverse; beyond it a wrong unit is likelier."""
+
+LEAST_SHARE = 1e-4
+"""Least limit on a force over the pier's weight."""
 
 LEAST_MM = 1.0
 """Limit of a length [mm] below which metres are likelier meant."""
@@ -65,17 +73,18 @@ def _fits(name: str, pattern: str) -> bool:
 def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
     """Yield messages on a limit that says nothing about the pier, probably for a wrong unit; each starts with the limit's key.
 
-    It is refused unless confirmed. ``cases`` are as in run.json, with ``case``, ``base`` and ``pier`` at least; a limit is
-    implausible if it is so for all that the rule is about.
+    It is refused unless confirmed. ``cases`` are as in run.json, with ``case``, ``base``, ``pier`` and ``parameters`` at least; a
+    limit is implausible if it is so for all that the rule is about.
     """
-    key = "above" if rule.statistic == "count" else rule.sense.replace(" ", "_")
+    key = "above" if rule.statistic == "count" else limit_key(rule)
     demand, value = DEMANDS[rule.demand], rule.above if rule.statistic == "count" else rule.limit
     if value is None or key in rule.confirm:
         return
+    remedy = f'check the unit; if it is right, write confirm = ["{key}"] in this table'
     if value < 0:
         yield (
             f"{key} = {value:g}: {rule.demand} is counted without its sign, so that {'nothing' if key == 'at_most' else 'all'} "
-            f'passes; check the sign; if it is right, write confirm = ["{key}"] in this table'
+            f"passes; {remedy.replace('unit', 'sign', 1)}"
         )
     mine = [case for case in cases if demand.applies_to(case) and is_about(rule, str(case["case"]))]
     most = max((demand.ceiling.value(case) for case in mine if demand.ceiling), default=math.inf)
@@ -83,10 +92,36 @@ def implausible(rule: Rule, cases: Sequence[Case]) -> Iterator[str]:
     if demand.unit == "mm" and 0 < value < max(LEAST_MM, shown):
         yield (
             f"{key} = {value:g}: in mm, as {rule.demand} is, hardly more than nothing; {value:g} m are "
-            f'{1000 * value:g} mm; check the unit; if it is right, write confirm = ["{key}"] in this table'
+            f"{1000 * value:g} mm; {remedy}"
         )
     if demand.ceiling is not None and value > most:
-        yield (
-            f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing; check the "
-            f'unit; if it is right, write confirm = ["{key}"] in this table'
-        )
+        yield f"{key} = {value:g}: {rule.demand} above {most:.4g} {demand.ceiling.beyond}, so the limit decides nothing; {remedy}"
+    elif value > 0 and (odd := _far_from(rule.demand, key, value, mine)):
+        yield f"{odd}; {remedy}"
+
+
+def limit_key(rule: Rule) -> str:
+    """Return the key of its limit: at_most or at_least."""
+    return rule.sense.replace(" ", "_")
+
+
+def _far_from(name: str, key: str, value: float, cases: Sequence[Case]) -> str:
+    """Return that a limit is far from the parameter of every case, or as a force from the weight; empty if it is not."""
+    demand = DEMANDS[name]
+    if demand.per_case:
+        sizes, least, most = [float(demand.evaluate(pd.DataFrame(), case).value[0]) for case in cases], 1 / FAR, FAR
+        words = "is {:.4g} here, {:.2g} times the limit, so that it decides nothing"
+    elif demand.unit == "kN":
+        sizes, least, most = [weight(case) for case in cases if "mass_t" in case["pier"]], LEAST_SHARE, FAR
+        words = "is a force, and the pier's weight, {:.4g} kN, is {:.2g} times the limit"
+    else:
+        return ""
+
+    def fits(limit: float) -> bool:
+        return any(not least * size > limit and not limit > most * size for size in sizes)  # a size may be unknown
+
+    if not sizes or fits(value):
+        return ""
+    nearest = min(sizes, key=lambda size: abs(math.log(size / value)))
+    other = in_another_unit(name, value, fits, key)
+    return f"{key} = {value:g}: {name} {words.format(nearest, nearest / value)}{other}"

@@ -226,7 +226,7 @@ CHECK = Section(("check",), (
     "other_law": Key(boolean, "true",
         "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
     "confirm": Key(choice(*CONFIRMED), '["at_most"]',
-        "Keys of this check that are right though nothing could exceed such a limit.", many=True),
+        "Keys of this check that are right though such a limit decides nothing.", many=True),
 }, many=True, homes=(Rule,), also=names({
     "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
     "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",

@@ -47,14 +47,17 @@ def _entry(value: Any) -> Any:
 _PAIRS = "pairs of a period [s] and a spectral acceleration [g]"
 _PAIR_SCHEMA = {"type": "array", "items": [not_negative.schema(), positive.schema()], "minItems": 2, "maxItems": 2}
 _ENTRY = Other(f"the name of a code or of a file, or {_PAIRS}", _entry, {"anyOf": [text.schema(), _PAIR_SCHEMA]})
+PERIOD = Usual(50.0, "s: spectra have 0.01 to 10", 0.005)
+"""Usual periods of spectra."""
+
 _MEASURE = {
     "pga_g": Key(positive, "0.4", "Peak ground acceleration of the horizontal component.",
-        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g")),
+        usual=Usual(5.0, "g: the strongest earthquakes had 2 to 4 g", 0.005)),
     "pgv_m_s": Key(positive, "0.5", "Peak ground velocity of the horizontal component.",
-        usual=Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s")),
+        usual=Usual(5.0, "m/s: the strongest earthquakes had some 3 m/s", 0.005)),
     "sa_g": Key(positive, "0.8", "Pseudo-spectral acceleration at `period_s`.",
-        usual=Usual(10.0, "g: the strongest earthquakes had 5 to 8 g")),
-    "period_s": Key(positive, "1.0", "Period of the oscillator of `sa_g`."),
+        usual=Usual(10.0, "g: the strongest earthquakes had 5 to 8 g", 0.001)),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of `sa_g`.", usual=PERIOD),
     "damping": Key(Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True), "0.05",
         "Damping of the oscillators, as a fraction of critical damping."),
 }  # fmt: skip
@@ -63,36 +66,37 @@ _EUROCODE = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),
     "ag_g": Key(positive, "0.25", "Design ground acceleration on ground A, with the importance factor, of EN 1998-1.",
-        required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g")),
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 0.6 g", 0.005)),
     "soil_factor": Key(positive, "1.2", "Soil factor S of EN 1998-1; default: that of the ground type."),
-    "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; default: that of the ground type."),
-    "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; default: that of the ground type."),
-    "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; default: that of the ground type."),
+    "tb_s": Key(positive, "0.15", "Period T_B of EN 1998-1; default: that of the ground type.", usual=PERIOD),
+    "tc_s": Key(positive, "0.5", "Period T_C of EN 1998-1; default: that of the ground type.", usual=PERIOD),
+    "td_s": Key(positive, "2.0", "Period T_D of EN 1998-1; default: that of the ground type.", usual=PERIOD),
 }  # fmt: skip
 _SHORT_AND_1_S = {
     "sds_g": Key(positive, "1.0", "Design spectral acceleration S_DS of ASCE 7 or AASHTO, at short periods.",
-        required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g")),
+        required=True, usual=Usual(5.0, "g: codes have 0.1 to 3 g", 0.005)),
     "sd1_g": Key(positive, "0.6", "Design spectral acceleration S_D1 of ASCE 7 or AASHTO, at 1 s.",
-        required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g")),
+        required=True, usual=Usual(5.0, "g: codes have 0.05 to 2 g", 0.002)),
 }  # fmt: skip
 _ASCE = {
     **_SHORT_AND_1_S,
-    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True),
+    "tl_s": Key(positive, "8.0", "Long-period transition period T_L of ASCE 7.", required=True, usual=PERIOD),
 }
 _AASHTO = {
     "as_g": Key(positive, "0.4", "Acceleration A_s of AASHTO at 0 s; this spectrum has not been checked against its articles.",
-        required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g")),
+        required=True, usual=Usual(2.0, "g: codes have 0.05 to 1 g", 0.005)),
     **_SHORT_AND_1_S,
 }  # fmt: skip
 _NZS = {
     "subsoil": Key(choice(*NZS_1170_5), '"C"',
         "Site subsoil class of NZS 1170.5; this spectrum has not been checked against the standard.", required=True),
     "hazard_factor": Key(positive, "0.4", "Hazard factor Z of NZS 1170.5.", required=True,
-        usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)")),
+        usual=Usual(1.0, "(New Zealand has 0.13 to 0.6)", 0.01)),
     "return_period_factor": Key(positive, "1.3", "Return period factor R of NZS 1170.5, 1 at 500 years.",
-        usual=Usual(2.0, "(2,500 years have 1.8)"), default=1.0),
+        usual=Usual(2.0, "(2,500 years have 1.8)", 0.1), default=1.0),
     "fault_km": Key(not_negative, "8.0",
-        "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; default: beyond 20 km."),
+        "Distance from the nearest major fault of NZS 1170.5, for its near-fault factor; default: beyond 20 km.",
+        usual=Usual(1000.0, "km: beyond 20 km the factor is 1", 0.05)),
 }  # fmt: skip
 _VERTICAL = {name: _EUROCODE[name] for name in ("type", "ag_g")} | {
     "avg_over_ag": Key(
@@ -104,7 +108,8 @@ _SPECTRUM = {
         'Target spectrum: "EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", "EN 1998-1 vertical", a file with periods [s] and '
         "spectral accelerations [g], or a list of such pairs.", required=True, many=True, distinct=False),
     "period_range_s": Key(positive, "[0.4, 4.0]",
-        "Periods between which the records are fitted to the spectrum.", required=True, pair=True),
+        "Periods between which the records are fitted to the spectrum.", required=True, pair=True,
+        usual=PERIOD),
     "factors": Key(choice(*FACTORS), '"both"',
         'What is scaled to the spectrum: "each" record, the whole "suite" by one factor, "both", one after the other, or '
         '"none", only to compare.'),

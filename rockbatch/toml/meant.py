@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from rockbatch.common.grouping import closest
@@ -34,6 +34,14 @@ _UNITS: dict[str, tuple[str, float]] = {
     "knm": ("moment", 1.0), "kj": ("energy", 1.0),
 }  # fmt: skip
 """By the ends of names, in lower case: the quantity, and the unit in that of its first line. Accelerations are in g."""
+
+_OTHER_UNITS = {
+    "length": {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "km": 1e3}, "time": {"ms": 1e-3}, "mass": {"kg": 1e-3, "kt": 1e3},
+    "force": {"MN": 1e3, "N": 1e-3}, "stiffness": {"MN/m": 1e3, "N/m": 1e-3}, "damping": {"MN s/m": 1e3, "N s/m": 1e-3},
+    "speed": {"cm/s": 1e-2, "mm/s": 1e-3}, "acceleration": {"% of g": 1e-2, "m/s²": 1.0 / GRAVITY, "cm/s²": 0.01 / GRAVITY},
+    "area": {"mm²": 1e-6, "cm²": 1e-4}, "inertia": {"kg m²": 1e-3, "kt m²": 1e3},
+}  # fmt: skip
+"""By quantity, units in which a value is written by mistake, likelier ones first, and their sizes as in :data:`_UNITS`."""
 
 _LONGEST = 100  # characters of a name that are looked at
 
@@ -93,6 +101,15 @@ def quantity_of(name: str) -> tuple[str, str, float]:
         if place.start() and unit in _UNITS:
             return name[: place.start()], *_UNITS[unit]
     return name, "", 1.0
+
+
+def in_another_unit(name: str, value: float, fits: Callable[[float], bool], key: str = "") -> str:
+    """Return in which other unit a value of ``name`` would fit, and what to write at the ``key`` then; empty if in none."""
+    _, quantity, its_size = quantity_of(name)
+    for unit, size in _OTHER_UNITS.get(quantity, {}).items():
+        if size != its_size and fits(converted := value * size / its_size):
+            return f"; {value:g} {unit} are {key or name} = {converted:.6g}"
+    return ""
 
 
 def words_meant(word: str, options: Iterable[str], called: Mapping[str, Any]) -> list[Any]:

@@ -281,7 +281,7 @@ class Table:
         return ""
 
     def _doubt(self, keys: Mapping[str, Key], usable: dict[str, list[Setting]]) -> None:
-        """Note confirmed keys that are not there, and values larger than usual that are not confirmed."""
+        """Note confirmed keys that are not there, and values far from usual that are not confirmed."""
         if keys.get("confirm") is CONFIRM["confirm"]:
             present = [shown(name) for name in self.data if name in keys and name != "confirm"]
             for setting in usable.pop("confirm", ()):
@@ -290,11 +290,9 @@ class Table:
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
                     self.complain_about(setting, message)
         for name in (name for name in usable if name not in self.confirmed):
-            usual = keys[name].usual
             for setting in usable[name]:
-                if usual is not None and setting.value > usual.most:
-                    message = f"{name} = {setting.value:g}: more than {usual.most:g} {usual.words}"
-                    self.complain_about(setting, f"{message}; {remedy(name)} in this table")
+                if doubt := keys[name].doubt(name, setting.value):
+                    self.complain_about(setting, f"{doubt}; {remedy(name)} in this table")
 
     def _checked(self, name: str, key: Key, value: Any) -> list[Setting]:
         """Return the usable values of a key with their places, of a range both ends or none; note the others."""

@@ -89,8 +89,10 @@ def forked(arguments):
 
 def finished_in(out):
     """Number of runs in the journal."""
-    part = out / "peaks.csv.part"
-    return part.read_bytes().count(b"\n") - 1 if part.exists() else 0
+    try:
+        return (out / "peaks.csv.part").read_bytes().count(b"\n") - 1
+    except FileNotFoundError:  # not begun, or finished at this instant
+        return 0
 
 
 def stopped(*_):

@@ -3,6 +3,11 @@
 import subprocess
 import sys
 
+import numba
+
+from rockbatch.batch import compiling
+from rockbatch.batch.listening import Listener
+
 
 def test_numba_is_loaded_without_linear_algebra_and_still_multiplies_matrices():
     code = """
@@ -15,3 +20,21 @@ print(numba.njit(lambda a: np.dot(a, a))(2.0 * np.eye(2))[0, 0])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "4.0"]
+
+
+def test_runs_without_the_compiler_are_announced_before_the_first(monkeypatch):
+    said = []
+
+    class Hearing(Listener):
+        def say(self, text):
+            said.append(text)
+
+    monkeypatch.setattr(compiling, "_tasks", lambda study: [])
+    compiling.make_ready(None, Hearing())
+    assert said == []
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
+    compiling.make_ready(None, Hearing())
+    (only,) = said
+    assert "NUMBA_DISABLE_JIT is set" in only
+    assert "a thousand times as long" in only
+    assert "`unset NUMBA_DISABLE_JIT`" in only

@@ -311,6 +311,7 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("mass_t = 1800.0", "weight = 17658", "write mass_t = 1800 (the weight in kN over 9.81)", "height_m"),
     ("width_m = 4.0", "slenderness = 7.5", "write alpha = atan(width/height), in radians", "degrees"),
     ("width_m = 4.0", "depth_m = 4.0", "write one of", "did you mean"),
+    ("width_m = 4.0", "alfa = 0.13", "did you mean alpha?", "write one of"),
     ("width_m = 4.0", "width_m = 4.0\ndamping = 0.05", "did you mean zeta, under [[case]]?", "write"),
     ("width_m = 4.0", 'width_m = 4.0\nunit = "m"', "units stand in the names of keys; leave it out", "[motions]"),
     ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "[["),

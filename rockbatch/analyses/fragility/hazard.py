@@ -5,12 +5,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
 YEARS = (50.0,)
 """Periods for which probabilities are given, unless the study names others."""
@@ -38,15 +38,21 @@ class Dispersion:
     source: str = ""
 
 
+IN_G = Usual(10.0, "g: the strongest earthquakes had a PGA of 2 to 4 g, and Sa to 8 g", 0.001)
+IN_M_S = Usual(10.0, "m/s: the strongest earthquakes had some 3 m/s", 0.001)
+"""Usual levels of intensity."""
+
 _RATES = ("rate_per_year", "return_period_years")
 HAZARD = Section(("fragility", "hazard"), (
     "The hazard of the site, which turns fragilities into annual rates and probabilities: how often each intensity is exceeded. "
     "Points stand here or in a file; between them, and beyond, the curve is straight in logarithms."
 ), {
-    "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True),
-    "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True),
-    "rate_per_year": Key(positive, "[0.01, 0.0021, 0.0004]", "Mean annual rates at which they are exceeded.", many=True),
-    "return_period_years": Key(positive, "[100, 475, 2475]", "Reciprocals of these rates, to be given instead.", many=True),
+    "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True, usual=IN_G),
+    "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True, usual=IN_M_S),
+    "rate_per_year": Key(positive, "[0.01, 0.0021, 0.0004]", "Mean annual rates at which they are exceeded.", many=True,
+        usual=Usual(2.0, "per year: hazard is given for 0.1 to 1e-6; return periods are return_period_years")),
+    "return_period_years": Key(positive, "[100, 475, 2475]", "Reciprocals of these rates, to be given instead.", many=True,
+        usual=Usual(math.inf, "years: hazard is given for 10 to 1e6 years; rates are rate_per_year", 0.5)),
     "file": Key(text, '"hazard.csv"',
         "A CSV file with the points, relative to the study: columns levels_g or levels_m_s, and rate_per_year or "
         "return_period_years."),
@@ -57,6 +63,7 @@ HAZARD = Section(("fragility", "hazard"), (
         "squares through more.", default="points"),
     "years": Key(positive, "[50, 100]", "Periods for which probabilities are given.", many=True, default=YEARS),
     "source": Key(text, '"national model 2020, site class B"', "Source of the curve, for the report."),
+    **CONFIRM,
 }, clashes=(
     Clash(("rate_per_year", "return_period_years"), "rate_per_year and return_period_years are given; keep one"),
     Clash(("file", "levels_g"), "file and levels_g are given; keep one"),
@@ -115,6 +122,10 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
         table.complain(f"it has no points; write for example {levels} = {lacking}, or file = {HAZARD['file'].example}")
         return None
     x, y = points[levels], points[rate_key]
+    if "file" in read and "file" not in table.confirmed:
+        doubts = [HAZARD[name].doubt(name, value) for name in (levels, rate_key) for value in points[name]]
+        for doubt in list(filter(None, doubts))[:1]:
+            table.complain(f"{doubt}; {remedy('file')} in this table", "file")
     rates = tuple(1.0 / period for period in y) if rate_key == "return_period_years" else tuple(y)
     slope, shape = read.get("slope"), read.get("shape", "points")
     wrong = list(problems(x, rates, slope, shape))

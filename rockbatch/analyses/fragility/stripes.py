@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockbatch.analyses.fragility.hazard import IN_G, IN_M_S
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import Clash, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ STRIPE = Section(("fragility", "stripe"), (
     "A level with its own records, as from a selection by conditional spectra. Write one for each level, "
     "in rising order, in place of levels_g or levels_m_s."
 ), {
-    "level_g": Key(positive, "0.4", "Level of PGA or Sa."),
-    "level_m_s": Key(positive, "0.5", "Level of PGV."),
+    "level_g": Key(positive, "0.4", "Level of PGA or Sa.", usual=IN_G),
+    "level_m_s": Key(positive, "0.5", "Level of PGV.", usual=IN_M_S),
     "records": Key(text, '["RSN821*", "RSN1063_RRS228"]',
         "Names of the records as results have them, or patterns of names with * and ?.", many=True),
     "scales": Key(positive, "[1.7, 0.9]",
@@ -38,6 +39,7 @@ STRIPE = Section(("fragility", "stripe"), (
         distinct=False),
     "file": Key(text, '"selection_475.csv"',
         "A CSV file with the records, relative to the study: a column record, and scale if the selection gives factors."),
+    **CONFIRM,
 }, many=True, clashes=(
     Clash(("level_g", "level_m_s"), "level_g and level_m_s are given; keep the one of the measure"),
     Clash(("file", "records"), "file and records are given; keep one"),

@@ -10,6 +10,8 @@ from typing import Any
 from rockbatch.analyses.fragility.hazard import (
     DISPERSION,
     HAZARD,
+    IN_G,
+    IN_M_S,
     Dispersion,
     Hazard,
     read_dispersions,
@@ -22,10 +24,11 @@ from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.rules import Rule
+from rockbatch.study.target import PERIOD
 from rockbatch.toml.kinds import Number, choice, positive, shown, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
-from rockbatch.toml.section import Key, Section
+from rockbatch.toml.section import CONFIRM, Key, Section
 
 MEASURES = ("PGA", "PGV", "Sa")
 OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a rocking pier")
@@ -114,13 +117,14 @@ FRAGILITY = Section(("fragility",), (
         '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
         default="stripes"),
     "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
-    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA),
+    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA, usual=PERIOD),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
     "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
         "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True,
-        only={"measure": ("PGA", "Sa")} | _SCALED),
+        only={"measure": ("PGA", "Sa")} | _SCALED, usual=IN_G),
     "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
-        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED),
+        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED,
+        usual=IN_M_S),
     "least_scale": Key(positive, "0.25",
         "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
         only=_SCALED),
@@ -142,6 +146,7 @@ FRAGILITY = Section(("fragility",), (
         "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
         "given.", many=True),
     "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
+    **CONFIRM,
 }, homes=(FragilitySpec,), also=names({
     "measure": "im intensity intensitymeasure", ("levels_g", "levels_m_s"): "levels", "checks": "limits limitstates",
     "method": "type analysis",

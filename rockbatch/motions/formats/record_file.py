@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.formats.column_header import SAME_STEP
@@ -20,6 +21,7 @@ ROLES = ("horizontal",)
 _SAME_UNIT = 1e-9  # relative
 
 
+@checked
 @dataclass(frozen=True)
 class ReadOptions:
     """Statements of a study about files that do not make them themselves.

@@ -11,6 +11,7 @@ import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.analyses.accuracy.error_and_time
+from rockbatch.analyses.accuracy import DOOR
 from rockbatch.analyses.accuracy.error_and_time import SUBSTEPS, Clock, measure, reference, references, spread
 from rockbatch.analyses.accuracy.levels import COLUMNS
 from rockbatch.analyses.accuracy.section import section
@@ -215,6 +216,7 @@ def test_without_results_there_is_a_table_but_no_report(study_file, tmp_path, br
     out = tmp_path / "out"
     assert main(["accuracy", str(study_file), "--out", str(out), "--runs", "1"]) == 0
     assert [file.name for file in out.iterdir()] == ["accuracy.csv"]
+    assert re.findall(r"\w+\.\w+", DOOR.writes) == ["accuracy.csv", "report.html"]  # this one beside results
     with open(out / "accuracy.csv", encoding="utf-8", newline="") as file:
         methods = {row["method"] for row in csv.DictReader(file)}
     assert methods == {"located", "not located", "study"}

@@ -348,7 +348,7 @@ def test_a_curve_of_python_names_its_mistakes():
 
 def test_what_several_exceedances_and_tails_mean_is_said(tmp_path):
     """A site where the pier overturns every few years, by intensities far below those that were run."""
-    often = {"levels_g": [0.02, 0.05, 0.5], "rate_per_year": [20.0, 5.0, 0.2]}
+    often = {"levels_g": [0.02, 0.05, 0.5], "rate_per_year": [20.0, 5.0, 0.2], "confirm": "rate_per_year"}
     found = rb.fragility(study(tmp_path, often, dispersion=[{"name": "modelling", "value": 0.8}]))
     said = found.fragility_risk["note"].iloc[0]
     assert "several exceedances in the longest of the periods" in said
