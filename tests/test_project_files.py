@@ -1,8 +1,13 @@
 """Files that say the same of the project in other words: recipe, workflow, citation."""
 
 import re
+import runpy
+import shutil
 import tomllib
+from datetime import date
 from pathlib import Path
+
+import pytest
 
 from rockbatch import __version__
 
@@ -37,3 +42,19 @@ def test_the_workflow_runs_the_tests_of_make_test_and_its_linters():
     hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     for linter in re.findall(r"\$\(BIN\)/(ruff \w+|mypy|lint-imports)", makefile.split("lint:")[1].split("docs:")[0]):
         assert f".venv/bin/{linter}" in hooks
+
+
+def test_one_command_writes_a_version_wherever_it_stands(tmp_path):
+    script = runpy.run_path(str(ROOT / "docs" / "packaging" / "set_version.py"))
+    files = {name: tmp_path / name for name, _, _ in script["PLACES"]}
+    for name, file in files.items():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, file)
+    files["CHANGELOG.md"].write_text("# Changelog\n\n## 7.1 (not yet released)\n\n## 7.0.0 (2031-01-01)\n")
+    script["set_version"](tmp_path, "7.1.0", date(2031, 5, 6))
+    assert files["CHANGELOG.md"].read_text() == "# Changelog\n\n## 7.1.0 (2031-05-06)\n\n## 7.0.0 (2031-01-01)\n"
+    for file in set(files.values()) - {files["CHANGELOG.md"]}:
+        assert "7.1.0" in file.read_text(encoding="utf-8")
+    with pytest.raises(SystemExit, match=r"CHANGELOG\.md: found 0 places"):
+        script["set_version"](tmp_path, "7.2.0", date(2031, 7, 8))
+    assert "7.1.0" in files["rockbatch/common/version.py"].read_text()

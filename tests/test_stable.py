@@ -1,0 +1,53 @@
+"""What the last release promised (docs/pages/stability.md) is all there; only additions pass."""
+
+import copy
+import json
+from pathlib import Path
+
+import pytest
+from surface import surface, taken_away
+
+RELEASES = Path(__file__).parent / "stable"
+PRESENT = surface()
+
+
+def promised():
+    """The file of the last release."""
+    last = max(RELEASES.glob("*.json"), key=lambda path: [int(part) for part in path.stem.split(".")])
+    return json.loads(last.read_text(encoding="utf-8"))
+
+
+def test_nothing_that_the_last_release_promised_is_gone():
+    assert taken_away(promised(), PRESENT) == []
+
+
+@pytest.mark.parametrize(
+    ("group", "name", "parts", "lost"),
+    [
+        ("python", "check", ["results", "*", "study="], ["rules is gone"]),
+        ("python", "check", ["results", "*", "rules=", "study="], ["results, rules stand otherwise"]),
+        ("python", "check", ["rules=", "results", "*", "study="], ["results, rules stand otherwise"]),
+        ("python", "check", ["results", "rules", "*", "study="], ["rules has to be given"]),
+        ("python", "check", ["results", "rules=", "*", "study=", "folder"], ["folder has to be given"]),
+        ("python", "check", ["results=", "rules=", "more=", "*", "study=", "folder="], []),
+        ("commands", "report", ["DIR", "OTHER=", "*", "--all="], ["--out is gone"]),
+        ("commands", "report", ["DIR", "OTHER", "*", "--out=", "--all="], ["OTHER has to be given"]),
+        ("commands", "report", ["DIR", "OTHER=", "*", "--out=", "--all=", "--pdf="], []),
+        ("keys", "study.case.base", ["rigid", "elastic"], ["yielding"]),
+        ("keys", "study.case.base", ["rigid", "elastic", "yielding", "pile"], []),
+        ("keys", "study.case.beta", ["40", "80"], ["only 40", "only 80"]),
+    ],
+)
+def test_what_breaks_a_script_is_told_from_an_addition(group, name, parts, lost):
+    changed = copy.deepcopy(PRESENT)
+    changed[group][name] = parts
+    assert taken_away(PRESENT, changed) == [f"{group}: {name}: {part}" for part in lost]
+
+
+@pytest.mark.parametrize("group", PRESENT)
+def test_a_name_that_goes_is_told(group):
+    changed = copy.deepcopy(PRESENT)
+    name = next(iter(changed[group]))
+    del changed[group][name]
+    assert taken_away(PRESENT, changed) == [f"{group}: {name}"]
+    assert taken_away(changed, PRESENT) == []
