@@ -17,7 +17,8 @@ from rockbatch.common.units import MOST, Bounds
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import described, symmetric
+from rockbatch.pier import Pier, described, symmetric
+from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -29,7 +30,7 @@ from rockbatch.study.rules import CHECK, Rule
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
+from rockbatch.toml.kinds import Number, Whole, boolean, choice, count, not_negative, positive, shown, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
@@ -91,12 +92,18 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
+    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the shaft are among them"), "5",
+        "Number of sections of the shaft, evenly from its foot to its top, in which shear, moment and axial force of every run "
+        "are computed: `sections.csv`."),
+    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
 }), instead=names({
     "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
     "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
-}))  # fmt: skip
+}), clashes=(
+    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
+))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
@@ -298,6 +305,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
+    _complain_about_sections(file, [pier for pier, _ in piers], output)
     if not output.forces:
         _complain_about_friction(file)
     checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)
@@ -364,6 +372,20 @@ def _complain_about_friction(file: TomlFile) -> None:
                 "demand, or leave it out",
                 "friction",
             )
+
+
+def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output) -> None:
+    """Note sections that some pier does not have, or whose forces are not known."""
+    if output.requested_sections is None:
+        return
+    wrong: dict[str, None] = {}
+    for pier in piers:
+        try:
+            section_heights(pier, output.requested_sections)
+        except InputError as error:
+            wrong |= dict.fromkeys(error.problems)
+    for problem in wrong:
+        file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:
