@@ -56,7 +56,21 @@ def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     ]
     if wrong:
         raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
-    return table
+    return table.astype(dict.fromkeys(MEANING, "float64"))
+
+
+def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
+    """Return headings with units, and columns, of shear, moment and axial forces: in kN if all rows have these, else over M."""
+    over_mass = bool(runs["section_shear_kN"].isna().any())
+    symbols = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
+    heads, columns = {}, {}
+    for name, symbol in symbols.items():
+        unit, ending = ("kN m", "kNm") if name == "moment" else ("kN", "kN")
+        if over_mass:
+            unit, ending = ("m²/s²", "m2_s2") if name == "moment" else ("m/s²", "m_s2")
+        heads[name] = f"{symbol}{'/M' if over_mass else ''} [{unit}]"
+        columns[name] = f"section_{name}_{ending}"
+    return heads, columns
 
 
 def as_markdown() -> str:

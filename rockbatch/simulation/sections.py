@@ -10,7 +10,7 @@ from rockbatch.core.observe.peaks import RecordedRun
 from rockbatch.core.observe.rows import contact_of, ground_at, ground_within, state_of, step_between, within
 from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
-from rockbatch.core.types import Pull
+from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier
 from rockbatch.pier.sections import above
@@ -122,6 +122,7 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
     ends = np.arange(len(rows))
     steps = ends[1:][(rows.t[1:] > rows.t[:-1]) & (rows.kind[1:] <= 0.0)]
     at_ends, between = in_sections(run, rows, heights, ends, np.ones(len(ends))), None
+    _let_go(rows, at_ends)
     numbers, shares = steps, np.full(len(steps), 0.5)
     if len(steps):
         between = in_sections(run, rows, heights, numbers, shares)
@@ -134,6 +135,17 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
         axial[np.arange(len(heights)), bent],
     )  # fmt: skip
     return [Section(*map(float, values)) for values in zip(*columns, strict=True)]
+
+
+def _let_go(rows: np.recarray, forces: InSections) -> None:
+    """Give all rows of the instant at which a block leaves its rest the forces after it.
+
+    They differ where a motion begins with a jump, which the ground cannot hold the block against.
+    """
+    for row in np.flatnonzero((rows.kind == LIFT_OFF) | (rows.kind == TAKE_OFF)):
+        first = int(np.searchsorted(rows.t, rows.t[row]))
+        for values in forces:
+            values[:, first:row] = values[:, row : row + 1]
 
 
 def _promising(ends: InSections, middles: InSections, steps: np.ndarray) -> tuple[np.ndarray, Samples]:

@@ -4,6 +4,7 @@ import os
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -350,9 +351,19 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
+        sections=_heights(cases, output),
     )
     rows = [{"case": case.name, "base": case.base.name, "pier": described(case.pier)} for case in cases]
     yield from implausible(rule, rows)
+
+
+def _heights(cases: Sequence[Case], output: Output) -> set[float]:
+    """Return the heights [m] of all sections of all cases; none of a pier that lacks some, which is noted already."""
+    heights = set[float]()
+    for pier in {case.pier for case in cases} if output.requested_sections else ():
+        with suppress(InputError):
+            heights.update(section_heights(pier, output.requested_sections or 0))
+    return heights
 
 
 def _numerics(file: TomlFile) -> Numerics:
