@@ -15,6 +15,7 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep
 from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
+from rockbatch.batch.sections import rows_of_sections
 from rockbatch.batch.shocks import rows_by_shock, sequences_of
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
@@ -33,10 +34,11 @@ from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
+from rockbatch.results.sections import SECTIONS
 from rockbatch.results.shocks import SHOCKS
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, CHECKS, REPORT, SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS, CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
@@ -121,8 +123,11 @@ def unchanged(
             return None
     except (InputError, OSError):  # damaged, or those of an earlier run
         return None
+    beside = _beside_peaks(study, motions)
+    if not all(is_plain(directory / name) for name in beside):
+        return None
     judged = _judged(saved, study)
-    names = (PEAKS, INFO, *_beside_peaks(study, motions), *histories, *([CHECKS] if judged else []), REPORT)
+    names = (PEAKS, INFO, *beside, *histories, *([CHECKS] if judged else []), REPORT)
     files = tuple(directory / name for name in names)
     return FinishedBatch(saved, motions, judged, files, None) if all(map(is_plain, files)) else None
 
@@ -179,10 +184,10 @@ def finish(
         write_info(directory, info)
         saved = open_results(directory)
     histories, refusal = _keep_histories(saved, study, runs, listener, records)
+    tables = [write(directory / name, rows) for name, rows in _tables(saved, study, motions, runs, listener)]
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = _judged(saved, study)
         checks = write_verdicts(directory, judged) if judged else None
-    tables = [write(directory / name, rows) for name, rows in _tables(saved, study, motions, runs, listener)]
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
     written = (directory / PEAKS, directory / INFO, *tables, histories, checks, report)
@@ -200,6 +205,7 @@ def _beside_peaks(study: Study, motions: MotionSet) -> list[str]:
         INTENSITY: study.output.intensity,
         SHOCKS: any(motion.shocks for motion in motions.motions),
         HALF_CYCLES: study.output.half_cycles,
+        SECTIONS: study.output.requested_sections is not None,
     }
     return [name for name, is_asked in asked.items() if is_asked]
 
@@ -209,7 +215,7 @@ def _tables(
 ) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
     """Yield name and rows of the tables beside the peaks, and take away those of another time."""
     asked = _beside_peaks(study, motions)
-    for name in {INTENSITY, SHOCKS, HALF_CYCLES}.difference(asked):
+    for name in {INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS}.difference(asked):
         remove(saved.directory / name)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
     if INTENSITY in asked:
@@ -220,6 +226,9 @@ def _tables(
     if HALF_CYCLES in asked:
         with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
             yield HALF_CYCLES, rows_of_half_cycles(study, runs, saved.peaks, jobs, progress)
+    if SECTIONS in asked:
+        with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
+            yield SECTIONS, rows_of_sections(study, runs, saved.peaks, jobs, progress)
 
 
 def _keep_histories(

@@ -1,6 +1,7 @@
 """One run: its row of peaks.csv, and its histories."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
@@ -9,10 +10,12 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import Base, Pier, problems, unlikely_devices
+from rockbatch.pier.sections import section_heights
+from rockbatch.results import sections as of_sections
 from rockbatch.results.columns import StudyRun, as_series, row
 from rockbatch.results.shocks import as_table, shock_rows
 from rockbatch.simulation.error_control import run_to_tolerance
-from rockbatch.simulation.histories import histories, rocking_from_lean, with_observed
+from rockbatch.simulation.histories import forces_in_sections, histories, rocking_from_lean, with_observed
 from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.response import Response
@@ -39,6 +42,7 @@ def simulate(
     case: str | None = None,
     ledger: bool = False,
     forces: bool = False,
+    sections: int | Sequence[float] = (),
     least_normal_share: float = LEAST_NORMAL_SHARE,
     wait: bool = True,
     initial_rotation_rad: float | None = None,
@@ -56,6 +60,9 @@ def simulate(
         Keep the energy balance too (THEORY.md, Energy ledger).
     forces : bool
         Keep the forces, and what lands at impacts, too (THEORY.md, Forces).
+    sections : int or list of float
+        Heights [m] of sections of the shaft, or how many from its foot to its top, whose greatest forces are kept too
+        (THEORY.md, Forces in sections).
     least_normal_share : float
         With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
         ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
@@ -97,12 +104,16 @@ def simulate(
         pier = replace(pier, initial_rotation_rad=initial_rotation_rad)
     numerics, run = Numerics(**steps), Run(pier, foundation, motion)
     _check(run, numerics, least_normal_share, wait)
+    heights = section_heights(pier, sections) if sections else ()
     name, outcome = case or foundation.name, _outcome(run, numerics, wait)
     response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     outcome = with_observed(
         run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
         error=numerics.substeps is None, wait=wait,
     )  # fmt: skip
+    if heights:
+        found = forces_in_sections(run, outcome, numerics.quiet_s, heights, error=numerics.substeps is None, wait=wait)
+        response = replace(response, sections=of_sections.as_table(of_sections.section_rows(pier, found)))
     if motion.shocks:
         outcomes = by_shock(run, outcome, numerics.quiet_s, error=numerics.substeps is None, wait=wait)
         response = replace(response, shocks=as_table(shock_rows(motion, pier, outcomes)))

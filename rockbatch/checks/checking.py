@@ -14,6 +14,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case
+from rockbatch.results.sections import SECTIONS, read_sections
 from rockbatch.study import Study, load_study
 from rockbatch.study.rule_choices import implausible
 from rockbatch.study.rule_files import Checks, load_rules, read_checks
@@ -75,11 +76,14 @@ def verdicts(
     given_rules = _rules_of(rules)
     records: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
+    sections: pd.DataFrame | None = None
     if isinstance(results, Saved | str | os.PathLike):
         saved = results if isinstance(results, Saved) else read_saved(Path(results))
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
+        if (path := saved.directory / SECTIONS).exists():
+            sections = read_sections(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
     else:
         if study is None:
@@ -94,7 +98,7 @@ def verdicts(
         wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
-    return [*of_suite, *(judge(rules, table, cases, records, count) if rules else ())]
+    return [*of_suite, *(judge(rules, table, cases, records, count, sections) if rules else ())]
 
 
 def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:

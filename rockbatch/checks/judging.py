@@ -15,7 +15,8 @@ from rockbatch.quantities.cases import Case, creeps, has_device
 from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
-from rockbatch.study.rule_choices import FAR, chooses, limit_key, unmet
+from rockbatch.results.sections import MEANING as OF_SECTIONS
+from rockbatch.study.rule_choices import FAR, chooses, has_section, limit_key, unmet
 from rockbatch.study.rules import Rule
 from rockbatch.toml.kinds import shown
 
@@ -31,6 +32,7 @@ def judge(
     cases: Sequence[Case],
     records: Mapping[str, str] | None = None,
     count: str = "station",
+    sections: "pd.DataFrame | None" = None,
 ) -> list[Verdict]:
     """Evaluate every rule for every case at every scale.
 
@@ -47,6 +49,8 @@ def judge(
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
         How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`.
+    sections : DataFrame, optional
+        Rows of sections.csv, for rules about a section.
 
     Raises
     ------
@@ -61,6 +65,7 @@ def judge(
     available: dict[str, Any] = {"scales": scales, "polarities": polarities}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     available["output"] = [key for key, column in BROUGHT.items() if column in runs]
+    available["sections"] = set() if sections is None else set(sections["height_m"])
     available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]
     if wrong:
@@ -75,8 +80,17 @@ def judge(
                 if chooses(rule, str(case["case"]), scale):
                     # Of a mirror image the demands are the same
                     its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
+                    if rule.at_m is not None and sections is not None:
+                        its = at_section(its, sections, rule)
                     verdicts.append(_verdict(rule, its, case, scale, rule.count or count))
     return verdicts
+
+
+def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> "pd.DataFrame":
+    """Return the rows of a case with those of sections.csv at the height of the rule beside them; NaN if a run has none."""
+    keys = [name for name in sections if name not in OF_SECTIONS]
+    its = sections[[has_section(rule, [height]) for height in sections["height_m"]]]
+    return runs.merge(its, how="left", on=keys).set_index(runs.index)
 
 
 def _stations(runs: "pd.DataFrame") -> dict[str, str]:
@@ -111,6 +125,8 @@ def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count:
         return replace(none, note=f"the pier has no {demand.device}")
     if demand.weighed and "mass_t" not in case["pier"]:
         return replace(none, note=NOT_WEIGHED)
+    if rule.at_m is not None and suite["height_m"].isna().all() and (suite["status"] != "failed").any():
+        return replace(none, note=f"the pier has no section at {rule.at_m:g} m")
     if not demand.per_case:
         return _of_suite(rule, suite, case, none)
     value = float(demand.evaluate(suite, case).value[0])

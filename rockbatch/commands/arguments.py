@@ -138,7 +138,7 @@ _FILES = """\
   run.json       what was run, under which motions, with what
   histories.h5   histories of the worst runs, or as [output] histories asks
   checks.csv     verdicts, if the study has checks
-  intensity.csv, half_cycles.csv   if [output] asks for them
+  intensity.csv, half_cycles.csv, sections.csv   if [output] asks for them
   peaks_semicolon.csv           with --csv semicolon: decimal commas, and 9,99E+307 for infinity"""
 
 

@@ -128,22 +128,50 @@ def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, c
 class Part(NamedTuple):
     """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²].
 
+    ``length_m`` is the length along the axis over which its mass is spread evenly, 0 of a mass at one height; only forces in
+    sections need it.
+
     Examples
     --------
     >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)
-    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666)
+    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666, length_m=30.0)
     """
 
     mass_t: float
     height_m: float
     inertia_t_m2: float = 0.0
+    length_m: float | None = None
 
     @classmethod
     @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
         """Return a uniform shaft that stands on the pivots: a rectangle."""
         _refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
-        return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0)
+        return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0, height_m)
+
+
+def _length_problems(n: int, part: Part) -> list[str]:
+    """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
+    length = part.length_m
+    if length is None or length == 0:
+        return []
+    name = f"part_{n}_length_m"
+    if not LEAST <= length <= MOST:
+        return [f"{name} = {length:g}: must be 0 or a number above it, to {MOST:g}"]
+    if 0.5 * length > part.height_m * (1.0 + _ROUNDING):
+        reach = 2.0 * part.height_m
+        return [f"{name} = {length:g}: reaches below the pivots; about {part.height_m:g} m it may be {reach:g} at most"]
+    rod = part.mass_t * length**2 / 12.0
+    if part.inertia_t_m2 < rod * (1.0 - _ROUNDING):
+        return [
+            f"{name} = {length:g}: a mass spread over it has an inertia of m L²/12 = {rod:.6g} t m² at least, "
+            f"inertia_t_m2 = {part.inertia_t_m2:g} is less"
+        ]
+    return []
+
+
+_ROUNDING = 1e-6
+"""Share by which lengths and inertias of parts may be beyond what can be: digits that a study does not give."""
 
 
 @checked
@@ -175,6 +203,9 @@ class Pier(InNotebook):
     flexural_period_s : float, optional
         First period of the pier, with its deck, fixed at its base [s]. It does not affect runs; it is compared with the
         period of rocking (:func:`rockbatch.statics`). ``dataclasses.replace(pier, flexural_period_s=0.6)`` adds it.
+    parts : tuple of Part, optional
+        Its parts, by which forces in sections know how the mass is spread over the height; see :meth:`of_parts`. Without
+        them the pier is a solid rectangle there, if ``mu`` is 3.
 
     Raises ``InputError`` with every impossible value.
 
@@ -198,9 +229,12 @@ class Pier(InNotebook):
     deck_height_m: float | None = None
     initial_rotation_rad: float = field(default=0.0, kw_only=True)
     flexural_period_s: float | None = field(default=None, kw_only=True)
+    parts: tuple[Part, ...] | None = field(default=None, kw_only=True, repr=False)
 
     def __post_init__(self) -> None:
-        wrong = out_of_bounds(**{field.name: getattr(self, field.name) for field in fields(self)})
+        wrong = out_of_bounds(
+            **{field.name: getattr(self, field.name) for field in fields(self) if field.name in BOUNDS}
+        )
         _refuse(wrong or _falls(self.alpha, self.initial_rotation_rad))
 
     @classmethod
@@ -267,7 +301,8 @@ class Pier(InNotebook):
         width_m : float
             Between the pivots, 2b [m].
         parts : iterable of Part
-            Or of (mass_t, height_m, inertia_t_m2): masses m_i at heights h_i, with inertias I_i about their own centres.
+            Or of (mass_t, height_m, inertia_t_m2, length_m): masses m_i at heights h_i, with inertias I_i about their own
+            centres, spread over a length or not.
         top_m : float, optional
             Height at which drift is read [m]; at the highest part's centre by default.
         deck_height_m : float, optional
@@ -295,6 +330,7 @@ class Pier(InNotebook):
             for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
                 if not (value == 0 or LEAST <= value <= MOST):
                     wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
+            wrong += _length_problems(n, part)
         if not parts:
             wrong.append("parts: there are none; a pier has one at least")
         _refuse(wrong)
@@ -311,7 +347,7 @@ class Pier(InNotebook):
         confirmed = ("top_m", "mass_t")
         pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
         _refuse(unlikely_mass(pier, confirm, "width_m"))
-        return pier if deck_height_m in (None, top) else replace(pier, deck_height_m=deck_height_m)
+        return replace(pier, parts=tuple(parts), deck_height_m=None if deck_height_m == top else deck_height_m)
 
     @classmethod
     @checked
@@ -340,7 +376,7 @@ class Pier(InNotebook):
             or _unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
             + unlikely_deck(mass_t, deck_mass_t, confirm)
         )
-        deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2)
+        deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2, 0.0)
         _refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]

@@ -30,8 +30,10 @@ from rockbatch.quantities.demands import (
     Ceiling,
     Demand,
     Estimated,
+    axial,
     event,
     in_flight,
+    in_section,
     largest,
     numbers,
     parameter,
@@ -617,8 +619,12 @@ _OTHERS = (
         "static_deflection_m", "deflection of the supports under the weight at rest, while elastic", "m", SPRINGS, _WIDER,
         "delta_s_m",
     ),
+    in_section("section_shear_kN", "greatest shear in a section of the shaft, across its axis"),
+    in_section("section_moment_kNm", "greatest moment in a section of the shaft"),
+    in_section("section_axial_kN", "greatest compression of a section of the shaft", axial(1.0)),
+    in_section("section_tension_kN", "greatest tension of a section of the shaft, 0 if it has none", axial(-1.0)),
 )  # fmt: skip
-"""Demands that are no column: events, and properties of the foundation."""
+"""Demands that are no column of peaks.csv: events, properties of the foundation, and those in sections of the shaft."""
 
 DEMANDS: dict[str, Demand] = {
     demand.name: demand
@@ -671,6 +677,7 @@ def listed() -> dict[str, list[str]]:
         return (
             "yes or no, 1 or 0" if demand.event
             else "of the foundation, and not of a run" if demand.per_case
+            else "in the section at the height at_m, with [output] sections" if demand.needs == "sections"
             else f"with [output] {demand.needs} = true" if demand.needs
             else f"of a {demand.device}" if demand.device
             else "of every run"

@@ -61,8 +61,8 @@ class Demand:
         Value beyond which a limit says nothing.
     verb : str
         Of an event: the words for a record that causes it.
-    needs : "", "forces" or "rocking"
-        Key of [output] that brings the columns it takes.
+    needs : "", "forces", "rocking" or "sections"
+        Key of [output] that brings the columns it takes; those of "sections" are of sections.csv, at the height of the check.
     weighed : bool
         True if it takes the mass of the pier.
     device : "", "damper", "tendon", "stop" or "deck_spring"
@@ -145,6 +145,26 @@ def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluat
         return Estimated(value, value * numbers(runs, share))
 
     return evaluate
+
+
+def axial(sign: float) -> Evaluate:
+    """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
+    columns = ("section_axial_least_kN", "section_axial_greatest_kN")
+
+    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
+        least, greatest = (sign * numbers(runs, name) for name in columns)
+        error = _magnitude(runs, columns) * numbers(runs, "sections_error")
+        return Estimated(np.maximum(np.maximum(least, greatest), 0.0), error)
+
+    return evaluate
+
+
+def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
+    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise."""
+    unit = "kN m" if name.endswith("kNm") else "kN"
+    return Demand(
+        name, meaning, evaluate or largest((name,), share="sections_error"), unit, needs="sections", weighed=True
+    )
 
 
 def in_flight(column: str) -> Evaluate:

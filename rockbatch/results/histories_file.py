@@ -35,7 +35,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, restraint_of
+from rockbatch.pier import ElasticBase, Part, Pier, RigidBase, YieldingBase, restraint_of
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
@@ -140,7 +140,8 @@ def _name(number: int) -> str:
 def _write(group: "h5py.Group", response: Response) -> None:
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
-    _set(group.create_group("pier"), asdict(response.pier))
+    parts = response.pier.parts
+    _set(group.create_group("pier"), asdict(response.pier) | {"parts": json.dumps(parts) if parts else None})
     base = {"name": response.base.name} | asdict(response.base)
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
@@ -263,6 +264,9 @@ def _read(group: "h5py.Group") -> Response:
     kind = _BASES[base.pop("name")]
     if "restraints" in base:
         base["restraints"] = tuple(map(restraint_of, json.loads(base["restraints"])))
+    pier = attributes_of(group_in(group, "pier"))
+    if "parts" in pier:
+        pier["parts"] = tuple(Part(*part) for part in json.loads(pier["parts"]))
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
@@ -284,7 +288,7 @@ def _read(group: "h5py.Group") -> Response:
     return Response(
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
-        pier=Pier(**attributes_of(group_in(group, "pier"))),
+        pier=Pier(**pier),
         base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be chosen
         history=history.reindex(columns=list(UNITS)),
         events=events.astype(EVENT_TYPES),

@@ -19,6 +19,7 @@ from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import simulated, with_case
+from rockbatch.results.sections import SECTIONS, read_sections
 from rockbatch.results.shocks import SHOCKS, read_shocks
 from rockbatch.simulation.response import Response
 from rockbatch.toml.kinds import shown
@@ -59,6 +60,16 @@ class Results(Shown, Saved):
                 f"{path}: not there; write a [[motions.sequence]] in the study, and start `rockbatch run` again"
             )
         return read_shocks(path, self.info["varied"])
+
+    @cached_property
+    def sections(self) -> "pd.DataFrame":
+        """``sections.csv``: forces in sections of the shaft, where the study asks for them ([output] sections = 5)."""
+        path = self.directory / SECTIONS
+        if not path.exists():
+            raise InputError(
+                f"{path}: not there; write [output] sections = 5 in the study, and start `rockbatch run` again"
+            )
+        return read_sections(path, self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw the distribution of θ_max/α over the records, a panel for each pier and scale, a curve for each case: a matplotlib

@@ -19,9 +19,10 @@ from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts
 from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.simulation.leaning import Apart, apart, may_lean, with_error_of_rocking, with_rocking
 from rockbatch.simulation.models import acceleration_at, block, ground_of, springs
-from rockbatch.simulation.outcome import TERMS, Outcome
+from rockbatch.simulation.outcome import TERMS, Outcome, Section
 from rockbatch.simulation.response import EVENT_TYPES, Response
 from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
+from rockbatch.simulation.sections import sections_of, with_errors
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -215,6 +216,19 @@ def with_observed(
             outcome = outcome.noted(note)
         outcome = outcome.changed(forces=peaks)
     return outcome
+
+
+def forces_in_sections(
+    run: Run, outcome: Outcome, quiet_s: float, heights: Sequence[float], *, error: bool, wait: bool = True
+) -> list[Section]:
+    """Return the greatest forces in sections of a run whose outcome is known, with their ``error`` as other forces have it."""
+    rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
+    sections = sections_of(run, rows, heights)
+    if not error or outcome.substeps % 2 or CHAOTIC in outcome.note:
+        return sections
+    del rows  # a history of every step may be large
+    rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
+    return with_errors(sections, sections_of(run, rows, heights), run.pier)
 
 
 def histories(

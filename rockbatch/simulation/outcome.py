@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 WOULD_SLIDE = "would slide"
 """Words of a note on a run whose friction demand is greater than what the interface has."""
@@ -267,6 +267,22 @@ class Outcome:
             dissipated_right=self.dissipated_left,
             forces=self.forces and self.forces.mirrored(),
         )
+
+
+class Section(NamedTuple):
+    """Greatest forces in a section; SI units, per unit mass of the pier, axial forces positive in compression.
+
+    ``error`` is by which share of itself halving the step still changed shear, moment or an axial extreme at most; None with
+    a fixed step.
+    """
+
+    height: float  # above the pivots [m]
+    shear: float  # greatest |V|/M, across the axis [m/s²]
+    moment: float  # greatest |moment|/M about the middle of the section [m²/s²]
+    axial_least: float  # N/M, along the axis [m/s²]
+    axial_greatest: float
+    axial_at_moment: float  # at the greatest |moment|
+    error: float | None = None
 
 
 @dataclass(frozen=True)

@@ -92,6 +92,10 @@ class Response(Shown):
         What each shock of a sequence does, in the columns of ``shocks.csv`` that are not names of the run; ``None`` for a
         motion that is none.
 
+    sections : DataFrame or None
+        Where it was asked for, the greatest forces in sections of the shaft, a row for each, in the columns of
+        ``sections.csv`` that are not names of the run.
+
     Examples
     --------
     >>> pier, base = rb.Pier(alpha=0.2, p=1.0), rb.ElasticBase(beta=50, epsilon=0.1)
@@ -122,6 +126,7 @@ class Response(Shown):
     restraints: "pd.DataFrame | None" = field(default=None, repr=False)
     row: "pd.Series[Any] | None" = None
     shocks: "pd.DataFrame | None" = field(default=None, repr=False)
+    sections: "pd.DataFrame | None" = field(default=None, repr=False)
 
     @property
     def theta_max(self) -> float:

@@ -97,6 +97,15 @@ def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     return pd.DataFrame(table)
 
 
+def deck_pulls(pier: Pier, base: Base, rows: np.recarray) -> list[tuple[float, Samples]]:
+    """Return the height [m] and the force to the left on the deck [m/s²], at every row, of each device there."""
+    laws = elements(pier, base)
+    if all(law.height == 0.0 for law in laws):
+        return []
+    pull = _followed(pier, base, rows)[1]
+    return [(law.height, law.way * pull[:, j]) for j, law in enumerate(laws) if law.height != 0.0]
+
+
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
     """Return the energy [J/kg] that all tendons give back until they are slack, relative to the start."""
     energy = _followed(pier, base, rows)[2].sum(axis=1)

@@ -4,6 +4,7 @@ import os
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +18,8 @@ from rockbatch.common.units import MOST, Bounds
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import described, symmetric
+from rockbatch.pier import Pier, described, symmetric
+from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -29,7 +31,7 @@ from rockbatch.study.rules import CHECK, Rule
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import Number, boolean, choice, count, not_negative, positive, shown, text, within
+from rockbatch.toml.kinds import Number, Whole, boolean, choice, count, not_negative, positive, shown, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
@@ -92,12 +94,18 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
+    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the shaft are among them"), "5",
+        "Number of sections of the shaft, evenly from its foot to its top, in which shear, moment and axial force of every run "
+        "are computed: `sections.csv`."),
+    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
 }), instead=names({
     "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
     "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
-}))  # fmt: skip
+}), clashes=(
+    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
+))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
 
@@ -299,6 +307,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
+    _complain_about_sections(file, [pier for pier, _ in piers], output)
     if not output.forces:
         _complain_about_friction(file)
     checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)
@@ -343,6 +352,7 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
+        sections=_heights(cases, output),
     )
     rows = [
         {
@@ -354,6 +364,15 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         for case in cases
     ]
     yield from implausible(rule, rows)
+
+
+def _heights(cases: Sequence[Case], output: Output) -> set[float]:
+    """Return the heights [m] of all sections of all cases; none of a pier that lacks some, which is noted already."""
+    heights = set[float]()
+    for pier in {case.pier for case in cases} if output.requested_sections else ():
+        with suppress(InputError):
+            heights.update(section_heights(pier, output.requested_sections or 0))
+    return heights
 
 
 def _numerics(file: TomlFile) -> Numerics:
@@ -373,6 +392,20 @@ def _complain_about_friction(file: TomlFile) -> None:
                 "demand, or leave it out",
                 "friction",
             )
+
+
+def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output) -> None:
+    """Note sections that some pier does not have, or whose forces are not known."""
+    if output.requested_sections is None:
+        return
+    wrong: dict[str, None] = {}
+    for pier in piers:
+        try:
+            section_heights(pier, output.requested_sections)
+        except InputError as error:
+            wrong |= dict.fromkeys(error.problems)
+    for problem in wrong:
+        file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:

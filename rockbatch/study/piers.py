@@ -106,6 +106,9 @@ PART = Section(("pier", "part"), (
     "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
         required=True, many=True, usual=_HEIGHT._replace(least=0.0)),
     "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; default 0.", many=True),
+    "length_m": Key(not_negative, "20.0",
+        "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of [output] need it.",
+        many=True, usual=_HEIGHT._replace(least=0.0)),
     **CONFIRM,
 }, many=True)  # fmt: skip
 PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))
@@ -150,7 +153,8 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
                 place = " in this table" if "write confirm" in problem else ""
                 complain_where_due(table, chosen, problem + place)
         else:
-            piers.append((pier, {name: value for name, value in asdict(pier).items() if value is not None} | values))
+            of_pier = asdict(replace(pier, parts=None))  # their own keys say them
+            piers.append((pier, {name: value for name, value in of_pier.items() if value is not None} | values))
     return piers, grid.varied
 
 
@@ -202,7 +206,7 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
         inertia = values.get("deck_inertia_t_m2", 0.0)
         if wrong := unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]):
             raise InputError(*wrong)
-        all_of_them.append(Part(values["deck_mass_t"], deck, inertia))
+        all_of_them.append(Part(values["deck_mass_t"], deck, inertia, 0.0))
     top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
     return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | common)
 

@@ -2,7 +2,7 @@
 
 import fnmatch
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
@@ -40,10 +40,11 @@ def unmet(
     polarities: Collection[str],
     other_law: bool,
     output: Collection[str],
+    sections: Collection[float] = (),
 ) -> Iterator[str]:
     """Return a message for each choice of the rule that the study lacks; each starts with the name of its key.
 
-    ``output`` are the keys of [output] whose columns are there.
+    ``output`` are the keys of [output] whose columns are there, ``sections`` the heights [m] of sections of any pier.
     """
     for pattern in rule.case:
         if not any(_fits(name, pattern) for name in cases):
@@ -61,9 +62,28 @@ def unmet(
             "and run it, or leave other_law out"
         )
     needs = DEMANDS[rule.demand].needs
-    if needs and needs not in output:
+    if needs == "sections":
+        yield from _no_section(rule, sections)
+    elif needs and needs not in output:
         missing = f"there is no column of {needs}; write {needs} = true under [output] of the study and run it"
         yield f"demand = {shown(rule.demand)}: {missing}"
+
+
+def has_section(rule: Rule, sections: Iterable[float]) -> bool:
+    """Return whether a section at one of these heights [m] is the one that the rule is about."""
+    return any(math.isclose(height, rule.at_m or 0.0, rel_tol=1e-6, abs_tol=1e-9) for height in sections)
+
+
+def _no_section(rule: Rule, sections: Collection[float]) -> Iterator[str]:
+    if not sections:
+        yield (
+            f"demand = {shown(rule.demand)}: there are no forces in sections; write sections = 5 under [output] of the study and "
+            "check the folder that it is run into"
+        )
+    elif not has_section(rule, sections):
+        yield (
+            f"at_m = {rule.at_m:g}: there is no section at this height; there are {', '.join(f'{x:g}' for x in sorted(sections))}"
+        )
 
 
 def _fits(name: str, pattern: str) -> bool:

@@ -87,6 +87,8 @@ class Rule:
     other_law : bool
         Whether the settlement by the other spring law has to be there: where both were run the worse counts in any case, and with
         this a run that did not go through by the other one is unknown.
+    at_m : float or None
+        Height of the section that a demand such as section_moment_kNm is about [m].
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.study.rule_choices`).
 
@@ -118,6 +120,7 @@ class Rule:
     flight: str | None = None
     failed: str | None = None
     other_law: bool = False
+    at_m: float | None = None
     confirm: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -154,9 +157,12 @@ class Rule:
         statistic = STATISTICS[self.statistic or "max"].words
         if self.is_ban:
             return f"no record {demand.verb}"
+        place = "" if self.at_m is None else f" at {self.at_m:g} m"
         if self.statistic != "count":
-            return f"{statistic} of {self.demand}"
-        return f"{statistic} with {self.demand}" + ("" if demand.event and not self.above else f" above {self.above:g}")
+            return f"{statistic} of {self.demand}{place}"
+        return f"{statistic} with {self.demand}{place}" + (
+            "" if demand.event and not self.above else f" above {self.above:g}"
+        )
 
     @property
     def counting(self) -> str:
@@ -201,6 +207,8 @@ CHECK = Section(("check",), (
 ), {
     "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
     "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
+    "at_m": Key(not_negative, "7.5",
+        "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`."),
     "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
         'How the records are summed up; "max" if it is not given.'),
     "above": Key(not_negative, "0.5",
@@ -278,6 +286,14 @@ def _misfits(rule: Rule) -> list[str]:
         (
             demand.event and statistic.code != "",
             f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
+        ),
+        (
+            demand.needs == "sections" and rule.at_m is None,
+            "at_m is missing, the height of the section [m]; write for example at_m = 7.5",
+        ),
+        (
+            demand.needs != "sections" and rule.at_m is not None,
+            "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
         ),
         (rule.other_law and demand.other_law is None, f"other_law: is for {with_other_law}; leave it out"),
     ]

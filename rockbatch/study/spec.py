@@ -117,6 +117,13 @@ class Output:
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     sa_pairs: tuple[str, ...] = ()
     half_cycles: bool = False
+    sections: int | None = None
+    sections_m: tuple[float, ...] = ()
+
+    @property
+    def requested_sections(self) -> int | tuple[float, ...] | None:
+        """Sections of the shaft whose forces are asked for: their number or their heights [m]; None without any."""
+        return self.sections or self.sections_m or None
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,23 @@ def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_mos
     """The only verdict."""
     if "at_least" in asked:
         at_most = None
+    place, sections = in_sections(table, demand)
     (verdict,) = judge(
-        [Rule("check", demand, at_most, **asked)], table, [one or case()], dict.fromkeys(records, "") or None
+        [Rule("check", demand, at_most, **place | asked)],
+        table,
+        [one or case()],
+        dict.fromkeys(records, "") or None,
+        sections=sections,
     )
     return verdict
+
+
+def in_sections(table, demand, **cells):
+    """What a check of a section says too, and rows of sections.csv for those of ``table``; nothing for other demands."""
+    if DEMANDS[demand].needs != "sections":
+        return {}, None
+    values = SECTION | {"sections_error": math.nan} | cells
+    return {"at_m": 7.5}, table[["record", "case", "polarity", "scale"]].assign(height_m=7.5, **values)
 
 
 # Suites
@@ -340,6 +353,12 @@ FORCES = {
     "key_shear_kN": 4500.0,
     "flight_longest_s": 0.03,
 }
+SECTION = {
+    "section_shear_kN": 3000.0,
+    "section_moment_kNm": 40000.0,
+    "section_axial_least_kN": -200.0,
+    "section_axial_greatest_kN": 30000.0,
+}
 DEVICES = {
     "damper_force_over_weight": 0.05, "damper_stroke_m": 0.12, "damper_speed_m_s": 0.4, "damper_energy_J_kg": 0.8,
     "tendon_force_over_weight": 0.3, "tendon_yield_m": 0.004, "tendon_slack": 2,
@@ -395,6 +414,10 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "stop_deflection_mm": (20.0, 0.0),
     "deck_spring_force_kN": (0.2 * 3000 * 9.81, 0.0),
     "deck_spring_deflection_mm": (30.0, 0.0),
+    "section_shear_kN": (3000.0, 0.0),
+    "section_moment_kNm": (40000.0, 0.0),
+    "section_axial_kN": (30000.0, 0.0),
+    "section_tension_kN": (200.0, 0.0),
 }
 
 
@@ -460,7 +483,8 @@ def of_every_base():
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if not demand.device])
 def test_a_demand_that_a_base_does_not_have_does_not_apply(demand):
-    found = judge([Rule("check", demand, 100.0)], of_every_base(), [RIGID, ELASTIC, case()])
+    place, sections = in_sections(of_every_base(), demand)
+    found = judge([Rule("check", demand, 100.0, **place)], of_every_base(), [RIGID, ELASTIC, case()], sections=sections)
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
                "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
     expected = {"rigid": demand not in springs, "elastic": True, "pads": True}
@@ -479,6 +503,59 @@ def test_a_residual_rotation_is_asked_of_a_rigid_base_where_dampers_may_hold_the
         found = judged(runs([0.3], "rigid", **ROW), one=one, demand=demand, at_most=0.01)
         assert found.verdict == (("fail" if value > 0.01 else "pass") if applies else "does not apply")
     assert judged(runs([0.3], "rigid", **ROW), one=one, demand="base_tilt_rad").verdict == "does not apply"
+
+
+def test_the_error_in_a_section_is_a_share_of_the_force_and_of_tension_one_of_the_greatest_axial_force():
+    for demand, value, error in (
+        ("section_shear_kN", 3000.0, 30.0), ("section_moment_kNm", 40000.0, 400.0), ("section_axial_kN", 30000.0, 300.0),
+        ("section_tension_kN", 200.0, 300.0),
+    ):  # fmt: skip
+        place, sections = in_sections(runs([0.3]), demand, sections_error=0.01)
+        (found,) = judge([Rule("check", demand, 1e6, **place)], runs([0.3]), [case()], sections=sections)
+        assert (found.value, found.high) == (value, pytest.approx(value + error))
+        assert found.words == f"maximum of {demand} at 7.5 m"
+
+
+def test_a_check_of_a_section_takes_the_rows_of_its_height_and_of_its_run():
+    table = runs([0.1, 0.2, 0.3])
+    names = table[["record", "case", "polarity", "scale"]]
+    moments = {0.0: (5.0, 9.0, 7.0), 7.5: (3.0, 1.0, 2.0)}
+    sections = pd.concat(
+        [names.assign(height_m=z, section_moment_kNm=m, sections_error=0.0) for z, m in moments.items()]
+    )
+    rules = [Rule("foot", "section_moment_kNm", 8.0, at_m=0.0), Rule("above", "section_moment_kNm", 4.0, at_m=7.5)]
+    foot, above = judge(rules, table, [case()], sections=sections.sample(frac=1.0, random_state=1))
+    assert (foot.value, foot.record, foot.verdict) == (9.0, "r1", "fail")
+    assert (above.value, above.record, above.verdict) == (3.0, "r0", "pass")
+    lower = runs([0.1], "rigid")
+    both = pd.concat([table, lower])
+    found = judge(rules[1:], both, [RIGID, case()], sections=sections)
+    assert [(each.case, each.verdict) for each in found] == [("rigid", "does not apply"), ("pads", "pass")]
+    assert found[0].note == "the pier has no section at 7.5 m"
+    unread = judge(
+        rules[:1], pd.concat([table, runs([0.1], record="late", station="late")]), [case()], sections=sections
+    )
+    assert (unread[0].low, unread[0].high) == (9.0, INF)
+
+
+@pytest.mark.parametrize(
+    ("sections", "message"),
+    [
+        (None, r'demand = "section_shear_kN": there are no forces in sections; write sections = 5 under \[output\]'),
+        ((0.0, 15.0), "at_m = 7.5: there is no section at this height; there are 0, 15"),
+    ],
+)
+def test_a_demand_in_a_section_is_refused_where_there_is_none(sections, message):
+    table = None if sections is None else runs(sections).assign(height_m=sections)
+    with pytest.raises(InputError, match=message):
+        judge([Rule("check", "section_shear_kN", 1.0, at_m=7.5)], runs([0.3]), [case()], sections=table)
+
+
+def test_a_height_goes_with_demands_in_sections_only():
+    with pytest.raises(InputError, match="at_m is missing, the height of the section"):
+        Rule("check", "section_shear_kN", 1.0)
+    with pytest.raises(InputError, match="at_m: is for demands in a section"):
+        Rule("check", "base_shear_kN", 1.0, at_m=7.5)
 
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.needs == "forces"])

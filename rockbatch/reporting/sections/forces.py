@@ -17,7 +17,7 @@ from rockbatch.reporting.templates import render
 _LEAST = ("first_uplift_s", "first_uplift_g")
 """Columns of which the smallest value is the worst."""
 
-_CUT_SHORT = ("flight", "failed")
+CUT_SHORT = ("flight", "failed")
 """Statuses of runs that ended early: their values are only bounds."""
 
 
@@ -34,7 +34,7 @@ def section(finished: Finished) -> Markup:
     places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
     demands = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
-    cut_short = finished.runs["status"].isin(_CUT_SHORT).to_numpy()
+    cut_short = finished.runs["status"].isin(CUT_SHORT).to_numpy()
     known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
     return render(
         "reporting/sections/forces.html", of_cases=_of_cases(finished, shown),
@@ -52,7 +52,7 @@ def _of_cases(finished: Finished, shown: list[Quantity]) -> Markup:
     for words, group in finished.groups():
         for place in group["series"].unique():
             runs, label = group[group["series"] == place], finished.series[int(place)].label
-            ended = int(runs["status"].isin(_CUT_SHORT).sum())
+            ended = int(runs["status"].isin(CUT_SHORT).sum())
             counts = f"{len(runs) - ended} of {len(runs)}"
             cells = (_worst(column, runs, bool(ended)) for column in shown)
             rows.append([f"{label} ({words})" if words else label, alarm(counts) if ended else counts, *cells])

@@ -1,0 +1,66 @@
+"""Forces over the height of the shaft: the envelope of every case over its records."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+from rockbatch.common.lazy import pd
+from rockbatch.reporting.finished import Finished
+from rockbatch.reporting.markup import Markup
+from rockbatch.reporting.sections.forces import CUT_SHORT
+from rockbatch.reporting.svg import drawn
+from rockbatch.reporting.table import Head, alarm, table
+from rockbatch.reporting.templates import render
+from rockbatch.results.figures import over_height
+from rockbatch.results.labelled import groups_of
+from rockbatch.results.sections import MEANING, SECTIONS, columns_in, read_sections
+
+MOST_GROUPS = 4
+"""Most piers and scales whose envelopes are drawn."""
+
+
+def section(finished: Finished) -> Markup:
+    """Report forces in sections of the shaft; empty if the study asks for none."""
+    path = finished.directory / SECTIONS
+    rows = read_sections(path, finished.info["varied"]) if path.exists() else pd.DataFrame()
+    if rows.empty:
+        return Markup("")
+    runs = finished.runs.merge(rows, on=[name for name in rows if name not in MEANING])
+    if runs.empty:
+        return Markup("")
+    groups = list(groups_of(runs, finished.piers))
+    return render(
+        "reporting/sections/shaft.html", file=SECTIONS, shown=min(len(groups), MOST_GROUPS), groups=len(groups),
+        picture=drawn(over_height(islice(groups, MOST_GROUPS), finished.series)),
+        table=table(_heads(runs), _rows(finished, groups), sortable=True, name="Forces in every section"),
+        bounds=bool(runs["status"].isin(CUT_SHORT).any()),
+    )  # fmt: skip
+
+
+def _heads(runs: "pd.DataFrame") -> list[Head]:
+    heads, columns = columns_in(runs)
+    words = {"axial_at_moment": "with the moment, ", "axial_least": "least ", "axial_greatest": "greatest "}
+    order = ("shear", "moment", "axial_at_moment", "axial_least", "axial_greatest")
+    forces = [
+        Head(words.get(name, "") + heads[name], ".0f" if "kN" in columns[name] else ".3f", MEANING[columns[name]])
+        for name in order
+    ]
+    return [
+        Head("case"), Head("height [m]", ".2f", MEANING["height_m"]), *forces, Head("±", ".0e", MEANING["sections_error"]),
+        Head("runs", note="that went through, of all"), Head("record with the moment"),
+    ]  # fmt: skip
+
+
+def _rows(finished: Finished, groups: "list[tuple[str, pd.DataFrame]]") -> Iterator[list[object]]:
+    """Yield a row for each case and height: the worst of its runs, N with the greatest of their moments."""
+    for words, group in groups:
+        _, columns = columns_in(group)
+        for _, runs in group.groupby(["series", "height_m"], sort=False):
+            bent = runs.iloc[int(runs[columns["moment"]].argmax())]
+            label = finished.series[bent["series"]].label
+            ended = int(runs["status"].isin(CUT_SHORT).sum())
+            counts, error = f"{len(runs) - ended} of {len(runs)}", runs["sections_error"].max()
+            yield [
+                f"{label} ({words})" if words else label, bent["height_m"], runs[columns["shear"]].max(), bent[columns["moment"]],
+                bent[columns["axial_at_moment"]], runs[columns["axial_least"]].min(), runs[columns["axial_greatest"]].max(),
+                None if error != error else error, alarm(counts) if ended else counts, finished.shown(bent["record"]),
+            ]  # fmt: skip

@@ -1,0 +1,79 @@
+"""sections.csv: forces in sections of the shaft, a row for each section of each run."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rockbatch.common.errors import InputError
+from rockbatch.common.files import read_table
+from rockbatch.common.lazy import pd
+from rockbatch.pier import Pier
+from rockbatch.simulation.outcome import Section
+
+SECTIONS = "sections.csv"
+
+MEANING = {
+    "height_m": "height of the section above the pivots [m]",
+    "section_shear_m_s2": "greatest shear across the axis, over the mass of the pier [m/s²]",
+    "section_moment_m2_s2": "greatest moment about the middle of the section, over the mass of the pier [m²/s²]",
+    "section_axial_least_m_s2": "least axial force, positive in compression, over the mass of the pier [m/s²]",
+    "section_axial_greatest_m_s2": "greatest axial force, likewise [m/s²]",
+    "section_axial_at_moment_m_s2": "axial force when the moment is greatest, likewise [m/s²]",
+    "section_shear_kN": "greatest shear across the axis [kN]; this and the following if mass_t is given",
+    "section_moment_kNm": "greatest moment about the middle of the section [kN m]",
+    "section_axial_least_kN": "least axial force, positive in compression [kN]",
+    "section_axial_greatest_kN": "greatest axial force, likewise [kN]",
+    "section_axial_at_moment_kN": "axial force when the moment is greatest, likewise [kN]",
+    "sections_error": "largest relative error of shear, moment and axial extremes: the change when the step was halved; empty "
+    "with a fixed step",
+}
+"""Columns behind those that name the run."""
+
+
+def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
+    """Return a row for each section of a run of ``pier``."""
+    rows = []
+    for height, *forces, error in sections:
+        in_kilonewtons = [None if pier.mass_t is None else pier.mass_t * force for force in forces]
+        rows.append(dict(zip(MEANING, (height, *forces, *in_kilonewtons, error), strict=True)))
+    return rows
+
+
+def as_table(rows: Iterable[dict[str, Any]]) -> "pd.DataFrame":
+    """Return rows as a DataFrame of numbers; NaN where one is not known."""
+    return pd.DataFrame(list(rows), columns=list(MEANING), dtype="float64")
+
+
+def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
+    table = read_table(path)
+    names = ("record", "case", "polarity", "scale", *varied)
+    wrong = [f"column {name} is missing" for name in (*names, *MEANING) if name not in table]
+    wrong += [
+        f"column {name} has texts"
+        for name in MEANING
+        if name in table and not pd.api.types.is_numeric_dtype(table[name])
+    ]
+    if wrong:
+        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
+    return table.astype(dict.fromkeys(MEANING, "float64"))
+
+
+def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
+    """Return headings with units, and columns, of shear, moment and axial forces: in kN if all rows have these, else over M."""
+    over_mass = bool(runs["section_shear_kN"].isna().any())
+    symbols = {"shear": "V", "moment": "moment", "axial_least": "N", "axial_greatest": "N", "axial_at_moment": "N"}
+    heads, columns = {}, {}
+    for name, symbol in symbols.items():
+        unit, ending = ("kN m", "kNm") if name == "moment" else ("kN", "kN")
+        if over_mass:
+            unit, ending = ("m²/s²", "m2_s2") if name == "moment" else ("m/s²", "m_s2")
+        heads[name] = f"{symbol}{'/M' if over_mass else ''} [{unit}]"
+        columns[name] = f"section_{name}_{ending}"
+    return heads, columns
+
+
+def as_markdown() -> str:
+    """Return the table of docs/columns.md."""
+    lines = ["| column | meaning |", "| --- | --- |"]
+    return "\n".join([*lines, *(f"| {name} | {meaning} |" for name, meaning in MEANING.items())]) + "\n"
