@@ -8,12 +8,13 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.analyses.sensitivity.sampled import low_base_high
-from rockbatch.analyses.sensitivity.study import applying, read_sensitivity, varied
+from rockbatch.analyses.sensitivity.study import applying, read_sensitivity
 from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
 from rockbatch.study import load_study
+from rockbatch.study.inputs import varied
 
 PULSE = (
     '[[motions.pulse]]\nname = "sine"\nshape = "sine"\namplitude_g = 0.2\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2\n'

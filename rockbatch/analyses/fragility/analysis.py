@@ -174,7 +174,8 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any
         numerics=(study.numerics, study.output),
         fragility=spec.of_runs,
     )
-    with results.journal(RUNS, columns(study), digest) as journal:
+    of_runs = replace(study, varied=(*study.varied, *spec.uncertain.columns))
+    with results.journal(RUNS, columns(of_runs), digest) as journal:
         first = (len(first_intensities(spec, plan, m, case)) for m in range(len(records)) for case in study.cases)
         runs = count(sum(first), "run")
         windowed = any(spec.window_on(case.base) is not None for case in study.cases)
@@ -188,7 +189,7 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any
         )
         listener.say(f"{levels}: {runs}{once(study)} on {results.engine}{search}")
         make_ready(study, listener)
-        waves = Waves(study, journal, results.engine, listener)
+        waves = Waves(of_runs, journal, results.engine, listener)
         curves = assess(study, spec, records, waves, plan)
         rates = risks(curves, spec)
         results.info |= described(curves, spec, study, len(records), rates)

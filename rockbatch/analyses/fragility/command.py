@@ -49,6 +49,7 @@ def table(info: Mapping[str, Any], spec: FragilitySpec) -> str:
         *limits,
         info["looked_at"],
         info["by_shares"],
+        info["drawn"],
         *(f"{_name(curve)}: {curve['note']}" for curve in curves if curve["note"]),
         added(spec),
     ]
@@ -56,9 +57,12 @@ def table(info: Mapping[str, Any], spec: FragilitySpec) -> str:
 
 
 def added(spec: FragilitySpec) -> str:
-    """Return the dispersion that the study adds, in words; empty if it adds none."""
+    """Return the dispersion that the study adds, in words, and what it does not contain; empty if it adds none."""
     parts = ", ".join(f"{dispersion.name} {dispersion.value:g}" for dispersion in spec.dispersions)
-    return f"added to the dispersion of the records, for rates: {parts}; together {spec.added:.3g}" if parts else ""
+    if not parts:
+        return ""
+    drawn = f", not counting {', '.join(spec.uncertain.names)}, which are drawn" if spec.uncertain.inputs else ""
+    return f"added to the dispersion of the records, for rates: {parts}; together {spec.added:.3g}{drawn}"
 
 
 def risk_lines(info: Mapping[str, Any]) -> str:

@@ -2,8 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,9 +21,10 @@ from rockbatch.analyses.fragility.limit_states import (
     states,
     threshold,
 )
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, Values, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Contribution, Lognormal, Values, contribution, fit
 from rockbatch.analyses.fragility.stripes import members
 from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.analyses.fragility.uncertain import Drawn, Draws
 from rockbatch.analyses.fragility.windows import Windows, samples, windows
 from rockbatch.batch.listening import count
 from rockbatch.batch.plan import Made
@@ -55,14 +56,15 @@ class ScaledRuns(Made):
         points: Sequence[Point],
         motions: Sequence[Motion],
         unscaled: Sequence[float],
-        cases: Sequence[Case],
+        case_at: Callable[[Point], Case],
         polarity: str,
     ) -> None:
         self.points = points
 
         def make(number: int) -> StudyRun:
-            motion, intensity, case = points[number]
-            return StudyRun(motions[motion], polarity, intensity / unscaled[motion], cases[case])
+            point = points[number]
+            motion, intensity, _ = point
+            return StudyRun(motions[motion], polarity, intensity / unscaled[motion], case_at(point))
 
         super().__init__(len(points), make)
 
@@ -84,6 +86,11 @@ class LevelPlan(NamedTuple):
         """Return the factor at a level on a motion as it was recorded."""
         intensity = (self.used[motion] | self.not_used[motion])[level]
         return self.earlier[motion] * intensity / self.unscaled[motion]
+
+    def number(self, motion: int, intensity: float) -> int:
+        """Return the number of the level, among all of a motion, at which it is run with an intensity."""
+        levels = sorted(self.used[motion] | self.not_used[motion])
+        return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
 
 
 def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> LevelPlan:
@@ -222,6 +229,10 @@ class Curve:
         analysis only, where the case has windows.
     cloud : tuple of CloudPoint
         What each run came to; of cloud analysis only, whose ``stripes`` are these runs one by one.
+    drawn : tuple of str
+        Names of the inputs that are drawn for its case.
+    drawn_share : Contribution, str or None
+        What these contribute to its dispersion, or why that is not known; None if nothing is drawn.
     """
 
     case: Case
@@ -233,6 +244,8 @@ class Curve:
     capacities: tuple[tuple[int, Capacity], ...] = ()
     windows: Windows | None = None
     cloud: tuple[CloudPoint, ...] = ()
+    drawn: tuple[str, ...] = ()
+    drawn_share: Contribution | str | None = None
 
     @property
     def inconclusive(self) -> bool:
@@ -296,7 +309,7 @@ def assess(
     ``simulate`` is called once for the levels and windows and once for every wave, each depending on the rows before.
     """
     plan = plan or level_plan(study, spec, motions)
-    runs = _Runs(study, motions, plan, simulate)
+    runs = _Runs(study, spec, motions, plan, simulate)
     cases = [describe_case(case) for case in study.cases]
     pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
     first = {
@@ -329,9 +342,12 @@ _Key = tuple[int, Rule, int]
 class _Runs:
     """All runs of an analysis, each once, with their rows."""
 
-    def __init__(self, study: Study, motions: Sequence[Motion], plan: LevelPlan, simulate: Simulate) -> None:
+    def __init__(
+        self, study: Study, spec: FragilitySpec, motions: Sequence[Motion], plan: LevelPlan, simulate: Simulate
+    ) -> None:
         self.study, self.motions, self.plan, self.simulate = study, motions, plan, simulate
-        self.cases = [describe_case(case) for case in study.cases]
+        self.draws = Draws(spec.uncertain, study.cases, len(motions))
+        self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
         self.status: dict[Point, str] = {}
         self._last: tuple[dict[Point, int], pd.DataFrame]
 
@@ -339,9 +355,15 @@ class _Runs:
         """Carry out one wave of runs."""
         points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
-        table = self.simulate(ScaledRuns(points, self.motions, self.plan.unscaled, self.study.cases, polarity))
+        runs = ScaledRuns(points, self.motions, self.plan.unscaled, lambda point: self.drawn(point).case, polarity)
+        table = self.simulate(runs)
         self.status |= dict(zip(points, table["status"], strict=True))
         self._last = {point: i for i, point in enumerate(points)}, table
+
+    def drawn(self, point: Point) -> Drawn:
+        """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
+        level = self.plan.number(point.motion, point.intensity) if self.draws_by_level else 0
+        return self.draws.at(point.case, point.motion, level)
 
     def status_at(self, motion: int, level: float, case: int) -> str:
         """Return the status of the run of a motion at a level, or at an intensity between the levels."""
@@ -349,21 +371,31 @@ class _Runs:
 
     def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
         """Return the demands of runs of the last wave of one case, shape (n,)."""
-        places, table = self._last
-        return demands(rule, table.iloc[[places[point] for point in points]], self.cases[points[0].case])
+        values = np.empty(len(points))
+        for drawn, numbers, rows in self._together(points):
+            values[numbers] = demands(rule, rows, drawn.described)
+        return values
 
     def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
         """Return the states of runs of the last wave with respect to limits."""
-        places, table = self._last
-        together: dict[tuple[Rule, int], list[int]] = {}
-        for number, (rule, point) in enumerate(requested):
-            together.setdefault((rule, point.case), []).append(number)
+        of_rules: dict[Rule, list[int]] = {}
+        for number, (rule, _) in enumerate(requested):
+            of_rules.setdefault(rule, []).append(number)
         result = [LEFT_OUT] * len(requested)
-        for (rule, case), numbers in together.items():
-            rows = table.iloc[[places[requested[number][1]] for number in numbers]]
-            for number, state in zip(numbers, states(rule, rows, self.cases[case]).tolist(), strict=True):
-                result[number] = state
+        for rule, of_rule in of_rules.items():
+            for drawn, places, rows in self._together([requested[number][1] for number in of_rule]):
+                for place, state in zip(places, states(rule, rows, drawn.described).tolist(), strict=True):
+                    result[of_rule[place]] = state
         return result
+
+    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], "pd.DataFrame"]]:
+        """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and their rows."""
+        of_row, table = self._last
+        places: dict[Drawn, list[int]] = {}
+        for place, point in enumerate(points):
+            places.setdefault(self.drawn(point), []).append(place)
+        for drawn, of_case in places.items():
+            yield drawn, of_case, table.iloc[[of_row[points[place]] for place in of_case]]
 
 
 def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
@@ -380,7 +412,44 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
     stripes, of_case, windowed = _stripes(on_levels, spec.levels, runs, case), runs.study.cases[case], None
     if (width := spec.window_on(of_case.base)) is not None:
         windowed = windows(looks, spec.levels, width, spec.confidence)
-    return Curve(of_case, rule, stripes, fits[0], undecided, fits[1], capacities, windowed)
+    if spec.method == "ida":
+        intervals = [(Point(m, 0.0, case), *cap.decided) for m, cap in capacities]
+    else:
+        used = runs.plan.used
+        intervals = [
+            _one_sided(Point(m, used[m][x], case), state)
+            for m, of_record in enumerate(looks)
+            for x, state in of_record.items()
+        ]
+    curve = Curve(of_case, rule, stripes, fits[0], undecided, fits[1], capacities, windowed)
+    return _with_share(curve, runs, intervals)
+
+
+Interval = tuple[Point, float, float]
+"""A run, or one of a record, with the interval of its capacity."""
+
+
+def _one_sided(point: Point, state: int) -> Interval:
+    """Return the interval that the state of a run gives: any capacity if it is not decided."""
+    low, high = point.intensity if state == WITHSTOOD else 0.0, point.intensity if state == EXCEEDED else math.inf
+    return point, low, high
+
+
+def _with_share(curve: Curve, runs: _Runs, intervals: Sequence[Interval]) -> Curve:
+    """Return the curve with what drawn inputs contribute to its dispersion, by the intervals of capacities."""
+    informative = [interval for interval in intervals if interval[1] > 0 or math.isfinite(interval[2])]
+    scores = [runs.drawn(point).scores for point, _, _ in informative]
+    if not scores or not scores[0]:
+        return curve
+    names, uncertain = tuple(scores[0]), runs.draws.uncertain
+    low, high = np.array([interval[1:] for interval in informative]).T
+    motion = np.array([point.motion for point, _, _ in informative])
+    of_record = (motion == np.unique(motion)[:, None]).astype(np.float64)
+    of_scores = np.array([list(of_run.values()) for of_run in scores])
+    places = [uncertain.names.index(name) for name in names]
+    capacities = Capacities(low, high, np.ones(len(low)), of_record)
+    share = contribution(capacities, of_scores, uncertain.matrix[np.ix_(places, places)])
+    return replace(curve, drawn=names, drawn_share=share)
 
 
 def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
@@ -405,7 +474,8 @@ def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
         within = [run._replace(demand=math.nan, state=WITHSTOOD) if _is_doubtful(run) else run for run in counting]
         readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
     stripes = tuple(_stripe_of_one(run, runs.plan) for run in cloud_points)
-    return Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, cloud=cloud_points)
+    curve = Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, cloud=cloud_points)
+    return _with_share(curve, runs, [_one_sided(point, state) for point, state in zip(points, states, strict=True)])
 
 
 def _is_doubtful(run: CloudPoint) -> bool:

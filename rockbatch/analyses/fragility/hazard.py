@@ -8,7 +8,7 @@ from typing import Any
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import Number, choice, positive, text
+from rockbatch.toml.kinds import Number, choice, positive, shown, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 
@@ -31,11 +31,15 @@ class Hazard:
 
 @dataclass(frozen=True)
 class Dispersion:
-    """[[fragility.dispersion]]: a standard deviation of ln x that the records do not show."""
+    """[[fragility.dispersion]]: a standard deviation of ln x that the records do not show.
+
+    ``without`` names the inputs of [fragility.uncertain] whose scatter it does not contain: all that are drawn.
+    """
 
     name: str
     value: float
     source: str = ""
+    without: tuple[str, ...] = ()
 
 
 IN_G = Usual(10.0, "g: the strongest earthquakes had a PGA of 2 to 4 g, and Sa to 8 g", 0.001)
@@ -80,6 +84,8 @@ DISPERSION = Section(("fragility", "dispersion"), (
     "value": Key(Number("a number above 0 and at most 2", low=0.0, high=2.0, above=True), "0.3",
         "Standard deviation of the logarithm of the intensity.", required=True),
     "source": Key(text, '"judgement: good model, no tests"', "Source of the value, for the report."),
+    "without": Key(text, '["alpha", "restitution"]',
+        "The inputs of [fragility.uncertain], whose scatter this value must not contain: it is in the curve already.", many=True),
 }, many=True, homes=(Dispersion,))  # fmt: skip
 
 
@@ -135,13 +141,24 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
     return None if wrong else HazardCurve(tuple(x), rates, slope, shape)
 
 
-def read_dispersions(file: TomlFile) -> tuple[Dispersion, ...]:
-    """Return the dispersions that a study adds; mistakes are noted."""
+def read_dispersions(file: TomlFile, drawn: Sequence[str] = ()) -> tuple[Dispersion, ...]:
+    """Return the dispersions that a study adds; mistakes are noted, such as one that may contain inputs that are ``drawn``."""
     added: list[Dispersion] = []
     for table in file.tables("fragility", "dispersion", title="name"):
         read = table.read(DISPERSION)
         if any(read.get("name") == dispersion.name for dispersion in added):
             table.complain("its name is given twice; give each its own", "name")
+        without = read.get("without", ())
+        for n, name in enumerate(without):
+            if name not in drawn:
+                table.complain(
+                    f"without = {shown(name)}: [fragility.uncertain] does not draw it; leave it out", "without", n
+                )
+        if open_ := [name for name in drawn if name not in without]:
+            table.complain(
+                f"the scatter of {', '.join(open_)} is drawn by [fragility.uncertain], and counts once: if the value does not "
+                f"contain it, write without = {shown(list(drawn))}; else reduce it, or leave it out",
+            )
         if read.keys() >= {"name", "value"}:
             added.append(Dispersion(**read))
     return tuple(added)

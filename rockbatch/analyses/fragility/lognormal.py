@@ -27,6 +27,14 @@ RAYS = 360
 HALVINGS = 30
 """Bisections of a ray around the edge."""
 
+NOT_RISING = "the share of records beyond the limit does not grow with the intensity"
+
+LEAST_PER_PARAMETER = 5
+"""Runs or capacities by which a parameter can be told from chance."""
+
+SEPARATED = 1e-3
+"""ℓ of an interval, below which (in magnitude) the inputs leave nothing open: a probability of 0.999."""
+
 LEAST_SLOPE = 1e-3
 """Least slope of z over standardised ln x; below, the capacity would spread over more than a thousand times what was sampled."""
 
@@ -123,10 +131,61 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
     likelihood = _Likelihood(capacities)
     best = likelihood.maximum()
     if best is None:
-        return "the share of records beyond the limit does not grow with the intensity"
+        return NOT_RISING
     edge = likelihood.region(best, confidence)
-    a, b = best
+    a, b = likelihood.plain(best)
     return Lognormal(math.exp(-a / b), float(1.0 / b), *_intervals(edge), edge)
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What drawn inputs contribute to the dispersion of capacities.
+
+    Attributes
+    ----------
+    dispersion : float
+        Standard deviation of ln x that goes with them.
+    effects, errors : tuple of float
+        Change of ln x with a standard deviation of each, and its standard error.
+    """
+
+    dispersion: float
+    effects: tuple[float, ...]
+    errors: tuple[float, ...]
+
+
+def contribution(capacities: Capacities, scores: Values, correlation: Values) -> Contribution | str:
+    """Return what k inputs contribute that were drawn with normal ``scores``, shape (n, k), or why that is not known, in words.
+
+    The likelihood is that of :func:`fit` with a factor for each of the scores, z = a + b ln x + Σ c_j s_j, so that an input
+    changes ln x by −c_j/b. Of the square that the changes make with their ``correlation``, shape (k, k), the share that
+    chance gives to any input is taken off: that of their covariance, by the scores of the records.
+    """
+    assert capacities.of_record is not None
+    n, k = scores.shape
+    if refusal := _degenerate(capacities):
+        return refusal
+    if n < LEAST_PER_PARAMETER * (k + 2):
+        return f"{n} runs or capacities are too few to tell {k + 2} parameters"
+    likelihood = _Likelihood(capacities, scores)
+    best = likelihood.maximum()
+    if best is None:
+        return NOT_RISING
+    _, b, *factors = best
+    effects = -likelihood.width * np.array(factors) / b
+    if likelihood.value(*best)[0] > -SEPARATED * n:  # nothing is left to chance
+        brackets = (capacities.low > 0) & np.isfinite(capacities.high)
+        if brackets.sum() < LEAST_PER_PARAMETER * (k + 2):
+            return "with them the runs beyond the limit are separated from the others: more of both would tell"
+        return Contribution(math.sqrt(effects @ correlation @ effects), tuple(effects.tolist()), k * (0.0,))
+    slopes, hessian = likelihood.derivatives(best)
+    by_record = capacities.of_record @ slopes @ np.linalg.pinv(hessian, hermitian=True)
+    m = len(by_record)
+    to_effects = np.column_stack((np.zeros(k), -effects / b, -likelihood.width / b * np.eye(k)))
+    covariance = to_effects @ (by_record.T @ by_record * (m / max(m - 1, 1))) @ to_effects.T
+    square = float(effects @ correlation @ effects - (correlation * covariance).sum())
+    errors = np.sqrt(np.diag(covariance))
+    return Contribution(math.sqrt(max(square, 0.0)), tuple(effects.tolist()), tuple(errors.tolist()))
 
 
 def _degenerate(capacities: Capacities) -> str:
@@ -153,72 +212,74 @@ def _degenerate(capacities: Capacities) -> str:
 
 
 class _Likelihood:
-    """ℓ of (a, b), with its scores and Hessian, over ln x brought to mean 0 and deviation 1."""
+    """ℓ of (a, b), with its scores and Hessian, over ln x brought to mean 0 and deviation 1.
 
-    def __init__(self, capacities: Capacities) -> None:
+    There may be further parameters: factors on ``inputs``, shape (n, k).
+    """
+
+    def __init__(self, capacities: Capacities, inputs: Values | None = None) -> None:
         with np.errstate(divide="ignore"):
             low, high = np.log(capacities.low), np.log(capacities.high)
         finite = np.concatenate((low[np.isfinite(low)], high[np.isfinite(high)]))
         self.centre, self.width = float(finite.mean()), float(finite.std())
         self.low, self.high = (low - self.centre) / self.width, (high - self.centre) / self.width
         self.count, self.of_record = capacities.count, capacities.of_record
+        self.inputs = np.empty((len(low), 0)) if inputs is None else inputs
+        self.x1, self.x2 = (
+            np.column_stack((np.ones(len(x)), np.where(np.isinf(x), 0.0, x), self.inputs))
+            for x in (self.low, self.high)
+        )
 
-    def value(self, a: Values, b: Values) -> Values:
-        """Return ℓ, shape (m,); −∞ where a bracket has no probability."""
-        z1, z2 = self._z(a, b)
+    def value(self, *parameters: Values) -> Values:
+        """Return ℓ of a, b and the factors on the inputs, each shape (m,); −∞ where a bracket has no probability."""
+        points = np.array(parameters).reshape(len(parameters), -1).T
+        z1, z2 = self._z(points)
         return (self.count * _log_difference(z1, z2)).sum(axis=-1)
 
-    def _z(self, a: Values, b: Values) -> tuple[Values, Values]:
-        """Return z at both ends of every interval, shape (m, n)."""
-        a, b = np.atleast_1d(a)[:, None], np.atleast_1d(b)[:, None]
-        z1 = np.where(np.isinf(self.low), -np.inf, a + b * np.where(np.isinf(self.low), 0.0, self.low))
-        z2 = np.where(np.isinf(self.high), np.inf, a + b * np.where(np.isinf(self.high), 0.0, self.high))
+    def _z(self, points: Values) -> tuple[Values, Values]:
+        """Return z at both ends of every interval, shape (m, n), for ``points`` of shape (m, 2 + k)."""
+        a, b = points.T[:2, :, None]
+        a = a + points[:, 2:] @ self.inputs.T
+        z1 = np.where(np.isinf(self.low), -np.inf, a + b * self.x1[:, 1])
+        z2 = np.where(np.isinf(self.high), np.inf, a + b * self.x2[:, 1])
         return z1, z2
 
-    def derivatives(self, ab: Values) -> tuple[Values, Values]:
-        """Return the score of one record in each interval, shape (n, 2), and the Hessian, shape (2, 2), of ℓ."""
-        z1, z2 = (z[0] for z in self._z(ab[0], ab[1]))
+    def derivatives(self, point: Values) -> tuple[Values, Values]:
+        """Return the score of one record in each interval, shape (n, 2 + k), and the Hessian, shape (2 + k, 2 + k), of ℓ."""
+        z1, z2 = (z[0] for z in self._z(point[None]))
         log_d = _log_difference(z1, z2)
         g1, g2 = (np.exp(-0.5 * z**2 - 0.5 * math.log(2.0 * math.pi) - log_d) for z in (z1, z2))
-        z1, x1 = np.where(np.isinf(z1), 0.0, z1), np.where(np.isinf(self.low), 0.0, self.low)
-        z2, x2 = np.where(np.isinf(z2), 0.0, z2), np.where(np.isinf(self.high), 0.0, self.high)
-        n = self.count
-        scores = np.column_stack((g2 - g1, g2 * x2 - g1 * x1))
-        h22, h11, h12 = -g2 * (z2 + g2), g1 * (z1 - g1), g1 * g2
-        hessian = np.array(
-            [
-                [(n * (h22 + 2 * h12 + h11)).sum(), (n * (h22 * x2 + h12 * (x1 + x2) + h11 * x1)).sum()],
-                [0.0, (n * (h22 * x2**2 + 2 * h12 * x1 * x2 + h11 * x1**2)).sum()],
-            ]
-        )
-        hessian[1, 0] = hessian[0, 1]
+        z1, z2 = np.where(np.isinf(z1), 0.0, z1), np.where(np.isinf(z2), 0.0, z2)
+        scores = g2[:, None] * self.x2 - g1[:, None] * self.x1
+        h22, h11, h12 = (self.count * h for h in (-g2 * (z2 + g2), g1 * (z1 - g1), g1 * g2))
+        mixed = self.x1.T @ (h12[:, None] * self.x2)
+        hessian = self.x2.T @ (h22[:, None] * self.x2) + mixed + mixed.T + self.x1.T @ (h11[:, None] * self.x1)
         return scores, hessian
 
     def maximum(self) -> Values | None:
-        """Return (a, b) over ln x at the maximum; None if b > 0 does not hold there."""
+        """Return (a, b, …) over standardised ln x at the maximum; None if b > 0 does not hold there."""
         optimum = minimize(
-            lambda ab: -self.value(ab[0], ab[1])[0],
-            np.array([0.0, 1.0]),
-            jac=lambda ab: -self.count @ self.derivatives(ab)[0],
-            hess=lambda ab: -self.derivatives(ab)[1],
+            lambda point: -self.value(*point)[0],
+            np.array([0.0, 1.0, *np.zeros(self.inputs.shape[1])]),
+            jac=lambda point: -self.count @ self.derivatives(point)[0],
+            hess=lambda point: -self.derivatives(point)[1],
             method="trust-exact",
             options={"gtol": 1e-9 * self.count.sum()},
         )
-        return self._plain(optimum.x) if optimum.x[1] > LEAST_SLOPE else None
+        return np.asarray(optimum.x) if optimum.x[1] > LEAST_SLOPE else None
 
     def region(self, best: Values, confidence: float) -> Values:
         """Return the edge of the region where ℓ is within half the χ²₁ quantile of its maximum, in (a, b) over ln x."""
-        centre = np.array([best[0] + best[1] * self.centre, best[1] * self.width])
-        least = self.value(*centre)[0] - 0.5 * ndtri(0.5 + 0.5 * confidence) ** 2
+        least = self.value(*best)[0] - 0.5 * ndtri(0.5 + 0.5 * confidence) ** 2
         # Rays that would be evenly spread if ℓ were quadratic; ℓ is concave, so each leaves the region once
-        scores, hessian = self.derivatives(centre)
+        scores, hessian = self.derivatives(best)
         lower = np.linalg.cholesky(-hessian)
         roots = np.linalg.inv(lower).T
         angles = np.linspace(0.0, 2.0 * math.pi, RAYS, endpoint=False)
         rays = roots @ np.array([np.cos(angles), np.sin(angles)])
 
         def inside(reach: Values) -> npt.NDArray[np.bool_]:
-            return self.value(*(centre[:, None] + reach * rays)) >= least
+            return self.value(*(best[:, None] + reach * rays)) >= least
 
         near, far = np.zeros(RAYS), np.ones(RAYS)
         while (still := inside(far)).any():
@@ -230,9 +291,9 @@ class _Likelihood:
         edge = near * rays
         if self.of_record is not None:
             edge = roots @ _stretch(roots.T @ (self.of_record @ scores).T) @ lower.T @ edge
-        return self._plain(centre[:, None] + edge).T
+        return self.plain(best[:, None] + edge).T
 
-    def _plain(self, ab: Values) -> Values:
+    def plain(self, ab: Values) -> Values:
         """Return (a, b) over ln x from those over what was standardised."""
         b = ab[1] / self.width
         return np.array([ab[0] - b * self.centre, b])

@@ -31,6 +31,8 @@ def of_curves(info: Mapping[str, Any]) -> list[Head]:
         ),
         Head("dispersion", ".2f", "β: standard deviation of the logarithm", value="dispersion"),
         Head(level, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
+        Head("of it drawn", ".2f", "what the drawn inputs contribute to β, as a root of squares",
+             value=lambda curve: curve.get("drawn", {}).get("dispersion")),
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
              value="dispersion_total"),
         Head("by shares", ".3g", info.get("by_shares"), value=lambda curve: curve.get("windows", {}).get("median")),

@@ -3,7 +3,7 @@
 import fnmatch
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,6 +19,8 @@ from rockbatch.analyses.fragility.hazard import (
     root_of_squares,
 )
 from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
+from rockbatch.analyses.fragility.uncertain import SECTIONS as OF_UNCERTAIN
+from rockbatch.analyses.fragility.uncertain import Uncertain, read_uncertain
 from rockbatch.common.grouping import closest
 from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
@@ -70,6 +72,7 @@ class FragilitySpec:
     most_scale: float = math.inf
     censored_below: float = 0.01
     stripes: tuple[StripeRecords, ...] = ()
+    uncertain: Uncertain = field(default_factory=Uncertain)
 
     @property
     def of_runs(self) -> "FragilitySpec":
@@ -152,7 +155,7 @@ FRAGILITY = Section(("fragility",), (
     "method": "type analysis",
 }))  # fmt: skip
 
-SECTIONS = (FRAGILITY, HAZARD, DISPERSION, STRIPE)
+SECTIONS = (FRAGILITY, HAZARD, DISPERSION, STRIPE, *OF_UNCERTAIN)
 """Its tables in a study file."""
 
 
@@ -163,15 +166,16 @@ def read_fragility(study: Study) -> FragilitySpec:
     """
     file = study.file()
     table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
-    read = table.read(FRAGILITY, other=("hazard", "dispersion", "stripe")) if table else {}
+    read = table.read(FRAGILITY, other=("hazard", "dispersion", "stripe", "uncertain")) if table else {}
     limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
     stripes = read_stripes(file, LEVELS[read["measure"]]) if "measure" in read else ()
     levels = _levels(table, read, stripes) if table else ()
     hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
-    dispersions = read_dispersions(file)
+    uncertain = read_uncertain(file, study)
+    dispersions = read_dispersions(file, uncertain.names)
     file.finish()
     settings = {"method": "stripes", "hazard": hazard, "dispersions": dispersions, "stripes": stripes} | read
-    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), **settings)
+    return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), uncertain=uncertain, **settings)
 
 
 def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]) -> tuple[float, ...]:

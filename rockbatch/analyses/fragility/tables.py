@@ -13,7 +13,7 @@ from rockbatch.analyses.fragility.cloud_tables import described_cloud, note_on_c
 from rockbatch.analyses.fragility.curves import Curve
 from rockbatch.analyses.fragility.ida import Capacity
 from rockbatch.analyses.fragility.limit_states import words
-from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.lognormal import Contribution, Values
 from rockbatch.analyses.fragility.risk import Risk, described_hazard, finite_or_nan
 from rockbatch.analyses.fragility.risk import described as described_risk
 from rockbatch.analyses.fragility.study import FragilitySpec
@@ -126,9 +126,18 @@ def described(
         "looked_at": looked_at(curves, spec),
         "by_shares": by_shares(curves),
         "dispersions": [asdict(dispersion) for dispersion in spec.dispersions],
+        "drawn": drawn(spec),
         "hazard": described_hazard(spec),
         "curves": [_described(curve, spec) | {"risk": of_curves.get(id(curve))} for curve in curves],
     }
+
+
+def drawn(spec: FragilitySpec) -> str:
+    """Return which inputs are drawn, and how often, in words; empty if none are."""
+    often = {"ida": "once for each record", "cloud": "once for each run"}.get(
+        spec.method, "once for each record and level"
+    )
+    return f"drawn {often}: {spec.uncertain.words}" if spec.uncertain.inputs else ""
 
 
 def looked_at(curves: Sequence[Curve], spec: FragilitySpec) -> str:
@@ -180,6 +189,10 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "looked": _looked(curve, spec) if spec.method == "ida" else [],
     }
     x = np.linspace(0.0, 1.1 * spec.levels[-1], SAMPLES + 1)[1:]
+    if isinstance(curve.drawn_share, Contribution):
+        each = zip(curve.drawn_share.effects, curve.drawn_share.errors, strict=True)
+        effects = {name: {"effect": s, "error": error} for name, (s, error) in zip(curve.drawn, each, strict=True)}
+        content["drawn"] = {"dispersion": curve.drawn_share.dispersion, "inputs": effects}
     if curve.cloud:
         content["cloud"] = described_cloud(curve, spec)
     if curve.windows:
@@ -255,6 +268,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
     if curve.cloud:
         notes += note_on_cloud(curve, spec)
+    notes.append(_about_drawn(curve))
     if curve.windows and isinstance(curve.windows.fitted, str):
         notes.append(f"no median by shares: {curve.windows.fitted}")
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
@@ -274,3 +288,17 @@ def _about_undecided(curve: Curve) -> str:
     )
     remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
     return f"says little: {remark}" if curve.inconclusive else remark
+
+
+def _about_drawn(curve: Curve) -> str:
+    """Return what each drawn input changes about the capacity, or why that is not known; empty if nothing is drawn."""
+    share = curve.drawn_share
+    if share is None:
+        return ""
+    if isinstance(share, str):
+        return f"what the drawn inputs contribute is not known: {share}"
+    effects = ", ".join(
+        f"{name} {100 * effect:+.1f} ± {100 * error:.1f} %"
+        for name, effect, error in zip(curve.drawn, share.effects, share.errors, strict=True)
+    )
+    return f"a standard deviation of a drawn input changes the capacity by {effects}"

@@ -13,12 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.analyses.sensitivity.columns import SOBOL
-from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, applying, own_values, varied
+from rockbatch.analyses.sensitivity.study import OF_MOTION, Input, SensitivitySpec, Value, applying, own_values
 from rockbatch.batch.plan import Made
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Study
+from rockbatch.study.inputs import varied
 
 RUNS = "sensitivity_runs.csv"
 COLUMNS = ("record", "polarity", "scale", "status", "theta_max_over_alpha", "reason")
@@ -94,7 +95,8 @@ class Design:
 
     def case(self, point: Point) -> Case:
         """Return the case at a point."""
-        return varied(self.cases[point.case], point.values)
+        values = {name: value for name, value in point.values.items() if name not in OF_MOTION}
+        return varied(self.cases[point.case], values)
 
     def some_cases(self) -> tuple[Case, ...]:
         """Return cases spread over the design, enough to compile every kernel that the others need."""

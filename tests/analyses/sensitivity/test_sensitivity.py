@@ -15,7 +15,7 @@ import rockbatch as rb
 from rockbatch.analyses.sensitivity.analysis import answers, counted_as, tornado, values_of
 from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design, indices, low_base_high
 from rockbatch.analyses.sensitivity.section import section
-from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity, varied
+from rockbatch.analyses.sensitivity.study import Input, own_values, read_sensitivity
 from rockbatch.batch.plan import simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
@@ -26,6 +26,7 @@ from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, Yieldin
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
+from rockbatch.study.inputs import varied
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(

@@ -1,0 +1,113 @@
+"""Inputs of analyses that vary a case: quantities of its pier, its base and its devices, by the keys of a study file."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+from rockbatch.common.errors import InputError
+from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
+from rockbatch.study.cases import CASE
+from rockbatch.study.load import Study
+from rockbatch.study.piers import PIER
+from rockbatch.study.restraint_inputs import (
+    IN_KILONEWTONS,
+    in_words,
+    is_of_restraint,
+    values_of_devices,
+    why_none,
+    with_values,
+)
+from rockbatch.study.restraint_keys import DEVICES
+from rockbatch.study.spec import Case
+from rockbatch.toml.kinds import Kind, shown
+from rockbatch.toml.section import Key
+
+OF_PIER = ("alpha", "p", "mu")
+
+_RANGES: dict[str, tuple[Mapping[str, Key], dict[str, str]]] = {
+    "": ({**PIER, **CASE}, {
+        "alpha": "[0.12, 0.16]", "p": "[0.3, 0.5]", "mu": "[2.5, 3.5]", "restitution": "[0.85, 0.95]", "beta": "[30, 90]",
+        "epsilon": "[0.05, 0.3]", "zeta": "[0.02, 0.1]", "eta": "[2.0, 4.0]", "n": "[2, 8]", "stiffness_kN_m": "[1e6, 4e6]",
+        "yield_kN": "[3e4, 6e4]",
+    }),
+    "damper": (DEVICES["damper"], {
+        "force_kN": "[300.0, 600.0]", "f": "[0.01, 0.05]", "yield_mm": "[3.0, 8.0]", "coefficient_kN_s_m": "[500.0, 2000.0]",
+        "nu": "[0.2, 0.8]", "exponent": "[0.3, 1.0]", "brace_kN_m": "[1.0e5, 4.0e5]", "brace": "[2.0, 10.0]",
+    }),
+    "tendon": (DEVICES["tendon"], {
+        "prestress_kN": "[3000.0, 6000.0]", "psi": "[0.2, 0.8]", "stiffness_kN_m": "[2.0e4, 8.0e4]",
+        "yield_kN": "[8000.0, 1.2e4]", "lambda": "[0.5, 2.0]",
+    }),
+    "stop": (DEVICES["stop"], {
+        "gap_mm": "[80.0, 120.0]", "stiffness_kN_m": "[2.0e5, 1.0e6]", "lambda": "[10.0, 40.0]", "restitution": "[0.4, 0.8]",
+    }),
+    "deck_spring": (DEVICES["deck_spring"], {
+        "gap_mm": "[20.0, 60.0]", "stiffness_kN_m": "[2.0e4, 1.0e5]", "lambda": "[0.1, 0.5]", "restitution": "[0.4, 0.8]",
+    }),
+}  # fmt: skip
+"""Keys of a pier and its case, and of its devices, that have ranges, with examples."""
+
+
+def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
+    """Return keys of a pier and its case, or ``of`` a device, as ranges, of their own kind or another."""
+    keys, examples = _RANGES[of]
+    return {
+        name: Key(kind or keys[name].kind, example, keys[name].words, pair=True) for name, example in examples.items()
+    }
+
+
+def varied(case: Case, values: Mapping[str, Any]) -> Case:
+    """Return the case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
+    arguments = dict(values)
+    pier = replace(case.pier, **{name: arguments.pop(name) for name in OF_PIER if name in arguments})
+    for name, ratio in IN_KILONEWTONS.items():
+        if name in arguments:
+            arguments[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, arguments.pop(name))
+    of_restraints = {name: arguments.pop(name) for name in list(arguments) if is_of_restraint(name)}
+    if of_restraints:
+        arguments["restraints"] = with_values(pier, case.base.restraints, of_restraints)
+    return replace(case, pier=pier, base=replace(case.base, **arguments))
+
+
+def values_of(case: Case) -> dict[str, Any]:
+    """Return the values of all quantities that a case may vary; ε, or ζ if that is given instead."""
+    pier = {name: getattr(case.pier, name) for name in OF_PIER}
+    base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
+    base.pop("zeta" if base.get("zeta") is None else "epsilon", None)
+    derived = in_kilonewtons(case.pier, case.base) | values_of_devices(case.pier, case.base.restraints)
+    # To the digits in which studies are written, so that a range may end at the study's own value
+    return pier | base | {name: float(f"{value:.12g}") for name, value in derived.items()}
+
+
+def impossible(case: Case, values: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what is impossible about the case with other values: a sentence each, and the name of the input it is about."""
+    try:
+        changed = varied(case, values)
+        wrong: Sequence[str] = problems(changed.pier, changed.base)
+    except InputError as error:
+        wrong = error.problems
+    return [in_words(problem, values) for problem in wrong]
+
+
+def outside(name: str, ends: Sequence[float], value: float | None, case: Case) -> str:
+    """Return that a range does not hold the value of the case, and one that does; empty if it does, or none is given."""
+    low, high = ends
+    if value is None or low <= value <= high:
+        return ""
+    return (
+        f'{name} = {shown([low, high])}: does not hold the {value:g} of case "{case.name}"; '
+        f"write {name} = {shown([min(low, value), max(high, value)])}"
+    )
+
+
+def why_no_case(name: str, study: Study) -> str:
+    """Return why no case of the study has this input."""
+    if is_of_restraint(name):
+        return why_none(name, study.cases)
+    if name in IN_KILONEWTONS:
+        return "it goes with a pier of known mass (mass_t) on springs"
+    if name in ("epsilon", "zeta") and any(case.base.on_springs for case in study.cases):
+        return (
+            "it goes with springs that have one; write zeta in the case" if name == "zeta" else "zeta takes its place"
+        )
+    return "no case of the study has it"
