@@ -321,7 +321,7 @@ class Pier(InNotebook):
             With every impossible number; part 1 is the first.
         """
         try:
-            parts = [Part(*map(float, part)) for part in parts]
+            parts = [Part(*(None if number is None else float(number) for number in part)) for part in parts]
         except (TypeError, ValueError, OverflowError) as error:
             raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
         wrong = out_of_bounds(width_m=width_m)
