@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.core.kernel import entry
 from rockbatch.core.observe.peaks import RecordedRun
@@ -35,9 +36,33 @@ class Motion(NamedTuple):
 
 MOTION = record(Motion)
 
+Places = npt.NDArray[np.intp]
+"""Numbers of rows in a history."""
 
-class InSections(NamedTuple):
-    """Forces of the part below each section on that above, shape (sections, moments) each: see :class:`Section`."""
+
+class Recorded(NamedTuple):
+    """A run recorded at every step, as forces in its sections are made of it."""
+
+    run: Run
+    rows: np.recarray  # of its history, shape (n,)
+    plain: RecordedRun
+    on_deck: list[tuple[float, Samples]]  # height [m] of each device there, and its push to the left at the rows [m/s²]
+
+
+class InBody(NamedTuple):
+    """Accelerations of a pier at k moments, in the axes of its body, shape (k,) each."""
+
+    across: Samples  # of its centre of mass with gravity, across the axis, to the right [m/s²]
+    along: Samples  # and along it, upwards
+    turning: Samples  # [rad/s²]
+    squared: Samples  # θ̇² [rad²/s²]
+    sine: Samples
+    cosine: Samples
+    on_deck: list[tuple[float, Samples]]  # as of Recorded
+
+
+class InSection(NamedTuple):
+    """Forces of the part below a section on that above, shape (k,) each: see :class:`Section`."""
 
     shear: Samples
     moment: Samples
@@ -66,49 +91,48 @@ def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
 
 
-def _motion(run: Run, rows: np.recarray, numbers: np.ndarray, shares: Samples) -> np.recarray:
-    """Return the Motion of a recorded run at these places; see :func:`_follow`."""
+def recorded(run: Run, rows: np.recarray) -> Recorded:
+    """Return a run whose history at every step is ``rows``."""
     plain, pulls = apart(run.base, rows)
-    recorded = RecordedRun(plain, pulls, None, ground_of(run.motion), float(run.motion.dt))
-    motion = np.recarray(len(numbers), MOTION)
-    _follow(model(run.pier, run.base), recorded, numbers, shares, motion)
-    if not run.base.on_springs:  # in flight its shear key holds the pivot that bore last
-        motion.side = np.where(motion.side != 0.0, motion.side, rows.bore[numbers])
-    return motion
+    whole = RecordedRun(plain, pulls, None, ground_of(run.motion), float(run.motion.dt))
+    return Recorded(run, rows, whole, deck_pulls(run.pier, run.base, rows))
 
 
-def in_sections(
-    run: Run, rows: np.recarray, heights: Sequence[float], numbers: np.ndarray, shares: Samples
-) -> InSections:
-    """Return the forces in sections at ``heights`` [m], at each of ``shares`` of the step to the row of this number.
+def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
+    """Return the accelerations at each of ``shares`` of the step to the row of this number.
 
-    Forces of devices on the deck are linear within a step.
+    Forces of devices are linear within a step.
     """
-    pier, motion = run.pier, _motion(run, rows, numbers, shares)
+    pier, base = of.run.pier, of.run.base
+    motion = np.recarray(len(numbers), MOTION)
+    _follow(model(pier, base), of.plain, numbers, shares, motion)
+    # In flight the shear key of a block holds the pivot that bore last
+    side = motion.side if base.on_springs else np.where(motion.side != 0.0, motion.side, of.rows.bore[numbers])
     sine, cosine, squared = np.sin(motion.theta), np.cos(motion.theta), motion.omega**2
-    b, h = motion.side * pier.half_width, pier.height
-    across = (h * cosine + b * sine) * motion.turning + (b * cosine - h * sine) * squared
-    if run.base.kinematics == "first-order":
-        sine, cosine, across = motion.theta, np.ones(len(numbers)), h * motion.turning
-    horizontal, vertical = motion.horizontal + across, pier.gravity + motion.vertical + motion.v_acceleration
-    shear, axial = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
-    result = InSections(*np.empty((3, len(heights), len(numbers))))
+    b, h = side * pier.half_width, pier.height
+    sideways = (h * cosine + b * sine) * motion.turning + (b * cosine - h * sine) * squared
+    if base.kinematics == "first-order":
+        sine, cosine, sideways = motion.theta, np.ones(len(numbers)), h * motion.turning
+    horizontal, vertical = motion.horizontal + sideways, pier.gravity + motion.vertical + motion.v_acceleration
+    across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
     on_deck = [
-        (height, pull[numbers - 1] + shares * (pull[numbers] - pull[numbers - 1]))
-        for height, pull in deck_pulls(pier, run.base, rows)
+        (height, push[numbers - 1] + shares * (push[numbers] - push[numbers - 1])) for height, push in of.on_deck
     ]
-    for i, height in enumerate(heights):
-        part = above(pier, height)
-        centre = height + part.rise - h  # from the centre of mass of the pier
-        result.shear[i] = part.share * (shear + centre * motion.turning)
-        result.axial[i] = part.share * (axial - centre * squared)
-        result.moment[i] = -part.rise * result.shear[i] - part.inertia * motion.turning
-        for place, pull in on_deck:
-            if place >= height:
-                result.shear[i] += pull * cosine
-                result.axial[i] += pull * sine
-                result.moment[i] -= (place - height) * pull * cosine
-    return result
+    return InBody(across, along, motion.turning, squared, sine, cosine, on_deck)
+
+
+def in_section(pier: Pier, body: InBody, height: float) -> InSection:
+    """Return the forces in the section at ``height`` [m] (THEORY.md, Forces in sections)."""
+    part = above(pier, height)
+    centre = height + part.rise - pier.height  # from the centre of mass of the pier
+    shear = part.share * (body.across + centre * body.turning)
+    axial = part.share * (body.along - centre * body.squared)
+    moment = -part.rise * shear - part.inertia * body.turning
+    for place, push in body.on_deck:
+        if place >= height:
+            shear, axial = shear + push * body.cosine, axial + push * body.sine
+            moment = moment - (place - height) * push * body.cosine
+    return InSection(shear, moment, axial)
 
 
 def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[Section]:
@@ -119,25 +143,26 @@ def sections_of(run: Run, rows: np.recarray, heights: Sequence[float]) -> list[S
     """
     standing = np.flatnonzero(np.abs(rows.theta) <= run.pier.alpha)
     rows = rows[: standing[-1] + 1].view(np.recarray)
-    ends = np.arange(len(rows))
+    of, ends = recorded(run, rows), np.arange(len(rows))
     steps = ends[1:][(rows.t[1:] > rows.t[:-1]) & (rows.kind[1:] <= 0.0)]
-    at_ends, between = in_sections(run, rows, heights, ends, np.ones(len(ends))), None
-    _let_go(rows, at_ends)
-    numbers, shares = steps, np.full(len(steps), 0.5)
-    if len(steps):
-        between = in_sections(run, rows, heights, numbers, shares)
-        numbers, shares = _promising(at_ends, between, steps)
-    whole = [at_ends] if between is None else [at_ends, between, in_sections(run, rows, heights, numbers, shares)]
-    shear, moment, axial = (np.concatenate(values, axis=1) for values in zip(*whole, strict=True))
-    bent = np.abs(moment).argmax(axis=1)
-    columns = (
-        heights, np.abs(shear).max(axis=1), np.abs(moment).max(axis=1), axial.min(axis=1), axial.max(axis=1),
-        axial[np.arange(len(heights)), bent],
-    )  # fmt: skip
-    return [Section(*map(float, values)) for values in zip(*columns, strict=True)]
+    at_ends = in_body(of, ends, np.ones(len(ends)))
+    middles = in_body(of, steps, np.full(len(steps), 0.5))
+    return [_section(of, at_ends, middles, steps, height) for height in heights]
 
 
-def _let_go(rows: np.recarray, forces: InSections) -> None:
+def _section(of: Recorded, at_ends: InBody, middles: InBody, steps: Places, height: float) -> Section:
+    """Return the greatest forces in the section at ``height``; ``middles`` are those of the ``steps``."""
+    pier = of.run.pier
+    ends, halves = in_section(pier, at_ends, height), in_section(pier, middles, height)
+    _let_go(of.rows, ends)
+    turns = in_section(pier, in_body(of, *_promising(ends, halves, steps)), height)
+    shear, moment, axial = (np.concatenate(values) for values in zip(ends, halves, turns, strict=True))
+    bent = int(np.abs(moment).argmax())
+    forces = np.abs(shear).max(), np.abs(moment).max(), axial.min(), axial.max(), axial[bent]
+    return Section(height, *map(float, forces))
+
+
+def _let_go(rows: np.recarray, forces: InSection) -> None:
     """Give all rows of the instant at which a block leaves its rest the forces after it.
 
     They differ where a motion begins with a jump, which the ground cannot hold the block against.
@@ -145,23 +170,21 @@ def _let_go(rows: np.recarray, forces: InSections) -> None:
     for row in np.flatnonzero((rows.kind == LIFT_OFF) | (rows.kind == TAKE_OFF)):
         first = int(np.searchsorted(rows.t, rows.t[row]))
         for values in forces:
-            values[:, first:row] = values[:, row : row + 1]
+            values[first:row] = values[row]
 
 
-def _promising(ends: InSections, middles: InSections, steps: np.ndarray) -> tuple[np.ndarray, Samples]:
+def _promising(ends: InSection, middles: InSection, steps: Places) -> tuple[Places, Samples]:
     """Return the steps, and the share of each, at which a parabola through its ends and middle promises a new extreme."""
     places: set[tuple[int, float]] = set()
-    for at_ends, middle in zip(ends, middles, strict=True):
-        for values, half in zip(at_ends, middle, strict=True):
-            slope, bend = values[steps] - values[steps - 1], values[steps - 1] + values[steps] - 2.0 * half
-            turns = np.abs(slope) < 2.0 * np.abs(bend)
-            share = 0.5 - slope[turns] / (4.0 * bend[turns])
-            promised = half[turns] - slope[turns] ** 2 / (8.0 * bend[turns])
-            least, most = min(values.min(), half.min()), max(values.max(), half.max())
-            for chosen in (promised < least, promised > most):
-                numbers = np.flatnonzero(chosen)
-                best = numbers[np.argsort(-np.abs(promised[numbers]), kind="stable")[:MOST_TURNS]]
-                places.update(zip(steps[turns][best].tolist(), share[best].tolist(), strict=True))
+    for values, half in zip(ends, middles, strict=True):
+        slope, bend = values[steps] - values[steps - 1], values[steps - 1] + values[steps] - 2.0 * half
+        turns = np.flatnonzero(np.abs(slope) < 2.0 * np.abs(bend))
+        slope, bend, half = slope[turns], bend[turns], half[turns]
+        share, promised = 0.5 - slope / (4.0 * bend), half - slope**2 / (8.0 * bend)
+        for beyond in (values.min() - promised, promised - values.max()):
+            best = np.argsort(-beyond, kind="stable")[:MOST_TURNS]
+            best = best[beyond[best] > 0.0]
+            places.update(zip(steps[turns][best].tolist(), share[best].tolist(), strict=True))
     ordered = sorted(places)
     return np.array([i for i, _ in ordered], np.intp), np.array([s for _, s in ordered])
 

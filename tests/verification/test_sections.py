@@ -8,10 +8,11 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.pier.sections import section_heights
+from rockbatch.simulation import sections as of_sections
 from rockbatch.simulation.forces import at_rows
 from rockbatch.simulation.histories import written
 from rockbatch.simulation.runs import Run, run_fixed
-from rockbatch.simulation.sections import in_sections, sections_of
+from rockbatch.simulation.sections import InSection, in_body, in_section, sections_of
 
 G = 9.81
 SUBSTEPS = 20
@@ -109,6 +110,12 @@ def recorded(pier, base, motion, substeps=SUBSTEPS):
     run = Run(pier, base, motion)
     outcome = run_fixed(pier, base, motion, substeps, 0.2, wait=False)
     return run, written(run, outcome, 0.2, True, wait=False)
+
+
+def in_sections(run, rows, heights, numbers, shares):
+    """Shear, moment and axial force, shape (heights, moments) each."""
+    body = in_body(of_sections.recorded(run, rows), numbers, shares)
+    return InSection(*map(np.array, zip(*(in_section(run.pier, body, height) for height in heights), strict=True)))
 
 
 def check_against_points(seed, base, vertical, k_deck=0.0):
