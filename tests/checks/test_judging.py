@@ -63,6 +63,15 @@ def test_each_case_has_the_rows_with_its_values_in_their_order():
     assert chosen == [[0, 2, 5], [0, 2, 3, 5], [1], [1, 4], []]
 
 
+@pytest.mark.parametrize(
+    ("limit", "confirm", "noted"), [(20.0, (), False), (21.0, (), True), (21.0, ("at_most",), False)]
+)
+def test_a_limit_that_no_run_comes_near_is_noted_unless_it_is_confirmed(limit, confirm, noted):
+    verdict = judged(runs([0.1, 0.2]), at_most=limit, confirm=confirm)
+    assert verdict.verdict == "pass"
+    assert ('0.2 is below 0.01 of the limit; check its unit, or write confirm = ["at_most"]' in verdict.note) is noted
+
+
 # Statistics
 
 
