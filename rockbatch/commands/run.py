@@ -13,7 +13,7 @@ from rockbatch.commands import check
 from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
-from rockbatch.commands.summary import failed_later, flexible, summary, warnings
+from rockbatch.commands.summary import failed_later, flexible, of_targets, summary, warnings
 from rockbatch.results.beside_peaks import write_semicolons
 from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.suite_statistics import reasons_of_failure
@@ -72,7 +72,7 @@ def _finished(finished: FinishedBatch, study: Study, separator: str | None) -> i
     show(summary(peaks, study.varied, names) + "\n")
     for warning in warnings(peaks.assign(record=peaks["record"].map(names)), study.varied):
         say(warning)
-    for warning in flexible(study):
+    for warning in (*flexible(study), *of_targets(saved.info)):
         say(warning)
     if finished.verdicts:
         code = max(code, check.tell(finished.verdicts, saved.directory / CHECKS, saved))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.batch.listening import count
+from rockbatch.checks.suite_target import NAMES
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
@@ -74,6 +75,12 @@ def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
         ),
     ]  # fmt: skip
     return [sentence for sentence in sentences if sentence]
+
+
+def of_targets(info: Mapping[str, Any]) -> list[str]:
+    """Return remarks on the target spectra of a run.json (``info``), a sentence each."""
+    targets = (info.get(name) or {} for name in NAMES)
+    return [f"target spectrum: {remark}" for target in targets for remark in target.get("remarks") or ()]
 
 
 def failed_later(runs: "pd.DataFrame") -> str:

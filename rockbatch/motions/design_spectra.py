@@ -4,7 +4,7 @@ import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,14 @@ class Spectrum(Protocol):
     @property
     def limits(self) -> tuple[float, float]:
         """Least and largest period [s] for which it is defined."""
+
+    @property
+    def of_code(self) -> bool:
+        """True of a code's spectrum, False of a table."""
+
+    @property
+    def beyond(self) -> str:
+        """A limit of the code that its values exceed, and which is not applied; empty if they exceed none."""
 
     def at(self, periods: Array) -> Array:
         """Return the spectral acceleration [g] at periods [s], shape (n,); NaN where it is not defined."""
@@ -80,6 +88,8 @@ class EurocodeSpectrum:
     name: str = "EN 1998-1"
     limits: tuple[float, float] = (0.0, 4.0)
     amplification: float = 2.5
+    of_code: ClassVar[bool] = True
+    beyond: ClassVar[str] = ""
 
     def __str__(self) -> str:
         symbol = "a_vg" if self.shape == VERTICAL_SHAPE else "a_g"
@@ -105,6 +115,8 @@ class AsceSpectrum:
     tl_s: float
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, math.inf)
+    of_code: ClassVar[bool] = True
+    beyond: ClassVar[str] = ""
 
     def __str__(self) -> str:
         return f"ASCE 7, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, T_L = {self.tl_s:g} s, 5 %"
@@ -128,6 +140,8 @@ class AashtoSpectrum:
     sd1_g: float
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, math.inf)
+    of_code: ClassVar[bool] = True
+    beyond: ClassVar[str] = ""
 
     def __str__(self) -> str:
         return f"AASHTO, A_s = {self.as_g:g} g, S_DS = {self.sds_g:g} g, S_D1 = {self.sd1_g:g} g, 5 %"
@@ -163,6 +177,9 @@ NZS_1170_5 = {
 FAR_KM = 20.0
 """Distance from a major fault beyond which NZS 1170.5 has no near-fault factor."""
 
+MOST_ZR = 0.7
+"""Greatest Z R of NZS 1170.5, 3.1.1, as programs implement it."""
+
 
 @dataclass(frozen=True)
 class NzsSpectrum:
@@ -178,10 +195,23 @@ class NzsSpectrum:
     fault_km: float = math.inf
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, 4.5)
+    of_code: ClassVar[bool] = True
 
     def __str__(self) -> str:
         near = f", D = {self.fault_km:g} km" if self.fault_km < FAR_KM else ""
         return f"NZS 1170.5 subsoil {self.subsoil}, Z = {self.hazard_factor:g}, R = {self.return_period_factor:g}{near}, 5 %"
+
+    @property
+    def beyond(self) -> str:
+        """See :class:`Spectrum`."""
+        product = self.hazard_factor * self.return_period_factor
+        if product <= MOST_ZR * (1.0 + 1e-9):
+            return ""
+        return (
+            f"Z R = {product:.3g}, which NZS 1170.5, 3.1.1, as programs implement it, limits to {MOST_ZR:g}: the target is "
+            f"{product / MOST_ZR:.2f} times that; for the limited one write return_period_factor = "
+            f"{MOST_ZR / self.hazard_factor:.4g}"
+        )
 
     def at(self, periods: Array) -> Array:
         """See :class:`Spectrum`."""
@@ -208,6 +238,8 @@ class TableSpectrum:
     damping: float = 0.05
     name: str = "table"
     linear: bool = False
+    of_code: ClassVar[bool] = False
+    beyond: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         wrong = []

@@ -26,6 +26,11 @@ PAIRS = {"apart": 0.9, "srss": 1.3, "geomean": 1.0, "rotd50": 1.0, "rotd100": 0.
 
 _A_DECADE = 20  # periods
 
+_APART = (
+    'pairs = "apart": each of two components of a station counts by itself, though codes judge the pair; if that is not meant, '
+    'write pairs = "srss" (EN 1998-2) or "rotd100" (ASCE 7)'
+)
+
 
 @dataclass(frozen=True)
 class SpectrumTarget:
@@ -152,6 +157,12 @@ class SpectrumTarget:
     def _is_alone(self, station: Sequence[Motion]) -> bool:
         return bool(unpaired(station)) if self.pairs in DIRECTIONS else len(station) != 2
 
+    def remarks(self, motions: Sequence[Motion]) -> list[str]:
+        """Return what to consider about the target of these ``motions``, a sentence each."""
+        paired = any(len(station) == 2 for station in _stations(motions))
+        apart = self.pairs == "apart" and self.spectrum.of_code and paired
+        return list(filter(None, (self.spectrum.beyond, _APART if apart else "")))
+
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
         """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used, 0 of none."""
         return {
@@ -163,6 +174,7 @@ class SpectrumTarget:
             "alone": sum(self._is_alone([motions[i] for i in station]) for station in _stations(motions)),
             "at_least": self.share,
             "required": self.factors != "none" or self.at_least is not None,
+            "remarks": self.remarks(motions),
             "period_s": _short(self.periods),
             "sa_g": _short(self.spectrum.at(self.periods)),
             "mean_sa_g": _short(np.nan_to_num(self.mean(motions, self.periods, gravity))),

@@ -44,7 +44,7 @@ _SPECTRA = {
 _TARGET = {
     "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
     "alone": int, "at_least": float, "required": Maybe(bool), "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
-    "components_sa_g": Maybe([float]),
+    "components_sa_g": Maybe([float]), "remarks": Maybe([str]),
 }  # fmt: skip
 
 SHAPE = {

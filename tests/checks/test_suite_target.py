@@ -1,5 +1,6 @@
 """A suite below its target spectrum fails a check of its own, which comes first and decides; one that reaches it passes."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from rockbatch.checks.answer import answer
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
+from rockbatch.motions.design_spectra import TableSpectrum
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
@@ -185,3 +187,33 @@ def test_pulses_are_in_no_mean_that_is_held_against_a_target(tmp_path):
     assert len(motions.motions) == len(info["records"]) + 1
     assert with_pulse["target"] == info["target"]
     np.testing.assert_array_equal(with_pulse["spectra"]["mean_sa_g"], info["spectra"]["mean_sa_g"])
+
+
+def test_a_target_beyond_a_limit_of_its_code_and_components_apart_are_remarked_on_and_not_refused(tmp_path, capsys):
+    """Z R = 0.74 of NZS 1170.5, which caps it at 0.7, and a code's spectrum for each component of five pairs."""
+    near_fault(tmp_path, factors="none")
+    assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1
+    cap, pairs = "Z R = 0.74, which NZS 1170.5, 3.1.1", 'pairs = "apart": each of two components'
+    told = capsys.readouterr().err
+    page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8")).text
+    for shown in (told, page):
+        assert cap in shown
+        assert pairs in shown
+        assert "return_period_factor = 1.75" in shown
+
+
+@pytest.mark.parametrize(
+    ("keys", "remarks"),
+    [
+        ({"return_period_factor": 1.75, "pairs": "srss"}, 0),
+        ({"return_period_factor": 1.75}, 1),
+        ({"return_period_factor": 1.76, "pairs": "srss"}, 1),
+    ],
+)
+def test_remarks_on_a_target_are_for_what_is_beyond_it_only(tmp_path, keys, remarks):
+    study = near_fault(tmp_path, factors="none", **keys)
+    motions, target = ground_motions(study).motions, study.motions.target
+    assert len(target.remarks(motions)) == remarks
+    one_each = list({motion.of_station: motion for motion in motions}.values())
+    assert len(target.remarks(one_each)) == remarks - ("pairs" not in keys)
+    assert not replace(target, spectrum=TableSpectrum((0.1, 4.0), (1.0, 0.2))).remarks(motions)
