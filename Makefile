@@ -13,7 +13,7 @@ export OMP_NUM_THREADS := 1
 # What is imported is compiled then: compiling all of the packages takes as long as unpacking them.
 INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --editable
 
-.PHONY: run test lint slow thorough mutants pythons docs screenshots package clean
+.PHONY: run test lint slow thorough mutants pythons docs screenshots figures package clean
 
 run: $(VENV)/.run
 	$(BIN)/rockbatch run configs/near_fault.toml
@@ -53,6 +53,10 @@ docs: $(VENV)/.docs
 screenshots: $(VENV)/.run
 	$(BIN)/python -m pip install --quiet pypdfium2
 	$(BIN)/python docs/screenshots/take.py
+
+# What the pages state of measurements, measured again (benchmarks/figures.py): half an hour, with LONG=1 hours.
+figures: $(VENV)/.test
+	$(BIN)/python benchmarks/figures.py $(if $(LONG),--long)
 
 # Both files of a release in dist/, checked, and the wheel used from an environment that its user cannot write to.
 package:

@@ -58,3 +58,9 @@ def test_one_command_writes_a_version_wherever_it_stands(tmp_path):
     with pytest.raises(SystemExit, match=r"CHANGELOG\.md: found 0 places"):
         script["set_version"](tmp_path, "7.2.0", date(2031, 7, 8))
     assert "7.1.0" in files["rockbatch/common/version.py"].read_text()
+
+
+def test_no_pattern_has_a_possessive_group():
+    """Python 3.11.2, which Debian 12 has, takes ``1.5E`` for a match of ``(?:\\d\\.\\d(?:E\\d)?+)++``."""
+    sources = {path.name: path.read_text(encoding="utf-8") for path in (ROOT / "rockbatch").rglob("*.py")}
+    assert {name: found for name, text in sources.items() if (found := re.findall(r".*\)[*+?]\+.*", text))} == {}

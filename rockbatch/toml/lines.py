@@ -10,12 +10,13 @@ KeyPath = tuple[str | int, ...]
 _DEEPEST = 32  # tables and lists within one another
 _MOST_ELEMENTS = 10_000  # of a list whose lines are kept; the others are where the list begins
 
-# possessive throughout (++, *+): a file takes time in proportion to its size, whatever it holds
+# A file takes time in proportion to its size, whatever it holds: characters are possessive (*+), and groups end in one way only.
+# Groups are not possessive: Python 3.11.2 does not go back to where an iteration began that fails.
 _STRING = "|".join(
     (
-        r'"""(?:[^"\\]++|\\.|"{1,2}(?!"))*+"""(?:"{0,2})',  # one or two quotes may stand before the closing three
-        r"'''(?:[^']++|'{1,2}(?!'))*+'''(?:'{0,2})",
-        r'"(?:[^"\\\n]++|\\.)*+"',
+        r'"""[^"\\]*+(?:(?:\\.|"{1,2}(?!"))[^"\\]*+)*"""(?:"{0,2})',  # one or two quotes may stand before the closing three
+        r"'''[^']*+(?:'{1,2}(?!')[^']*+)*'''(?:'{0,2})",
+        r'"[^"\\\n]*+(?:\\.[^"\\\n]*+)*"',
         r"'[^'\n]*+'",
     )
 )
@@ -23,7 +24,7 @@ _TOKENS = {
     "string": re.compile(_STRING, re.DOTALL),
     "key": re.compile(rf"[A-Za-z0-9_-]+|{_STRING}", re.DOTALL),
     "space": re.compile(r"[ \t]*"),
-    "blank": re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+"),
+    "blank": re.compile(r"[ \t\r\n]*+(?:#[^\n]*+[ \t\r\n]*+)*"),
     "plain": re.compile(r"[^,\]}#\n]*"),  # a number, a boolean or a date
 }
 

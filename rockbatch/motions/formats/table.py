@@ -21,7 +21,7 @@ WRAPPED = (
 _LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
 _PIECE = 10_000  # lines that are read at once
 _TOUCHING = re.compile(  # with points, unlike a date such as 2010-11-14; possessive: digits may end one number or begin the next
-    r"\s*+(?:[-+]?\d*+\.\d++(?:[EDed][-+]?\d++)?+\s*+)++"
+    r"\s*+(?:[-+]?\d*+\.\d++(?:[EDed][-+]?\d++)?\s*+)+"  # but for the groups: Python 3.11.2 errs there
 )
 _END = re.compile(r"[*=/&-]+")  # of a table, in a line of its own
 _CONTINUED = "\\ \t"  # what some programs put behind each line
