@@ -150,6 +150,10 @@ class Part(NamedTuple):
         return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0, height_m)
 
 
+def _in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:
+    return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
+
+
 def _length_problems(n: int, part: Part) -> list[str]:
     """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
     length = part.length_m
@@ -321,7 +325,7 @@ class Pier(InNotebook):
             With every impossible number; part 1 is the first.
         """
         try:
-            parts = [Part(*(None if number is None else float(number) for number in part)) for part in parts]
+            parts = [_in_floats(*part) for part in parts]
         except (TypeError, ValueError, OverflowError) as error:
             raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
         wrong = out_of_bounds(width_m=width_m)
