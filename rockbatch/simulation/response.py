@@ -94,7 +94,7 @@ class Response(Shown):
 
     sections : DataFrame or None
         Where it was asked for, the greatest forces in sections of the shaft, a row for each, in the columns of
-        ``sections.csv`` that are not names of the run.
+        ``sections.csv`` that are not names of the run. ``None`` in responses of a folder, whose ``sections`` has all runs.
 
     Examples
     --------

@@ -182,8 +182,8 @@ def _promising(ends: InSection, middles: InSection, steps: Places) -> tuple[Plac
         slope, bend, half = slope[turns], bend[turns], half[turns]
         share, promised = 0.5 - slope / (4.0 * bend), half - slope**2 / (8.0 * bend)
         for beyond in (values.min() - promised, promised - values.max()):
-            best = np.argsort(-beyond, kind="stable")[:MOST_TURNS]
-            best = best[beyond[best] > 0.0]
+            more = np.flatnonzero(beyond > 0.0)
+            best = more[np.argsort(-beyond[more], kind="stable")[:MOST_TURNS]]
             places.update(zip(steps[turns][best].tolist(), share[best].tolist(), strict=True))
     ordered = sorted(places)
     return np.array([i for i, _ in ordered], np.intp), np.array([s for _, s in ordered])

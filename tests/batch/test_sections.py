@@ -23,7 +23,7 @@ def study_of(folder, *, pier=PIER, cases=(RIGID,), **tables):
 
 
 def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_path):
-    text = {"output": {"sections": 3, "histories": "none"}, "check": CHECKS, "motions": {"polarity": ["+", "-"]}}
+    text = {"output": {"sections": 3}, "check": CHECKS, "motions": {"polarity": ["+", "-"]}}
     path, out = study_of(tmp_path, cases=[RIGID, PADS], **text), tmp_path / "out"
     main(["run", str(path), "--out", str(out), "--jobs", "2"])
     results, study = rb.open_results(out), rb.load_study(path)
@@ -39,6 +39,7 @@ def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_
         expected = response.sections
         pd.testing.assert_frame_equal(rows[list(MEANING)].reset_index(drop=True), expected, rtol=1e-9, atol=1e-9)
 
+    assert [response.pier for response in results.responses] == [case.pier for case in study.cases]  # with its parts
     checks = rb.check(results)
     assert checks["verdict"].tolist() == ["pass", "fail"] * 2
     worst = table[(table["case"] == "pads") & (table["height_m"] == 7.0)]["section_moment_kNm"].max()

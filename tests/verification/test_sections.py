@@ -24,6 +24,8 @@ BASES = {
     "rigid": rb.RigidBase(),
     "first-order": rb.ElasticBase(60.0, 0.2),
     "finite": rb.ElasticBase(60.0, 0.2, kinematics="finite"),
+    "damped": rb.ElasticBase(60.0, zeta=0.05),
+    "yielding": rb.YieldingBase(60.0, 0.2, eta=2.5),
 }
 
 
@@ -180,7 +182,7 @@ def test_forces_at_the_foot_are_those_of_the_ground_turned_into_the_axes_of_the_
     side = side if base.on_springs else np.where(side != 0.0, side, rows.bore)
     to_right, up = side * pier.half_width * (1.0 - cosine), side * pier.half_width * sine
     shear, moment = forces.shear, forces.moment + up * forces.shear - to_right * forces.normal
-    if name == "first-order":  # the moment of the ground alone is about the pivot there (THEORY.md, Forces)
+    if base.kinematics == "first-order":  # the moment of the ground alone is about the pivot there (THEORY.md, Forces)
         ground = np.interp(rows.t, np.arange(run.motion.npts) * 0.01, run.motion.horizontal)
         sine, cosine = rows.theta, 1.0
         moment = forces.moment + side * pier.half_width * rows.theta * ground * (rows.t < 2.99)
