@@ -134,8 +134,7 @@ _SHAPES = names({
 PULSE = Section(("motions", "pulse"), "A pulse, without a file. Write one for each pulse.", {
     "name": Key(text, '"sine 0.5 s"', "Its name in tables.", required=True),
     "shape": Key(choice(*SHAPES, called=_SHAPES), '"sine"', "Formula of the acceleration.", required=True),
-    "amplitude_g": Key(nonzero, "0.5", "Peak acceleration.", required=True,
-        usual=Usual(math.inf, "g: pulses of near-fault records have 0.1 to 1", 0.001)),
+    "amplitude_g": Key(nonzero, "0.5", "Peak acceleration.", required=True),
     "period_s": Key(positive, "1.0", "Period of the pulse.", required=True,
         usual=Usual(100.0, "s: pulses of near-fault records have 0.5 to 10", 0.01)),
     "dt_s": Key(positive, "0.005", "Sampling interval. Results depend on it, so state it with them.", required=True),

@@ -42,9 +42,9 @@ class Dispersion:
     without: tuple[str, ...] = ()
 
 
-IN_G = Usual(10.0, "g: the strongest earthquakes had a PGA of 2 to 4 g, and Sa to 8 g", 0.001)
-IN_M_S = Usual(10.0, "m/s: the strongest earthquakes had some 3 m/s", 0.001)
-"""Usual levels of intensity."""
+IN_G = Usual(10.0, "g: the strongest earthquakes had a PGA of 2 to 4 g, and Sa to 8 g")
+IN_M_S = Usual(10.0, "m/s: the strongest earthquakes had some 3 m/s")
+"""Usual levels of intensity, small ones too: slender blocks overturn at next to nothing."""
 
 _RATES = ("rate_per_year", "return_period_years")
 HAZARD = Section(("fragility", "hazard"), (

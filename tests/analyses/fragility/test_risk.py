@@ -281,7 +281,7 @@ def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
     ("hazard", "message"),
     [
         ({}, "it has no points; write for example levels_g = "),
-        ({"levels_g": [0.1, 0.2], "rate_per_year": [475, 2475]}, "a rate of 2475 per year: is it a return period"),
+        ({"levels_g": [0.1, 0.2], "rate_per_year": [475, 2475]}, "return periods are return_period_years"),
         ({"levels_g": [0.1, 0.2], "rate_per_year": [0.01, 0.02]}, "0.02 per year at 0.2 after 0.01 at 0.1: a stronger motion"),
         ({"levels_g": [0.2, 0.1], "rate_per_year": [0.02, 0.01]}, "level 0.1 after 0.2: write them in rising order"),
         ({"levels_g": [0.2, 0.1, 0.3], "rate_per_year": [0.02, 0.01]}, "3 levels and 2 rates"),
