@@ -91,6 +91,11 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
+    "devices_work": Key(boolean, "true",
+        "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
+        "tendons over their yield strain."),
+    "least_stroke_mm": Key(positive, "20.0",
+        "Stroke, from end to end, from which half cycles of dampers count.", only={"devices_work": (True,)}),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
 }), instead=names({
