@@ -38,6 +38,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         numerics=(
             study.numerics,
             *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking", "least_normal_share")),
+            study.output.least_stroke,
         ),
     )
 

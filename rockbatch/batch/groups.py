@@ -17,7 +17,7 @@ MOST_STEPS_OF_A_LEDGER = 1_000_000
 """Longer runs have no energy balance in the table: each is recorded whole, 100 bytes a step, and its energies beside it."""
 
 MOST_STEPS_OF_FORCES = 5_000_000
-"""Longer runs have no forces in the table: each is recorded whole, half a gigabyte."""
+"""Longer runs have no forces, and no work of devices, in the table: each is recorded whole, half a gigabyte."""
 
 LEAST_GROUP, MOST_GROUP = 32, 1024
 """Runs in a group: enough to fill the lanes; few enough that little is lost when the last ones leave them empty."""
@@ -116,6 +116,9 @@ def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, st
     try:
         least = output.least_normal_share if sized else None
         fixed = numerics.substeps is not None
-        return with_observed(run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least, error=not fixed)
+        stroke = output.least_stroke if steps <= MOST_STEPS_OF_FORCES else None
+        return with_observed(
+            run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least, error=not fixed, least_stroke=stroke
+        )
     except InputError:  # too many impacts to be written down
         return outcome

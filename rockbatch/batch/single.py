@@ -22,7 +22,7 @@ from rockbatch.simulation.response import Response
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.shocks import by_shock
 from rockbatch.study import Case, Numerics
-from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE
+from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Output
 
 
 class Steps(TypedDict, total=False):
@@ -43,6 +43,7 @@ def simulate(
     ledger: bool = False,
     forces: bool = False,
     sections: int | Sequence[float] = (),
+    devices_work: bool = False,
     least_normal_share: float = LEAST_NORMAL_SHARE,
     wait: bool = True,
     initial_rotation_rad: float | None = None,
@@ -63,6 +64,8 @@ def simulate(
     sections : int or list of float
         Heights [m] of sections of the shaft, or how many from its foot to its top, whose greatest forces are kept too
         (THEORY.md, Forces in sections).
+    devices_work : bool
+        Add the work of devices to the row, as ``[output] devices_work`` of a study; :meth:`Response.device_work` has it of each.
     least_normal_share : float
         With the forces: share of the weight that the normal force has to exceed for friction to count, above 0 and below 1; as
         ``[output] least_normal_share`` of a study, which :func:`rockbatch.run` takes.
@@ -109,7 +112,7 @@ def simulate(
     response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
     outcome = with_observed(
         run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
-        error=numerics.substeps is None, wait=wait,
+        error=numerics.substeps is None, least_stroke=Output(devices_work=devices_work).least_stroke, wait=wait,
     )  # fmt: skip
     if heights:
         found = forces_in_sections(run, outcome, numerics.quiet_s, heights, error=numerics.substeps is None, wait=wait)

@@ -22,7 +22,7 @@ BASES_IN_WORDS = {
 
 ENDINGS = {
     "m": "m", "s": "s", "rad": "rad", "m/s": "m_s", "1/s": "per_s", "m/s^2": "m_s2", "m^2/s^2": "m2_s2", "J/kg": "J_kg",
-    "kN": "kN", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
+    "kN": "kN", "kJ": "kJ", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
 }  # fmt: skip
 """Ends of names by their units, as pint reads these."""
 

@@ -15,6 +15,8 @@ from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.compilation import kernel_of
+from rockbatch.simulation.device_work import with_work
+from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.simulation.leaning import Apart, apart, may_lean, with_error_of_rocking, with_rocking
@@ -191,31 +193,39 @@ def with_observed(
     ledger: bool,
     least_normal: float | None,
     error: bool,
+    least_stroke: float | None = None,
     wait: bool = True,
 ) -> Outcome:
     """Return ``outcome`` with what observers make of the run, recorded at every step.
 
     These are, if ``ledger``, the energy balance at its end, with the greatest residual on the way; and the greatest forces,
-    friction counted while N is above the share ``least_normal`` of the weight, unless that is None, with their ``error`` by
-    a run of twice the step unless the run is chaotic.
+    friction counted while N is above the share ``least_normal`` of the weight, and the work of devices, half cycles from
+    ``least_stroke`` [m] up, unless these are None; with their ``error`` by a run of twice the step unless the run is chaotic.
     """
-    if not ledger and least_normal is None:
+    if not run.base.restraints:
+        least_stroke = None
+    if not ledger and least_normal is None and least_stroke is None:
         return outcome
     rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
     if ledger:
         terms = energies(run, rows)
         at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
         outcome = outcome.changed(energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
-    if least_normal is not None:
-        peaks, note = peak_forces(run, rows, least_normal)
-        outcome = outcome.noted(note)
-        if error and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note:
-            del rows  # a history of every step may be large
-            rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
+    peaks, note = (None, "") if least_normal is None else peak_forces(run, rows, least_normal)
+    work = None if least_stroke is None else restraints.device_work(run.pier, run.base, rows, least_stroke)
+    outcome, coarse_work = outcome.noted(note), None
+    halves = error and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note
+    if halves and (peaks or work):
+        del rows  # a history of every step may be large
+        rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
+        if peaks and least_normal is not None:
             peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
             outcome = outcome.noted(note)
-        outcome = outcome.changed(forces=peaks)
-    return outcome
+        if least_stroke is not None:
+            coarse_work = restraints.device_work(run.pier, run.base, rows, least_stroke)
+    if work:
+        outcome = with_work(outcome, work, coarse_work, run.pier, CHANCE)
+    return outcome.changed(forces=peaks)
 
 
 def forces_in_sections(

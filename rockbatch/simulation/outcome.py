@@ -109,6 +109,26 @@ class PeakForces:
 
 
 @dataclass(frozen=True)
+class DeviceWork:
+    """Work of the devices of a run, until it ends; ``None`` without such a device.
+
+    Attributes
+    ----------
+    damper_travel, damper_work : float or None
+        Greatest cumulative travel [m], and greatest energy [J/kg], of any one damper.
+    damper_half_cycles : int or None
+        Half cycles of the damper that has most of them, from the least stroke that counts up.
+    tendon_strain : float or None
+        Greatest strain of a tendon over its yield strain; of tendons that yield.
+    """
+
+    damper_travel: float | None = None
+    damper_work: float | None = None
+    damper_half_cycles: int | None = None
+    tendon_strain: float | None = None
+
+
+@dataclass(frozen=True)
 class Outcome:
     """Results of a run. SI units, angles in radians; ``None`` where it does not apply.
 
@@ -175,6 +195,8 @@ class Outcome:
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
         Its demands on the design, if asked for.
+    device_work : DeviceWork or None
+        The work of its devices, if asked for.
     """
 
     status: str
@@ -229,6 +251,7 @@ class Outcome:
     theta_rocking_error: float | None = None
     theta_lean_error: float | None = None
     settlement_error: float | None = None
+    device_work: DeviceWork | None = None
 
     @property
     def was_run(self) -> bool:

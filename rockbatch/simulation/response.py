@@ -1,5 +1,6 @@
 """Result of a simulation: the histories of one record on one foundation."""
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -221,6 +222,35 @@ class Response(Shown):
         return pd.DataFrame(
             dict(zip(COLUMNS, (*cycles, apparent_restitution(self.pier, cycles.amplitude)), strict=True))
         )
+
+    def device_work(self, least_stroke_m: float = 0.01) -> "pd.DataFrame":
+        """Return the work of every damper and tendon, a row each, from the samples and events of the history.
+
+        ``travel_m``, its cumulative travel, a damper's without its brace; ``energy_J_kg``, the work on it, per unit mass of the
+        pier, and ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` of ``least_stroke_m`` or more from end to end, by
+        rainflow counting (ASTM E1049-85); ``strain_over_yield``, of a tendon that yields, the greatest, else NaN.
+
+        Examples
+        --------
+        >>> base = rb.RigidBase(restraints=(rb.Damper("friction", f=0.05, at="left"),))
+        >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+        >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
+        >>> work = response.device_work().loc["damper 1"]
+        >>> f"{work.travel_m:.3f} m, {work.half_cycles:.0f} half cycles"
+        '0.300 m, 4 half cycles'
+        """
+        from rockbatch.simulation.device_work import Courses, work_of
+
+        if self.restraints is None:
+            raise InputError(f"{self._title}: there is no damper and no tendon")
+        columns = list(self.restraints.columns[1:])
+        elongation, pull = (self.restraints[columns[first::2]].to_numpy(dtype=np.float64) for first in (0, 1))
+        work = work_of(self.pier, self.base, Courses(elongation, pull), least_stroke_m)
+        mass = math.nan if self.pier.mass_t is None else self.pier.mass_t
+        names = [name.removesuffix(" elongation") for name in columns[::2]]
+        table = {"travel_m": work.travel, "energy_J_kg": work.lost, "energy_kJ": mass * work.lost}
+        table |= {"half_cycles": work.half_cycles.astype(np.int64), "strain_over_yield": work.strain}
+        return pd.DataFrame(table, index=pd.Index(names, name="device"))
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw rotation, angular velocity, energy and ground motion against time, events as strokes, and the loops of supports,

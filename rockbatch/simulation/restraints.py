@@ -26,7 +26,9 @@ from rockbatch.core.observe.rows import state_of
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
+from rockbatch.simulation.device_work import Courses, greatest_of, work_of
 from rockbatch.simulation.models import elements, model, prestress, springs
+from rockbatch.simulation.outcome import DeviceWork
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9
@@ -104,6 +106,12 @@ def deck_pulls(pier: Pier, base: Base, rows: np.recarray) -> list[tuple[float, S
         return []
     pull = _followed(pier, base, rows)[1]
     return [(law.height, law.way * pull[:, j]) for j, law in enumerate(laws) if law.height != 0.0]
+
+
+def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:
+    """Return the work of the devices of a run whose ``rows`` are every step; half cycles from ``least_stroke`` [m] up."""
+    elongation, pull, _ = _followed(pier, base, rows)
+    return greatest_of(pier, base, work_of(pier, base, Courses(elongation, pull, rows.lost), least_stroke))
 
 
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:

@@ -98,6 +98,11 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
         "Number of sections of the shaft, evenly from its foot to its top, in which shear, moment and axial force of every run "
         "are computed: `sections.csv`."),
     "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
+    "devices_work": Key(boolean, "true",
+        "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
+        "tendons over their yield strain."),
+    "least_stroke_mm": Key(positive, "20.0",
+        "Stroke, from end to end, from which half cycles of dampers count.", only={"devices_work": (True,)}),
 }, homes=(Output,), also=names({
     "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
 }), instead=names({

@@ -59,6 +59,7 @@ duration_s = 2.0
 ledger = true
 forces = true
 rocking = true
+devices_work = true
 
 [[case]]
 name = "rigid"
@@ -115,7 +116,8 @@ def test_the_page_of_columns_lists_them_as_the_table_has_them():
 def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
-    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g", "m^2/s^2": "m2_s2", "kN*m": "kNm"}
+    endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g", "m^2/s^2": "m2_s2"}
+    endings |= {"kN*m": "kNm", "kJ": "kJ"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
@@ -126,7 +128,7 @@ def test_a_name_ends_with_its_unit():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
-    of_functions = {"energies", "forces"}  # each of theirs has a column of its own
+    of_functions = {"energies", "forces", "device_work"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     of_functions |= {"change_in_motion"}  # the error of the peak in motion where that is not theta_max
     assert {field.name for field in fields(Outcome)} - taken == of_functions

@@ -274,6 +274,8 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
         forces="forces" in needs,
         rocking="rocking" in needs,
         least_normal_share=of_study.least_normal_share,
+        devices_work="devices_work" in needs,
+        least_stroke_mm=of_study.least_stroke_mm,
     )
 
 

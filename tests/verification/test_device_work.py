@@ -1,0 +1,178 @@
+"""Work of devices: rainflow counting by the standard's example, closed forms, SciPy's DOP853 and quadrature, energy balances."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from core_samples import FIG5, broadband, pulse
+from restrained_reference import TiedTwoSprings
+from scipy.integrate import quad
+from studies import SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.checks import read_verdicts
+from rockbatch.checks.verdicts import FAIL
+from rockbatch.common.errors import InputError
+from rockbatch.common.units import GRAVITY
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
+from rockbatch.simulation.device_work import Courses, rainflow, work_of
+from rockbatch.simulation.restraints import device_work
+from rockbatch.simulation.runs import Run, written_run
+
+PADS = YieldingBase(50.0, 0.3, eta=3.0, flight="guided")
+SHAKEN = pulse("sine", 0.5, 1.0, dt=0.01, end=2.0)
+
+
+def test_rainflow_counts_the_example_of_the_standard():
+    """ASTM E1049-85, fig. 6: half cycles of the ranges 3, 6, 9 once, of 8 twice, of 4 three times."""
+    ranges, counts = rainflow([-2, 1, -3, 5, -1, 3, -4, 4, -2])
+    assert {width: counts[ranges == width].sum() for width in set(ranges)} == {3.0: 1, 4.0: 3, 6.0: 1, 8.0: 2, 9.0: 1}
+
+
+def test_rainflow_does_not_depend_on_points_between_reversals_nor_on_pauses():
+    turns = [-2, 1, -3, 5, -1, 3, -4, 4, -2]
+    fine = np.interp(np.linspace(0.0, 8.0, 801), np.arange(9.0), turns)
+    assert sorted(zip(*rainflow(np.repeat(fine, 2)), strict=True)) == sorted(zip(*rainflow(turns), strict=True))
+    assert [list(part) for part in rainflow([1.0, 1.0])] == [[], []]
+    assert [list(part) for part in rainflow([0.0, 1.0, 3.0])] == [[3.0], [1.0]]
+
+
+def test_work_of_a_linear_viscous_damper_under_a_harmonic_stroke_is_pi_c_omega_a_squared_a_cycle():
+    c, omega, a, cycles = 3.0, 2.0, 0.05, 4
+    t = np.linspace(0.0, cycles * 2.0 * math.pi / omega, 40_001)
+    stroke, speed = a * np.sin(omega * t), a * omega * np.cos(omega * t)
+    base = RigidBase(restraints=(Damper("viscous", nu=1.0, at="left"),))
+    work = work_of(FIG5, base, Courses(stroke[:, None], c * speed[:, None]), 0.09)
+    assert work.lost[0] == pytest.approx(cycles * math.pi * c * omega * a * a, rel=1e-7)
+    assert work.travel[0] == pytest.approx(cycles * 4.0 * a, rel=1e-7)
+    assert work.half_cycles[0] == 2 * cycles - 1  # of 2 a; the first and the last quarter are half cycles of a
+    assert work_of(FIG5, base, Courses(stroke[:, None], c * speed[:, None]), 0.11).half_cycles[0] == 0
+
+
+def test_travel_of_one_way_is_the_stroke_and_a_brace_takes_its_share():
+    braced = RigidBase(restraints=(Damper("viscous", nu=1.0, at="left", brace=2.0),))
+    way, pull = np.linspace(0.0, 0.3, 7)[:, None], np.linspace(0.0, 0.5, 7)[:, None]
+    assert work_of(FIG5, braced, Courses(way, pull), 0.01).travel[0] == pytest.approx(
+        0.3 - 0.5 / (2.0 * GRAVITY * FIG5.size / FIG5.half_width**2)
+    )
+
+
+class Working(TiedTwoSprings):
+    """The reference, with travel and work of its devices by quadrature of its dense output."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.travel, self.work = (np.zeros(len(self.elements)) for _ in range(2))
+        turning = self.leg._turning
+
+        def integrated(dense, times, states, theta, omega):
+            turning(dense, times, states, theta, omega)
+            for j in range(len(self.elements)):
+                for a, b in pairwise(times):
+                    self.travel[j] += abs(self.elongation(j, dense(b)) - self.elongation(j, dense(a)))
+                self.work[j] += quad(
+                    lambda t, j=j: self.pull(j, dense(t).tolist()) * self.speed(j, dense(t)), times[0], times[-1]
+                )[0]
+
+        self.leg._turning = integrated
+
+
+@pytest.mark.parametrize(
+    "device",
+    [
+        Damper("viscous", nu=1.0, at="left"),
+        Damper("hysteretic", f=0.1, yield_m=0.005, at="right"),
+        Damper("friction", f=0.05, at=0.3),
+    ],
+    ids=["viscous", "hysteretic", "friction"],
+)
+def test_travel_and_work_are_those_of_the_reference(device):
+    base = replace(PADS, restraints=(device,))
+    expected = Working(FIG5, base, SHAKEN, 0.0)
+    expected.run()
+    result, rows = written_run(Run(FIG5, base, SHAKEN), 8, 0.0, 100_000, every_step=True, wait=False)
+    found = device_work(FIG5, base, rows[: result.rows].view(np.recarray), 0.01)
+    assert found.damper_travel == pytest.approx(expected.travel[0], rel=1e-4)
+    assert found.damper_work == pytest.approx(expected.work[0], rel=1e-4)
+    if device.kind == "friction":
+        assert found.damper_work == pytest.approx(device.f * GRAVITY * found.damper_travel, rel=1e-4)
+
+
+def test_friction_takes_all_the_energy_of_a_block_that_impacts_do_not_slow():
+    """Let go at θ0 with e = 1 the block has g R (cos(α − θ0) − cos α) to lose; by hand it slides that over f g."""
+    start, f = 0.5 * FIG5.alpha, 0.02
+    base = RigidBase(restitution=1.0, restraints=(Damper("friction", f=f),))
+    response = rb.simulate(
+        FIG5, base, Motion("still", 0.01, np.zeros(100)), initial_rotation_rad=start, devices_work=True
+    )
+    each = response.device_work()
+
+    def energy(theta, omega):
+        height = FIG5.size * (math.cos(FIG5.alpha - abs(theta)) - math.cos(FIG5.alpha))
+        return GRAVITY * height + 0.5 * FIG5.inertia_about_pivot * omega**2
+
+    lost = energy(start, 0.0) - energy(response.theta[-1], response.omega[-1])
+    assert lost > 0.1 * energy(start, 0.0)
+    assert each["energy_J_kg"].sum() == pytest.approx(lost, rel=1e-3)
+    assert each["energy_J_kg"].to_numpy() == pytest.approx(f * GRAVITY * each["travel_m"].to_numpy(), rel=1e-3)
+    assert response.row["damper_work_J_kg"] == pytest.approx(each["energy_J_kg"].max(), rel=1e-3)
+    assert response.row["damper_travel_m"] == pytest.approx(each["travel_m"].max(), rel=1e-3)
+    assert response.row["damper_half_cycles"] == each["half_cycles"].max()
+
+
+def test_work_closes_the_energy_balance_of_the_run():
+    base = RigidBase(restraints=(Damper("viscous", nu=0.5, at="left"),))
+    motion = Motion("noise", 0.01, broadband(np.random.default_rng(3), 0.01, 400, 0.6 * GRAVITY))
+    row = rb.simulate(FIG5, base, motion, devices_work=True, ledger=True).row
+    given = row["energy_input_J_kg"] + row["energy_p_delta_J_kg"] + row["energy_constraint_J_kg"]
+    lost = given - row["energy_kinetic_J_kg"] - row["energy_potential_J_kg"] - row["energy_impact_J_kg"]
+    assert row["damper_work_J_kg"] == pytest.approx(lost, rel=1e-5)
+
+
+def test_a_tendon_that_yields_is_strained_beyond_its_yield_strain_by_what_it_stays_longer():
+    base = RigidBase(restraints=(Tendon(psi=0.1, lam=1.0, strength=0.13),))
+    row = rb.simulate(FIG5, base, SHAKEN, devices_work=True).row
+    assert row["tendon_yield_m"] > 0.0
+    stiffness = 1.0 * GRAVITY * FIG5.size / FIG5.half_width**2
+    assert row["tendon_strain_over_yield"] == pytest.approx(
+        1.0 + stiffness * row["tendon_yield_m"] / (0.13 * GRAVITY), rel=1e-5
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_work_is_within_the_error_that_a_row_claims(seed):
+    rng = np.random.default_rng(seed)
+    base = RigidBase(
+        restraints=(Damper("viscous", nu=float(rng.uniform(0.1, 1.0))), Tendon(psi=0.1, lam=0.5, strength=0.3))
+    )
+    motion = Motion("noise", 0.01, broadband(rng, 0.01, 400, 0.5 * GRAVITY))
+    row, exact = (
+        rb.simulate(FIG5, base, motion, devices_work=True, tolerance=tolerance).row for tolerance in (1e-4, 1e-9)
+    )
+    for name in ("damper_travel_m", "damper_work_J_kg", "tendon_strain_over_yield"):
+        assert abs(row[name] - exact[name]) <= row["devices_error"] * abs(row[name])
+
+
+def _study(tmp_path, **output):
+    case = {"name": "rock", "base": "rigid", "damper": [{"kind": "friction", "f": 0.02}]}
+    check = {"name": "travel", "demand": "damper_travel_m", "at_most": 1e-6, "reason": "a test"}
+    return write_study(tmp_path, study_text(pulses=(SINE,), cases=[case], output=output, check=[check]))
+
+
+def test_a_study_asks_for_the_work_checks_it_and_shows_it(tmp_path):
+    out = tmp_path / "out"
+    row = rb.run(rb.load_study(_study(tmp_path, devices_work=True, least_stroke_mm=2.0)), out=out).iloc[0]
+    assert row["damper_travel_m"] > 0.0
+    assert row["damper_half_cycles"] >= 1
+    assert [verdict.verdict for verdict in read_verdicts(out)] == [FAIL]
+    assert "damper travel" in rb.report(out).path.read_text(encoding="utf-8")
+
+
+def test_who_does_not_ask_for_the_work_has_no_column_of_it_and_is_told_how_to(tmp_path):
+    with pytest.raises(InputError, match="write devices_work = true under"):
+        rb.load_study(_study(tmp_path))
+    with pytest.raises(InputError, match=r"least_stroke_mm = 2.*: is for devices_work = true"):
+        rb.load_study(_study(tmp_path, least_stroke_mm=2.0))
