@@ -424,7 +424,7 @@ def _curve(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule, looks: Seque
             for x, state in of_record.items()
         ]
     curve = Curve(of_case, rule, stripes, fits[0], undecided, fits[1], capacities, windowed)
-    return _with_share(curve, runs, intervals)
+    return _with_share(curve, runs, intervals, spec.confidence)
 
 
 Interval = tuple[Point, float, float]
@@ -437,7 +437,7 @@ def _one_sided(point: Point, state: int) -> Interval:
     return point, low, high
 
 
-def _with_share(curve: Curve, runs: _Runs, intervals: Sequence[Interval]) -> Curve:
+def _with_share(curve: Curve, runs: _Runs, intervals: Sequence[Interval], confidence: float) -> Curve:
     """Return the curve with what drawn inputs contribute to its dispersion, by the intervals of capacities."""
     informative = [interval for interval in intervals if interval[1] > 0 or math.isfinite(interval[2])]
     scores = [runs.drawn(point).scores for point, _, _ in informative]
@@ -450,7 +450,7 @@ def _with_share(curve: Curve, runs: _Runs, intervals: Sequence[Interval]) -> Cur
     of_scores = np.array([list(of_run.values()) for of_run in scores])
     places = [uncertain.names.index(name) for name in names]
     capacities = Capacities(low, high, np.ones(len(low)), of_record)
-    share = contribution(capacities, of_scores, uncertain.matrix[np.ix_(places, places)])
+    share = contribution(capacities, of_scores, uncertain.matrix[np.ix_(places, places)], confidence)
     return replace(curve, drawn=names, drawn_share=share)
 
 
@@ -477,7 +477,8 @@ def _of_cloud(runs: _Runs, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
         readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
     stripes = tuple(_stripe_of_one(run, runs.plan) for run in cloud_points)
     curve = Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, cloud=cloud_points)
-    return _with_share(curve, runs, [_one_sided(point, state) for point, state in zip(points, states, strict=True)])
+    intervals = [_one_sided(point, state) for point, state in zip(points, states, strict=True)]
+    return _with_share(curve, runs, intervals, spec.confidence)
 
 
 def _is_doubtful(run: CloudPoint) -> bool:

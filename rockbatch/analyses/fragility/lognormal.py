@@ -145,21 +145,26 @@ class Contribution:
     ----------
     dispersion : float
         Standard deviation of ln x that goes with them.
+    interval : tuple of two floats
+        Its interval, by the standard error of the square.
     effects, errors : tuple of float
         Change of ln x with a standard deviation of each, and its standard error.
     """
 
     dispersion: float
+    interval: tuple[float, float]
     effects: tuple[float, ...]
     errors: tuple[float, ...]
 
 
-def contribution(capacities: Capacities, scores: Values, correlation: Values) -> Contribution | str:
+def contribution(
+    capacities: Capacities, scores: Values, correlation: Values, confidence: float = 0.95
+) -> Contribution | str:
     """Return what k inputs contribute that were drawn with normal ``scores``, shape (n, k), or why that is not known, in words.
 
     The likelihood is that of :func:`fit` with a factor for each of the scores, z = a + b ln x + Σ c_j s_j, so that an input
     changes ln x by −c_j/b. Of the square that the changes make with their ``correlation``, shape (k, k), the share that
-    chance gives to any input is taken off: that of their covariance, by the scores of the records.
+    chance gives to any input is taken off: that of their covariance, which is stretched as the region of :func:`fit`.
     """
     assert capacities.of_record is not None
     n, k = scores.shape
@@ -177,15 +182,21 @@ def contribution(capacities: Capacities, scores: Values, correlation: Values) ->
         brackets = (capacities.low > 0) & np.isfinite(capacities.high)
         if brackets.sum() < LEAST_PER_PARAMETER * (k + 2):
             return "with them the runs beyond the limit are separated from the others: more of both would tell"
-        return Contribution(math.sqrt(effects @ correlation @ effects), tuple(effects.tolist()), k * (0.0,))
+        whole = math.sqrt(effects @ correlation @ effects)
+        return Contribution(whole, (whole, whole), tuple(effects.tolist()), k * (0.0,))
     slopes, hessian = likelihood.derivatives(best)
-    by_record = capacities.of_record @ slopes @ np.linalg.pinv(hessian, hermitian=True)
-    m = len(by_record)
-    to_effects = np.column_stack((np.zeros(k), -effects / b, -likelihood.width / b * np.eye(k)))
-    covariance = to_effects @ (by_record.T @ by_record * (m / max(m - 1, 1))) @ to_effects.T
-    square = float(effects @ correlation @ effects - (correlation * covariance).sum())
-    errors = np.sqrt(np.diag(covariance))
-    return Contribution(math.sqrt(max(square, 0.0)), tuple(effects.tolist()), tuple(errors.tolist()))
+    informations, axes = np.linalg.eigh(-hessian)
+    known = informations > 1e-9 * informations[-1]  # the factors of two inputs that go together are not known apart
+    roots = axes[:, known] / np.sqrt(informations[known])
+    spread = roots @ _stretch(roots.T @ (capacities.of_record @ slopes).T)
+    spread = np.column_stack((np.zeros(k), -effects / b, -likelihood.width / b * np.eye(k))) @ spread
+    together = correlation @ spread @ spread.T
+    square = float(effects @ correlation @ effects - np.trace(together))
+    of_square = math.sqrt(4.0 * effects @ together @ correlation @ effects + 2.0 * np.trace(together @ together))
+    reach = float(ndtri(0.5 + 0.5 * confidence)) * of_square
+    least, middle, most = (math.sqrt(max(value, 0.0)) for value in (square - reach, square, square + reach))
+    errors = np.sqrt((spread**2).sum(axis=1))
+    return Contribution(middle, (least, most), tuple(effects.tolist()), tuple(errors.tolist()))
 
 
 def _degenerate(capacities: Capacities) -> str:

@@ -32,7 +32,9 @@ def of_curves(info: Mapping[str, Any]) -> list[Head]:
         Head("dispersion", ".2f", "β: standard deviation of the logarithm", value="dispersion"),
         Head(level, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
         Head("of it drawn", ".2f", "what the drawn inputs contribute to β, as a root of squares",
-             value=lambda curve: curve.get("drawn", {}).get("dispersion")),
+             value=lambda curve: _drawn(curve).get("dispersion")),
+        Head(level, note="interval of what the drawn inputs contribute, by the standard error of its square",
+             value=lambda curve: _interval("dispersion_interval")(_drawn(curve))),
         Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
              value="dispersion_total"),
         Head("by shares", ".3g", info.get("by_shares"), value=lambda curve: curve.get("windows", {}).get("median")),
@@ -57,6 +59,12 @@ def of_rates(info: Mapping[str, Any], written: Callable[[float], str]) -> list[H
         Head(f"90 % come from [{info['unit']}]", note="intensities that contribute, but for 5 % at either end",
              value=_contributing),
     ]  # fmt: skip
+
+
+def _drawn(curve: Curve) -> Mapping[str, Any]:
+    """Return what drawn inputs contribute to a curve; empty if nothing is drawn, or that is not known."""
+    contribution: Mapping[str, Any] = curve.get("drawn", {})
+    return contribution
 
 
 def _apart(curve: Curve) -> float | None:

@@ -37,9 +37,10 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
     rows: list[dict[str, Any]] = []
     for curve in curves:
         units = {"measure": spec.label, "unit": spec.unit}
-        p = _probabilities(curve, np.array(spec.levels))
+        x = np.array([stripe.level for stripe in curve.stripes])  # of a cloud, several runs may have the same
+        p = _probabilities(curve, x)
         if spec.added:
-            p["p_total"] = _total(curve, spec, np.array(spec.levels))
+            p["p_total"] = _total(curve, spec, x)
         if spec.method == "ida":
             p |= _of_windows(curve.windows, spec)
         rows += [
@@ -192,7 +193,8 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
     if isinstance(curve.drawn_share, Contribution):
         each = zip(curve.drawn_share.effects, curve.drawn_share.errors, strict=True)
         effects = {name: {"effect": s, "error": error} for name, (s, error) in zip(curve.drawn, each, strict=True)}
-        content["drawn"] = {"dispersion": curve.drawn_share.dispersion, "inputs": effects}
+        share = {"dispersion": curve.drawn_share.dispersion, "dispersion_interval": curve.drawn_share.interval}
+        content["drawn"] = share | {"inputs": effects}
     if curve.cloud:
         content["cloud"] = described_cloud(curve, spec)
     if curve.windows:
@@ -293,7 +295,7 @@ def _about_undecided(curve: Curve) -> str:
 def _about_drawn(curve: Curve) -> str:
     """Return what each drawn input changes about the capacity, or why that is not known; empty if nothing is drawn."""
     share = curve.drawn_share
-    if share is None:
+    if share is None or share == curve.fitted:  # there is no curve, for the same reason
         return ""
     if isinstance(share, str):
         return f"what the drawn inputs contribute is not known: {share}"

@@ -5,7 +5,7 @@ depends on the seed, the numbers of record and level, and the input alone: resum
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -31,7 +31,7 @@ NAMES = ("alpha", "restitution", "epsilon", "zeta", "beta", "stiffness_kN_m", "e
 MOST_IMPOSSIBLE = 0.03
 """Share of a distribution that may lie where no pier can be; draws there are made again."""
 
-TRIALS = 1000
+TRIALS = 500
 """Draws by which that share is estimated."""
 
 
@@ -170,7 +170,7 @@ def read_uncertain(file: TomlFile, study: Study) -> Uncertain:
         for name, size in inner.read(keys).items()
     ]
     inputs.sort(key=lambda parameter: NAMES.index(parameter.name))
-    if not table.data.keys() & _SPREADS.keys():
+    if not inputs and file.is_sound_since(before):
         table.complain("nothing is drawn; write [fragility.uncertain.lognormal] and under it alpha = 0.1")
     for one, other in combinations(inputs, 2):
         if one.name == other.name:
@@ -234,7 +234,8 @@ def _unfit(parameter: Input, own: float, case: Case) -> str:
 
 def _check_draws(table: Table, uncertain: Uncertain, case: Case) -> None:
     """Check the share of draws with which a case cannot be, and name the input and the limit that most of them pass."""
-    trials = (values_at(uncertain, case, scores) for scores in uncertain.scores(TRIALS, 0))
+    own = _own_values(case)
+    trials = (values_at(uncertain, own, scores) for scores in uncertain.scores(TRIALS, 0))
     wrong = [problems[0] for values in trials if (problems := impossible(case, values))]
     if len(wrong) <= MOST_IMPOSSIBLE * TRIALS:
         return
@@ -255,9 +256,8 @@ def _own_values(case: Case) -> dict[str, Any]:
     return own | ({"restitution": case.pier.restitution} if own.get("restitution", 0.0) is None else {})
 
 
-def values_at(uncertain: Uncertain, case: Case, scores: Values) -> dict[str, float]:
-    """Return the values of the inputs that a case has at normal ``scores``, shape (inputs,)."""
-    own = _own_values(case)
+def values_at(uncertain: Uncertain, own: Mapping[str, Any], scores: Values) -> dict[str, float]:
+    """Return the values of the inputs that a case has at normal ``scores``, shape (inputs,); ``own`` are those of the case."""
     return {
         parameter.name: parameter.value(float(score), own[parameter.name])
         for parameter, score in zip(uncertain.inputs, scores, strict=True)
@@ -279,29 +279,28 @@ class Draws:
 
     def __init__(self, uncertain: Uncertain, cases: Sequence[Case], records: int) -> None:
         self.uncertain, self.cases, self.records = uncertain, cases, records
-        self._drawn = [not values_of(case).keys().isdisjoint(uncertain.names) for case in cases]
+        self._own = [_own_values(case) for case in cases]
         self._scores: dict[int, Values] = {}
         self._made: dict[tuple[int, int, int], Drawn] = {}
 
     def at(self, case: int, record: int, level: int) -> Drawn:
         """Return the case ``case`` as it is drawn for a record and a level, all by their numbers."""
-        key = (case, record, level) if self._drawn[case] else (case, 0, 0)
+        key = (case, 0, 0) if self._own[case].keys().isdisjoint(self.uncertain.names) else (case, record, level)
         if key not in self._made:
             self._made[key] = self._draw(*key)
         return self._made[key]
 
     def _draw(self, number: int, record: int, level: int) -> Drawn:
         """Return a draw, made again as long as no pier can be so, by a sequence of its own."""
-        case, uncertain = self.cases[number], self.uncertain
-        if not self._drawn[number]:
+        case, own, uncertain = self.cases[number], self._own[number], self.uncertain
+        if own.keys().isdisjoint(uncertain.names):
             return Drawn(case, describe_case(case), {})
         if level not in self._scores:
             self._scores[level] = uncertain.scores(self.records, level)
         scores = self._scores[level][record]
         again = np.random.default_rng((uncertain.seed, level, record, number))
-        while impossible(case, values := values_at(uncertain, case, scores)):
+        while impossible(case, values := values_at(uncertain, own, scores)):
             scores = uncertain.root @ again.standard_normal(len(uncertain.inputs))
-        own = _own_values(case)
         changed = {name: value for name, value in values.items() if value != own[name]}  # to the bit without scatter
         columns = case.columns | {f"drawn_{name}": value for name, value in values.items()}
         drawn = replace(varied(case, changed), columns=columns)

@@ -105,6 +105,7 @@ def test_the_contribution_is_that_of_made_up_capacities(stripes):
     rng, correlation = np.random.default_rng(1), np.array([[1.0, 0.6], [0.6, 1.0]])
     found = [contribution(*made_capacities(40, rng, stripes), correlation) for _ in range(40)]
     of_inputs = 0.2**2 - 2 * 0.6 * 0.2 * 0.1 + 0.1**2
+    assert sum(share.interval[0] ** 2 <= of_inputs <= share.interval[1] ** 2 for share in found) >= 34
     squares = np.array([share.dispersion**2 for share in found])
     assert abs(squares.mean() - of_inputs) < 3 * squares.std() / math.sqrt(40)
     errors = np.array([(np.array(share.effects) - [0.2, -0.1]) / share.errors for share in found])
@@ -216,6 +217,21 @@ def test_runs_have_the_drawn_values_and_a_search_that_was_interrupted_the_same(t
     curve = next(curve for curve in result.curves if (curve.case.name, curve.limit.name) == ("rigid", "uplift"))
     assert 0 < sum(beyond) == sum(stripe.exceeded for stripe in curve.stripes) < 28
     assert "drawn once for each record and level: alpha lognormal 0.1" in result.info["drawn"]
+    page = (tmp_path / "straight" / "analyses.html").read_text(encoding="utf-8")
+    assert f"Inputs are {result.info['drawn']}" in page
+
+
+def test_a_cloud_draws_once_for_each_run_also_of_the_same_intensity(tmp_path):
+    text = study_text(
+        pier=HEAVY, motions={"scale": [0.5, 1.0, 2.0]}, pulses=seven_pulses(0.4), cases=(RIGID,),
+        numerics={"tolerance": 1e-3},
+        fragility={"method": "cloud", "measure": "PGA", "uncertain": {"lognormal": {"alpha": 0.1}}},
+    )  # fmt: skip
+    result = rb.fragility(write_study(tmp_path, text))
+    assert len(set(result.fragility_runs["drawn_alpha"])) == 7 * 3
+    (curve,) = result.info["curves"]
+    assert len(result.fragility) == 7 * 3
+    assert curve["drawn"]["inputs"].keys() == {"alpha"}
 
 
 @pytest.mark.parametrize("method", ["stripes", "ida", "cloud"])
