@@ -1,19 +1,19 @@
 """One recording in several files: which set of components is used.
 
 Two components are of one recording if they point alike, and their headers name one sensor and one event, their samples are
-the same, or, where headers do not decide, they correlate once aligned. The rest of two sets that share such a component is of
-one recording, too, if both are alike in some frame: a copy may be turned, or labelled otherwise. The parts of a long
-recording, which claim one time of triggering, are not: each file is a whole set of components, processed alike, and its
-samples do not correlate.
+the same, or, where headers do not decide, they correlate once aligned. Two sets are, as wholes, if both are alike in some
+frame: copies are cut, turned, filtered, or labelled otherwise. The parts of a long recording, which claim one time of
+triggering, are not: each file is a whole set of components, processed alike, and its samples do not correlate.
 """
 
 import hashlib
 import math
 import re
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -47,6 +47,17 @@ _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 _BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5), np.arange(50.0, 101.0, 5.0)))  # Hz
 _SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
 
+_COHERENT = 0.995  # median over bands: copies filtered to 1–5 Hz have more, neighbours in an array 0.992 at most
+_BAND, _FEWEST_BANDS = 0.5, 6  # Hz, and how many of them a median needs
+_ENERGETIC = 0.01  # of the largest energy of a band: less is noise, or was filtered out
+_TAPER = 0.1  # of a record, at either end
+_WINDOWED = (1.5, 4.5)  # Hz: a band that filters leave alone
+_PER_SECOND = 16.0
+_PEAKS = 12  # of an envelope, the largest
+_AROUND = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # s
+_SAME_ENVELOPE = 0.05  # of its peak
+_FLAT = 0.8  # of its peak: harmonic waves are alike around all of theirs
+
 Pairs = dict[int, set[int]]
 Indices = npt.NDArray[np.int64]
 Truths = npt.NDArray[np.bool_]
@@ -78,7 +89,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     manifest wants (``use = true``) is always used. Copies that differ by a factor, or in their peaks, are named in the
     findings of the one that is used; where neither plausibility nor a file's name tells which factor is right, it has to
     be confirmed. Copies by a factor under other names stay, since suites are scaled on purpose, and say so; if the factor is
-    that of a unit, both have to be.
+    that of a unit, both have to be. A vertical that is in two sets of other horizontals is used with both, which say so.
     """
     components, below = without_boreholes(components)
     pairs, scaled = _pairs(components)
@@ -93,6 +104,11 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         else:
             used.add(i)
     findings: dict[int, list[Finding]] = {}
+    for i, horizontals in list(_shared_verticals(components, stands_for)):
+        source = components[stands_for.pop(i)].source
+        text = f"its vertical component {components[i].source} is {source}, of other horizontals: check which of them has it"
+        for horizontal in horizontals:
+            findings.setdefault(horizontal, []).append(Finding("vertical", text))
     left_out = []
     for i, j in sorted(stands_for.items()):
         copy, original, factor = components[i], components[j], factors[i, j]
@@ -116,6 +132,22 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         if i not in stands_for
     ]
     return remaining, [*below, *left_out]
+
+
+def _shared_verticals(
+    components: Sequence[Component], stands_for: Mapping[int, int]
+) -> Iterator[tuple[int, list[int]]]:
+    """Yield verticals that are left out, the only ones of their sets and places, with the horizontals there that are used."""
+
+    def place(i: int) -> tuple[str, str]:
+        return components[i].folder, components[i].station or components[i].site
+
+    for members in _sets(components):
+        verticals = [i for i in members if components[i].orientation.vertical]
+        horizontals = [i for i in members if i not in verticals and i not in stands_for]
+        copied = [i for i in verticals if i in stands_for and place(i) != place(stands_for[i])]
+        if horizontals and len(verticals) == len(copied) == 1:
+            yield copied[0], horizontals
 
 
 def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]]]:
@@ -143,30 +175,89 @@ def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]
             scaled.append((i, j))
         elif _correlate(first, second):
             join(i, j)
-    for i, j in _rest_of_sets(components, pairs):
+    for i, j in _of_sets(components, pairs, scaled, table):
         join(i, j)
     return pairs, sorted(scaled)
 
 
-def _rest_of_sets(components: Sequence[Component], pairs: Pairs) -> Iterator[tuple[int, int]]:
-    """Yield further pairs of two sets of which a component is of one recording already, each with what it resembles most."""
+def _of_sets(
+    components: Sequence[Component], pairs: Pairs, scaled: Sequence[tuple[int, int]], table: "_Table"
+) -> Iterator[tuple[int, int]]:
+    """Yield further pairs of two sets that are of one recording as wholes, each component with that which it resembles.
+
+    They correlate, if a component of both is of one recording already, or else are coherent wherever both have energy: that
+    tells a copy that was cut, turned and filtered from a neighbour in an array, and a correlation does not. Those with ``scaled``
+    components stay two.
+    """
     sets = list(_sets(components))
     set_of = {i: number for number, members in enumerate(sets) for i in members}
     linked = {(set_of[i], set_of[j]) for i, copies in pairs.items() for j in copies if set_of[i] < set_of[j]}
-    for pair, upright in product(sorted(linked), (True, False)):
-        first, second = ([i for i in sets[n] if components[i].orientation.vertical is upright] for n in pair)
-        left = [i for i in first if not pairs.get(i, set()).intersection(second)]
-        if left and len(first) == len(second) <= 2:
-            r, resemblance = _in_any_frame(*([components[i] for i in members] for members in (first, second)))
-            if r >= _CERTAIN:
-                yield from ((i, second[int(resemblance[first.index(i)].argmax())]) for i in left)
+    by_factor = {tuple(sorted((set_of[i], set_of[j]))) for i, j in scaled}
+    for pair in sorted(linked | _similar_envelopes(components, sets) - by_factor):
+        coherent = pair in linked
+        for upright in (False, True):
+            first, second = ([i for i in sets[n] if components[i].orientation.vertical is upright] for n in pair)
+            joined = all(pairs.get(i, set()).intersection(second) for i in first)
+            if joined or len(first) != len(second) or len(first) > 2:
+                continue
+            if not (coherent or (not upright and table.may_be_one(first, second))):
+                break
+            in_parts = 4 if coherent else 1  # a shift by less hardly changes how coherent they are
+            likeness = _in_any_frame([components[i] for i in first], [components[i] for i in second], in_parts)
+            if likeness.coherence >= _COHERENT or (coherent and likeness.correlation >= _CERTAIN):
+                coherent, crossed = True, np.trace(likeness.each[::-1]) > np.trace(likeness.each)
+                yield from zip(first, reversed(second) if crossed else second, strict=True)
 
 
-def _in_any_frame(first: Sequence[Component], second: Sequence[Component]) -> tuple[float, Samples]:
-    """Return the correlation of two sets of one or two components in the frame that makes them most alike, and that of each two.
+def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
+    """Return pairs of sets whose horizontals swell and fade alike around a peak, however they were turned, cut or filtered."""
+    shapes, owners = [np.empty((0, len(_AROUND)))], list[int]()
+    for number, members in enumerate(sets):
+        horizontals = [components[i] for i in members if not components[i].orientation.vertical]
+        if 1 <= len(horizontals) <= 2 and horizontals[0].dt < 0.5 / _WINDOWED[1]:
+            shapes.append(_shapes(horizontals))
+            owners += [number] * len(shapes[-1])
+    shape, owner = np.concatenate(shapes), np.array(owners, dtype=np.int64)
+    order = np.argsort(shape[:, 0])
+    shape, owner = shape[order], owner[order]
+    ends = np.searchsorted(shape[:, 0], shape[:, 0] + _SAME_ENVELOPE)
+    similar: set[tuple[int, int]] = set()
+    for k, end in enumerate(ends.tolist()):
+        near = k + 1 + np.flatnonzero((np.abs(shape[k + 1 : end] - shape[k]) <= _SAME_ENVELOPE).all(axis=1))
+        similar.update((min(owner[k], n), max(owner[k], n)) for n in owner[near].tolist() if n != owner[k])
+    return similar
 
-    Over all shifts, the greatest trace of their covariances after a rotation or reflection is the sum of the singular values of
-    these; it is divided by the energies in the time that both have, where most of one of them lies. Shape of the second: (n, n).
+
+def _shapes(horizontals: Sequence[Component]) -> Samples:
+    """Return the envelope of horizontals in a band ``_AROUND`` its largest peaks, over each of these, shape (peaks, times)."""
+    dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
+    n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
+    low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
+    spectra = (np.fft.rfft(c.acceleration, n)[low:high] for c in horizontals)
+    count = max(round(n * dt * _PER_SECOND), high - low)
+    energy = sum(np.square(np.abs(np.fft.ifft(spectrum * np.hanning(high - low), count))) for spectrum in spectra)
+    envelope = np.sqrt(energy)[: math.ceil(longest * dt * _PER_SECOND)]
+    steps = np.round(np.multiply(_AROUND, _PER_SECOND)).astype(int)
+    inside = envelope[-steps[0] : -steps[-1]]
+    peaks = 1 + np.flatnonzero((inside[1:-1] > inside[:-2]) & (inside[1:-1] >= inside[2:])) - steps[0]
+    peaks = peaks[np.argsort(-envelope[peaks])[:_PEAKS]]
+    shape = envelope[peaks[:, None] + steps] / envelope[peaks, None]
+    return np.asarray(shape[shape.min(axis=1) < _FLAT])
+
+
+class _Likeness(NamedTuple):
+    """How alike two sets are in the frame and at the shift that make them most alike, and each component to each."""
+
+    correlation: float
+    coherence: float
+    each: Samples  # covariances, shape (n, n)
+
+
+def _in_any_frame(first: Sequence[Component], second: Sequence[Component], parts: int) -> _Likeness:
+    """Return the likeness of two sets of one or two components each.
+
+    Over all shifts, by ``parts`` of a step, the greatest trace of their covariances after a rotation or reflection is the sum of
+    the singular values of these; it is divided by the energies in the time that both have, where most of one of them lies.
     """
     dt = max(c.dt for c in (*first, *second))
     a, b = (
@@ -174,22 +265,46 @@ def _in_any_frame(first: Sequence[Component], second: Sequence[Component]) -> tu
         for series in ([_at_step(c, dt) for c in side] for side in (first, second))
         for shortest in (min(map(len, series)),)
     )
-    n = a.shape[1] + b.shape[1]
+    n = 1 << (a.shape[1] + b.shape[1] - 1).bit_length()
     spectra = np.einsum("if,jf->ijf", np.fft.rfft(a, n), np.conj(np.fft.rfft(b, n)))
-    covariances = 4.0 * np.fft.irfft(spectra, 4 * n)  # at quarters of a step
+    covariances = parts * np.fft.irfft(spectra, parts * n)
     norms = np.square(covariances).sum(axis=(0, 1))
     if len(a) == 2:
         norms += 2.0 * np.abs(covariances[0, 0] * covariances[1, 1] - covariances[0, 1] * covariances[1, 0])
-    shift = np.arange(4 * n) // 4
+    shift = np.arange(parts * n) // parts
     shift[shift >= a.shape[1]] -= n
     from_a, to_a = np.maximum(shift, 0), np.clip(b.shape[1] + shift, 0, a.shape[1])
     energy = [np.concatenate(([0.0], np.cumsum(np.square(x).sum(axis=0)))) for x in (a, b)]
-    shared = [energy[0][to_a] - energy[0][from_a], energy[1][to_a - shift] - energy[1][from_a - shift]]
+    from_b, to_b = (np.clip(ends - shift, 0, b.shape[1]) for ends in (from_a, to_a))
+    shared = [energy[0][to_a] - energy[0][from_a], energy[1][to_b] - energy[1][from_b]]
     enough = np.maximum(shared[0] / (energy[0][-1] or 1.0), shared[1] / (energy[1][-1] or 1.0)) >= _IN_COMMON
     with np.errstate(divide="ignore", invalid="ignore"):
-        r = np.where(enough, np.sqrt(norms / (shared[0] * shared[1])), 0.0)
-    best = int(np.nan_to_num(r).argmax())
-    return float(np.nan_to_num(r)[best]), np.abs(covariances[:, :, best])
+        r = np.nan_to_num(np.where(enough, np.sqrt(norms / (shared[0] * shared[1])), 0.0))
+    best = int(r.argmax())
+    left, _, right = np.linalg.svd(covariances[:, :, best])
+    common = a[:, from_a[best] : to_a[best]], (left @ right @ b)[:, from_b[best] : to_b[best]]
+    return _Likeness(float(r[best]), _coherence(*common, dt), np.abs(covariances[:, :, best]))
+
+
+def _coherence(a: Samples, b: Samples, dt: float) -> float:
+    """Return the median, over bands in which both sets have energy, of how coherent they are; 0 of few such bands.
+
+    Shape of both: (components, npts). A filter, whose phase and amplitude are nearly constant in a band, does not change it.
+    """
+    n = a.shape[1]
+    place = np.arange(n) + 0.5
+    taper = np.square(np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(place, n - place) / max(_TAPER * n, 1.0))))
+    first, second = np.fft.rfft(a * taper), np.fft.rfft(b * taper)
+    band = (np.fft.rfftfreq(max(n, 1), dt) / _BAND).astype(int)
+    cross, *energies = (
+        np.bincount(band, x.real) + 1j * np.bincount(band, x.imag)
+        for x in ((p * np.conj(q)).sum(axis=0) for p, q in ((first, second), (first, first), (second, second)))
+    )
+    both = np.logical_and(*(x.real > _ENERGETIC * x.real.max() for x in energies))
+    if both.sum() < _FEWEST_BANDS:
+        return 0.0
+    coherence = np.abs(cross[both]) / np.sqrt(energies[0].real[both] * energies[1].real[both])
+    return float(np.median(coherence))
 
 
 def _ranks(
@@ -308,6 +423,21 @@ class _Table:
         """Return whether components have a time in common with ``i``, as far as is known."""
         return ~((self.start[j] >= self.end[i]) | (self.start[i] >= self.end[j]))
 
+    def _joinable(self, i: int, j: Indices) -> Truths:
+        """Return whether headers do not say that components are of other files, times or events than ``i``."""
+        differ = self._differ(self.event, i, j) & (
+            self.suffix[j] == self.suffix[i]
+        )  # formats write of events as they like
+        differ |= self._differ(self.numbered, i, j) | (self.file[j] == self.file[i])
+        return ~differ & self._overlap(i, j)
+
+    def may_be_one(self, first: Sequence[int], second: Sequence[int]) -> bool:
+        """Return whether headers allow that two sets are of one recording, which a single component tells by its direction."""
+        parts, j = self.components, np.array(second)
+        distinct = any(parts[i].sensor.is_distinct_from(parts[k].sensor) for i, k in product(first, second))
+        turned = len(first) > 1 or bool(self._pointing_alike(first[0], j).all())
+        return not distinct and turned and all(self._joinable(i, j).all() for i in first)
+
     def copies(self, i: int) -> list[int]:
         """Return later components with the same samples that may be of the same sensor, event and direction."""
         j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
@@ -353,10 +483,8 @@ class _Table:
                 continue
             within = _SPREAD * length[n] + _BLUR
             j = order[n + 1 : np.searchsorted(length, length[n] + within, "right")]
-            j = j[(self.way[j] == self.way[i]) & (self.file[j] != self.file[i])]
-            # formats write of events as they like
-            differ = self._differ(self.event, i, j) & (self.suffix[j] == self.suffix[i])
-            j = j[~(differ | self._differ(self.numbered, i, j)) & self._overlap(i, j) & self._pointing_alike(i, j)]
+            j = j[self.way[j] == self.way[i]]
+            j = j[self._joinable(i, j) & self._pointing_alike(i, j)]
             j = j[(np.abs(self.growth[j, :-1] - self.growth[i, :-1]) <= within).all(axis=1)]
             yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
 
@@ -454,7 +582,7 @@ def correlation(first: Samples, second: Samples) -> float:
     Shifts are by quarters of a step. It is 1 where one of them never moves.
     """
     first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
-    n = len(first) + len(second)
+    n = 1 << (len(first) + len(second) - 1).bit_length()
     shifted = 4.0 * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), 4 * n)
     norm = float(np.linalg.norm(first) * np.linalg.norm(second))
     return float(np.abs(shifted).max()) / norm if norm > 0 else 1.0
