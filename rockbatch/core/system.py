@@ -46,6 +46,11 @@ def lever(m, y, contact):
 
 
 @hook
+def shift(m, contact):
+    """Return by how far devices are right of their offsets from the middle of the base [m]."""
+
+
+@hook
 def event_functions(m, devices, now):
     """Return Signals of the Instant ``now``, and their slopes."""
 

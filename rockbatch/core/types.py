@@ -33,6 +33,7 @@ HELD_RIGHT = 9.0
 LIFT_OFF = 10.0
 REST = 11.0
 TAKE_OFF = 12.0
+DECK = 13.0  # of a frame in flight changes the corners on which it rests
 
 # Pivots
 LEFT = -1.0

@@ -395,7 +395,8 @@ def problems(pier: Pier, base: Base) -> list[str]:
         return [
             f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
-            'write base = "rigid", or leave columns out for a single pier'
+            'write base = "rigid"; or, if the columns are fixed to their cap beam, leave columns out and write [[pier.part]] '
+            "for them and the beam, with width_m between the outer feet"
         ]
     wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
     for name in (attribute.name for attribute in fields(base)):

@@ -410,7 +410,8 @@ class Pier(InNotebook):
         Pier
             The block that rotates as the columns do: α of a column, p̂ = p √((1+2γ)/(1+3γ)), and μ = 3 (1+2γ)²/(1+4γ), by which
             ``size``, ``height`` and ``inertia`` are those of the whole per unit of its mass N m_c + m_d. ``half_width`` is a
-            column's, and ``restitution`` the frame's. For rigid ground only.
+            column's, and ``restitution`` the frame's. For rigid ground only; devices below it are those of all columns together.
+            A bent whose columns are fixed to its cap beam is one pier, :meth:`of_parts`.
 
         Raises
         ------

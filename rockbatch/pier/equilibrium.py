@@ -231,7 +231,7 @@ class SlowTurn:
         self.places = [
             Place(
                 device,
-                side * place.offset,
+                side * place.offset + self.b - pier.half_width,  # of a frame the block is wider than its columns
                 (device.brace if isinstance(device, Damper) else device.lam) * pier.size / pier.half_width**2,
                 place.height,
                 side * place.way or 1.0,

@@ -1,5 +1,6 @@
 """Places of devices under a pier and beside its deck, and what follows from them: symmetry and re-centring."""
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -59,7 +60,7 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
     That is 2 f < 1 + ψ with dampers at both. Dampers count alike with and without a yield deflection.
     """
     for corner in (-pier.half_width, pier.half_width):
-        holding, righting = 0.0, 1.0
+        holding, righting = 0.0, pier.size * math.sin(pier.alpha) / pier.half_width  # 1 but of a frame
         for device in restraints:
             arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
             holding += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0

@@ -64,8 +64,12 @@ def wrong_on_springs(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]
 def wrong_restraints(pier: Pier, restraints: tuple[Restraint, ...]) -> list[str]:
     """Return what is impossible about devices under ``pier``: one sentence each; empty if nothing."""
     wrong = []
-    if restraints and pier.deck_over_columns is not None:
-        wrong.append("columns: dampers, tendons and stops of a rocking frame are not solved; leave them or columns out")
+    at_deck = any(isinstance(device, DeckSpring) or device.at == "deck" for device in restraints)
+    if at_deck and pier.deck_over_columns is not None:
+        wrong.append(
+            "columns: devices at the deck of a rocking frame are not solved, those at the feet of its columns are; leave "
+            'deck_spring and dampers with at = "deck" out, or columns'
+        )
     for device in restraints:
         wrong += wrong_device(pier, device)
     return wrong + ([] if wrong else _wrong_friction(pier, restraints))

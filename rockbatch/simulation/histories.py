@@ -39,6 +39,7 @@ _EVENTS = {
     types.LIFT_OFF: ("lift-off", ""),
     types.REST: ("rest", ""),
     types.TAKE_OFF: ("take-off", ""),
+    types.DECK: ("deck impact", ""),
 }
 
 
@@ -300,9 +301,9 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
     """Return the rotation and its rate, and the energy stored since the start: kinetic, potential and of tendons."""
-    theta, v, b, h = rows.theta, rows.v, pier.half_width, pier.height
-    side = np.where(rows.left != rows.right, rows.right - rows.left, rows.bore)
-    lever = h * np.cos(theta) + side * b * np.sin(theta)
+    m, theta, v = block(pier, base), rows.theta, rows.v
+    side = np.where(rows.left != rows.right, rows.right - rows.left, (1.0 - m.deck) * rows.bore + m.deck * rows.top)
+    lever = m.height * np.cos(theta) + side * m.half_width * np.sin(theta)
     energy = 0.5 * rows.v_rate**2 + 0.5 * (pier.inertia + lever**2) * rows.omega**2 + pier.gravity * (v - v[0])
     if base.restraints:
         energy = energy + restraints.stored(pier, base, rows)

@@ -143,9 +143,12 @@ def block(pier: Pier, base: RigidBase) -> Block:
         p=float(pier.p),
         restitution=float(restitution),
         epsilon=0.0,
-        guided=float(base.flies and pier.deck_over_columns is None),  # the flight of a frame is not that of a block
+        guided=float(base.flies),
         quickness=float(1.0 / pier.inertia_about_pivot),
         rest=float(ROUNDING * pier.alpha * pier.p * math.sqrt(half_width * half_width + height * height)),
+        deck=0.0
+        if pier.deck_over_columns is None
+        else float(pier.deck_over_columns / (1 + 2 * pier.deck_over_columns)),
     )
 
 

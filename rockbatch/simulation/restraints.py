@@ -22,7 +22,7 @@ from rockbatch.core.devices.laws import stored as stored_in
 from rockbatch.core.kernel import entry
 from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.core.observe.peaks import RecordedDevices, recorded_force
-from rockbatch.core.observe.rows import state_of
+from rockbatch.core.observe.rows import contact_of, state_of
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
@@ -72,7 +72,7 @@ def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[
     """
     for i in range(len(rows)):
         y = state_of(m, rows[i])
-        pose = attitude(m, y, devices.level)
+        pose = attitude(m, y, contact_of(m, rows[i]), devices.level)
         for j in range(len(devices.elements)):
             law, state = devices.elements[j], devices.states[i, j]
             gap = gap_of(m, law, pose, y)

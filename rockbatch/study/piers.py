@@ -53,7 +53,8 @@ PIER = Section(("pier",), (
         "against the period of rocking, to see whether it is.", many=True,
         usual=Usual(10.0, "s: bridge piers have 0.1 to 3", 0.02)),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
-        "Number of equal columns of a rocking frame under one deck, on a rigid base only.", many=True),
+        "Number of equal columns of a rocking frame under one deck that rests on their tops, on a rigid base only. A bent whose "
+        "columns are fixed to its cap beam is one pier: leave this out and write [[pier.part]].", many=True),
     "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
         "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
         "still ground, `still_s` of [motions], makes it a release test.", many=True,

@@ -32,7 +32,7 @@ UNITS = {  # of the fields, by the tuples' own comments
     State: (M, RAD, SPEED, RAD / S, ONE, ONE),
     Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
     Geometry: (M,) * 12,
-    Block: (M, M, M**2, ACCELERATION, RAD, 1 / S, ONE, ONE, ONE, 1 / M**2, SPEED),
+    Block: (M, M, M**2, ACCELERATION, RAD, 1 / S, ONE, ONE, ONE, 1 / M**2, SPEED, ONE),
     Rocking: (M, RAD, SPEED, RAD / S),
     Rocker: (M, M, ACCELERATION, 1 / M**2),
     Tilt: (RAD, RAD / S),
@@ -63,12 +63,12 @@ RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1, 1.9)
 MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
-BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138, 1e-12)
+BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138, 1e-12, 0.3)
 ROCKS = (0.07, 0.05, -0.15, -0.1)
 DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01, 400.0, 0.3, 0.01, 0.5, 9.0, 0.0, 1.5, 1.0)  # an Element after its kind
 
 BOTH = Contact(1.0, 1.0, 1.0, 0.0, 0)
-ON_RIGHT, IN_AIR = Stance(0.0, 1.0, 1.0), Stance(0.0, 0.0, 1.0)
+ON_RIGHT, IN_AIR = Stance(0.0, 1.0, 1.0, 1.0), Stance(0.0, 0.0, 1.0, -1.0)
 CONTACTS = [
     pytest.param(BOTH, id="both"),
     pytest.param(Contact(1.0, 0.0, 1.0, 0.0, 0), id="left"),
@@ -246,7 +246,7 @@ def test_a_block_has_rates_event_functions_and_a_step(under, stance):
     units = (RAD, ACCELERATION) if stance is ON_RIGHT else (M, M)
     assert_units([values.left, values.right], units)
     assert_units([slopes.left, slopes.right], [unit / S for unit in units])
-    assert_units(block.clearances(m, y), (M, M, SPEED, SPEED))
+    assert_units(block.clearances(m, y, stance.top), (M, M, SPEED, SPEED))
     assert_units([system.lever(m, y, stance)], [M])
 
 
@@ -270,7 +270,7 @@ def test_what_lifts_a_block_off_and_the_bounces_that_are_left():
 @KINEMATICS
 def test_a_device_has_an_elongation_in_metres(finite):
     m = pier(finite)
-    found = elongation.gap(m, 0.5 * M, elongation.attitude(m, state(), 0.001 * M), state())
+    found = elongation.gap(m, 0.5 * M, elongation.attitude(m, state(), BOTH, 0.001 * M), state())
     assert finite or found.bend == 0.0
     assert_units(found._replace(bend=found.bend or 0.0 * ACCELERATION), UNITS[elongation.Gap])
     assert_units(
@@ -297,7 +297,7 @@ def test_a_device_has_a_force_and_the_rate_of_its_state(kind, unit):
 @KINEMATICS
 def test_the_deck_moves_in_metres(finite):
     m, of = pier(finite), Element(*quantities(Element, (SPRING, *DEVICE)))._replace(height=31.0 * M)
-    found = elongation.gap_of(m, of, elongation.attitude(m, state(), 0.001 * M), state())
+    found = elongation.gap_of(m, of, elongation.attitude(m, state(), BOTH, 0.001 * M), state())
     assert found.by_v == 0.0
     assert finite or found.bend == 0.0
     assert_units(found._replace(by_v=0.0 * ONE, bend=found.bend or 0.0 * ACCELERATION), UNITS[elongation.Gap])
@@ -317,7 +317,7 @@ def test_forces_gaps_and_speeds_have_their_units_on_springs(finite, contact):
     assert_units(found, FORCES)
 
 
-@pytest.mark.parametrize("stance", [Stance(1.0, 0.0, -1.0), Stance(1.0, 1.0, 0.0), ON_RIGHT, IN_AIR])
+@pytest.mark.parametrize("stance", [Stance(1.0, 0.0, -1.0, -1.0), Stance(1.0, 1.0, 0.0, 0.0), ON_RIGHT, IN_AIR])
 def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(stance):
     m, outline = rigid(True), forces.Outline(7.4 * M, 3.0 * M, 1.0, 24.0 * M)
     hold = forces.Hold(0.3 * ACCELERATION, 0.1 * RAD / S**2, 0.3 * ACCELERATION, 0.1 * RAD / S**2)

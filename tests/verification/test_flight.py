@@ -164,12 +164,12 @@ def in_flight(theta, omega, v_rate, pivot):
 def land(m, y, bore, pivot):
     """State, stance and kind after ``pivot`` has landed from a flight for which the pivot ``bore`` has borne last."""
     which = CONTACT_LEFT if pivot == LEFT else CONTACT_RIGHT
-    landed = transition(m, None, Moment(y, Stance(0.0, 0.0, bore), None), which, STILL, 0.01)
+    landed = transition(m, None, Moment(y, Stance(0.0, 0.0, bore, bore), None), which, STILL, 0.01)
     return landed.now.y, landed.now.contact, landed.kind
 
 
 def pivot_velocity(m, y, pivot):
-    return clearances(m, y)[2 if pivot == LEFT else 3]
+    return clearances(m, y, pivot)[2 if pivot == LEFT else 3]
 
 
 @pytest.mark.parametrize(
@@ -188,7 +188,7 @@ def test_known_landings(pivot, theta, omega, v_rate, speed, after):
         landed, stance, kind = land(MODEL, y, bore, pivot)
         assert landed.omega == pytest.approx(expected, abs=1e-9)
         assert pivot_velocity(MODEL, landed, pivot) == pytest.approx(0.0, abs=1e-15)
-        assert stance == (Stance(1.0, 0.0, LEFT) if pivot == LEFT else Stance(0.0, 1.0, RIGHT))
+        assert stance == (Stance(1.0, 0.0, LEFT, LEFT) if pivot == LEFT else Stance(0.0, 1.0, RIGHT, RIGHT))
         assert kind == (IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT)
 
 
@@ -211,7 +211,7 @@ def kinetic(m, y, contact):
 def test_no_plastic_landing_gains_energy():
     for y, pivot, bore in random_landings():
         landed, stance, _ = land(MODEL, y, bore, pivot)
-        assert kinetic(MODEL, landed, stance) <= kinetic(MODEL, y, Stance(0.0, 0.0, bore)) * (1.0 + 1e-12)
+        assert kinetic(MODEL, landed, stance) <= kinetic(MODEL, y, Stance(0.0, 0.0, bore, bore)) * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("epsilon", [0.0, 0.3, 1.0])
@@ -220,10 +220,10 @@ def test_a_landing_keeps_the_angular_momentum_about_its_pivot_and_returns_a_shar
     m = MODEL._replace(epsilon=epsilon)
     for y, pivot, bore in random_landings(100):
         landed, stance, _ = land(m, y, bore, pivot)
-        z = lever(m, y, Stance(0.0, 0.0, pivot))
+        z = lever(m, y, Stance(0.0, 0.0, pivot, pivot))
         x = m.height * math.sin(y.theta) - pivot * m.half_width * math.cos(y.theta)
         momenta = [
-            m.inertia * each.omega + z * lever(m, each, Stance(0.0, 0.0, key)) * each.omega - x * each.v_rate
+            m.inertia * each.omega + z * lever(m, each, Stance(0.0, 0.0, key, key)) * each.omega - x * each.v_rate
             for each, key in ((y, bore), (landed, pivot))
         ]
         assert momenta[1] == pytest.approx(momenta[0], rel=1e-12, abs=1e-12)

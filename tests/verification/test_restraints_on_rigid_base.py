@@ -21,7 +21,7 @@ from rockbatch.core.devices.pull import devices_of
 from rockbatch.core.history import MOMENT
 from rockbatch.core.run import march
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, problems, recentres
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, problems, recentres
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import block, elements
 from rockbatch.simulation.runs import LEFT_ALONE
@@ -474,7 +474,9 @@ def test_impossible_devices_are_refused():
     for each in wrong:
         assert len(problems(FIG5, base(each))) == 1, each
     frame = Pier.frame(replace(Pier.rectangle(1.0, 5.0), mass_t=100.0), 2, 400.0)
-    assert "columns" in problems(frame, base(Tendon(psi=0.1)))[0]
+    for each in (Damper("viscous", nu=0.1, at="deck"), DeckSpring(lam=1.0)):
+        assert "columns" in problems(frame, base(each))[0]
+    assert problems(frame, base(Tendon(psi=0.1), Damper("viscous", nu=0.1))) == []
 
 
 def test_what_a_folder_keeps_of_dampers_comes_back(tmp_path):

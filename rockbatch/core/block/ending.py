@@ -3,7 +3,7 @@
 import math
 
 from rockbatch.core import system
-from rockbatch.core.block.equations import on_pivot, side_of
+from rockbatch.core.block.equations import on_pivot, on_side, side_of
 from rockbatch.core.block.model import BlockTraits
 from rockbatch.core.clock import ground_rests
 from rockbatch.core.devices.elongation import attitude, gap_of
@@ -25,9 +25,9 @@ def reach_of(theta, omega, alpha, p):
 
 
 @inlined
-def _stored(m, devices, y):
+def _stored(m, devices, y, contact):
     """Return the energy [J/kg] that tendons, stops and springs store in state ``y``, and what dampers may give back."""
-    kept, back, at = 0.0, 0.0, attitude(m, y, devices.level[0])
+    kept, back, at = 0.0, 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.kind == HYSTERETIC:
@@ -47,30 +47,31 @@ def _at(m, y, theta):
 
 
 @kernel
-def _cannot_reach(m, devices, y, peak):
+def _cannot_reach(m, devices, now, peak):
     """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
 
     Weight, tendons and springs have a potential, stops take more than they give back, and dampers only take, but for what
     hysteretic ones and braces have stored.
     """
-    limit, inertia = min(peak, m.alpha), 1.0 / m.quickness
+    y, limit, inertia = now.y, min(peak, m.alpha), 1.0 / m.quickness
     level = inertia * m.p * m.p
-    kept, back = _stored(m, devices, y)
+    kept, back = _stored(m, devices, y, now.contact)
     energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + kept + back
     least = math.inf
     for side in (-1.0, 1.0):
-        there, _ = _stored(m, devices, _at(m, y, side * limit))
+        there, _ = _stored(m, devices, _at(m, y, side * limit), on_side(side))
         least = min(least, level * math.cos(m.alpha - limit) + there)
     return abs(y.theta) < m.alpha and energy <= least
 
 
 @kernel
-def _decided(lanes, i, m, devices, y):
+def _decided(lanes, i, m, devices, now):
     """Return whether nothing that comes later can exceed the peak: energy is only lost while the ground rests."""
+    y = now.y
     if devices is None:
         reach = reach_of(y.theta, y.omega, m.alpha, m.p)
         return reach <= lanes.peak.theta[i] or (lanes.ending.turned[i] != 0.0 and reach < math.inf)
-    return _cannot_reach(m, devices, y, lanes.peak.theta[i])
+    return _cannot_reach(m, devices, now, lanes.peak.theta[i])
 
 
 @kernel
@@ -116,14 +117,15 @@ def _status(traits, lanes, i, devices):
     _watch_reversals(lanes, i)
     if sample < samples:
         return RUNNING
-    m, (y, contact, _) = pier_in(traits, lanes, i)
+    m, now = pier_in(traits, lanes, i)
+    y, contact = now.y, now.contact
     if contact.left != 0.0 and contact.right != 0.0:
         return SURVIVED
     on_ground = side_of(contact) != 0.0
     if on_ground and ground_rests(lanes, i):
         if held(m, devices, y):
             return SURVIVED if abs(y.theta) < m.alpha else UNDECIDED
-        if _decided(lanes, i, m, devices, y):
+        if _decided(lanes, i, m, devices, now):
             return SURVIVED
     if sample < longest:
         return RUNNING

@@ -55,10 +55,38 @@ def side_of(contact):
 
 
 @inlined
-def arms(m, theta):
+def key_of(m, contact):
+    """Return where in flight the key holds the block, −1 at the left pivot to 1 at the right; of a frame the mean of its keys."""
+    return (1.0 - m.deck) * contact.bore + m.deck * contact.top
+
+
+@inlined
+def halves(m, top):
+    """Return how far the left and the right pivot are from the centre of mass [m], in the direction of the base.
+
+    A frame's centre of mass moves along the base with the corner on which its deck rests.
+    """
+    return m.half_width * (1.0 - m.deck - m.deck * top), m.half_width * (1.0 - m.deck + m.deck * top)
+
+
+@inlined
+def arms(m, theta, top):
     """Return ∂v_i/∂θ − ∂v/∂θ [m] of the left pivot and of the right one at rotation ``theta``."""
     sine, cosine = sine_and_cosine(theta)
-    return m.half_width * cosine + m.height * sine, -m.half_width * cosine + m.height * sine
+    left, right = halves(m, top)
+    return left * cosine + m.height * sine, -right * cosine + m.height * sine
+
+
+@inlined
+def lost_by_deck(m):
+    """Return what a deck that changes corners at θ = 0 takes from the moment of inertia [m²]; 0 of a block without one."""
+    return 2.0 * m.deck * (1.0 - 2.0 * m.deck) * m.half_width * m.half_width
+
+
+@system.shift.of(Block)
+def shift(m, contact):
+    """Return how far the middle of a frame's columns is from that of the block that stands for it [m]."""
+    return m.half_width * m.deck * contact.top
 
 
 @inlined
@@ -89,7 +117,7 @@ def _accelerations(m, y, contact, ground):
         return slope * turning - arm * y.omega * y.omega, turning
     if contact.left != 0.0:
         return 0.0, 0.0
-    slope, arm = arms_about(m, y.theta, contact.bore)
+    slope, arm = arms_about(m, y.theta, key_of(m, contact))
     turning = -(arm * slope * y.omega * y.omega + arm * ground.horizontal + back) / (m.inertia + arm * arm)
     return -m.gravity - ground.vertical - down, turning
 
@@ -133,7 +161,7 @@ def end_step(m, y, start, contact, remaining):
 def lever(m, y, contact):
     """Return H [m]: the height of the centre of mass above the pivot that bears or bore last."""
     side = side_of(contact)
-    return arms_about(m, y.theta, side if side != 0.0 else contact.bore)[1]
+    return arms_about(m, y.theta, side if side != 0.0 else key_of(m, contact))[1]
 
 
 @inlined
@@ -149,16 +177,17 @@ def airborne(m, contact):
 
 
 @inlined
-def clearances(m, y):
+def clearances(m, y, top):
     """Return the Clearances of both pivots above the ground."""
     sine, cosine = sine_and_cosine(y.theta)
     drop = m.height * sine * sine / (1.0 + cosine)
-    arm_left, arm_right = arms(m, y.theta)
-    b = m.half_width * sine
-    return Clearances(y.v + b + drop, y.v - b + drop, y.v_rate + arm_left * y.omega, y.v_rate + arm_right * y.omega)
+    arm_left, arm_right = arms(m, y.theta, top)
+    left, right = halves(m, top)
+    speed_left, speed_right = y.v_rate + arm_left * y.omega, y.v_rate + arm_right * y.omega
+    return Clearances(y.v + left * sine + drop, y.v - right * sine + drop, speed_left, speed_right)
 
 
 @inlined
 def on_side(side):
     """Return the Stance of a block that rocks about its pivot on ``side``."""
-    return Stance(0.5 * (1.0 - side), 0.5 * (1.0 + side), side)
+    return Stance(0.5 * (1.0 - side), 0.5 * (1.0 + side), side, side)

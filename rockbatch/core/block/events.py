@@ -8,6 +8,8 @@ from rockbatch.core.block.equations import (
     arms,
     clearances,
     constrained,
+    halves,
+    lost_by_deck,
     normal_force,
     on_side,
     side_of,
@@ -23,9 +25,11 @@ from rockbatch.core.system import lever, rates
 from rockbatch.core.table import along
 from rockbatch.core.types import (
     CONTACT_LEFT,
+    DECK,
     IMPACT_BOTH,
     IMPACT_LEFT,
     IMPACT_RIGHT,
+    LAW_LEFT,
     LEFT,
     LIFT_OFF,
     REST,
@@ -51,13 +55,13 @@ HARDLY = 1e-300
 NEAR_FLIGHT = 0.3
 """Of g: normal force above which none is lost and regained within a sub-step."""
 
-RESTING = Stance(1.0, 1.0, 0.0)
+RESTING = Stance(1.0, 1.0, 0.0, 0.0)
 
 
 @kernel
 def _lift(m, devices, y, side, ground):
     """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock, and its rate [rad/s³]."""
-    under = about_to_turn(devices, m, y, side, OPENS)
+    under = about_to_turn(devices, m, y, on_side(side), OPENS)
     turning = rates(under, y, on_side(side), ground).omega
     change = -m.quickness * (ground.vertical_slope * side * m.half_width + ground.horizontal_slope * m.height)
     return side * turning, side * change
@@ -126,14 +130,28 @@ def event_functions(m, devices, now):
         left, left_slope = _at_once(-about_right, -right_rate, rounding)
         right, right_slope = _at_once(-about_left, -left_rate, rounding)
         return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
-    left, right, left_velocity, right_velocity = clearances(m, y)
-    arm_left, arm_right = arms(m, y.theta)
+    left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
+    arm_left, arm_right = arms(m, y.theta, contact.top)
     turned = y.omega * y.omega
-    bend = m.height * math.cos(y.theta)
-    across = m.half_width * math.sin(y.theta)
-    left, left_velocity = _height(m, left, left_velocity, k.v_rate + arm_left * k.omega + (bend - across) * turned)
-    right, right_velocity = _height(m, right, right_velocity, k.v_rate + arm_right * k.omega + (bend + across) * turned)
-    return Signals(left, right, 1.0, 1.0), Signals(left_velocity, right_velocity, 0.0, 0.0)
+    bend, sine = m.height * math.cos(y.theta), math.sin(y.theta)
+    half_left, half_right = halves(m, contact.top)
+    left_acceleration = k.v_rate + arm_left * k.omega + (bend - half_left * sine) * turned
+    right_acceleration = k.v_rate + arm_right * k.omega + (bend + half_right * sine) * turned
+    left, left_velocity = _height(m, left, left_velocity, left_acceleration)
+    right, right_velocity = _height(m, right, right_velocity, right_acceleration)
+    tilt, tilt_rate = _deck_tilt(m, y, k, contact)
+    return Signals(left, right, tilt, 1.0), Signals(left_velocity, right_velocity, tilt_rate, 0.0)
+
+
+@inlined
+def _deck_tilt(m, y, k, contact):
+    """Return the tilt at whose end the deck of a frame in flight changes corners, and its rate; above zero without a deck."""
+    if m.deck == 0.0 or contact.top == 0.0:
+        return 1.0, 0.0
+    rate = contact.top * y.omega
+    if abs(rate) * m.height <= m.rest:
+        rate = HARDLY if contact.top * k.omega >= 0.0 else -HARDLY
+    return contact.top * y.theta, rate
 
 
 @system.longest_step.of(Block)
@@ -156,9 +174,13 @@ def transition(m, devices, now, which, ground, dt):
     pivot = LEFT if which == CONTACT_LEFT else RIGHT
     if side != 0.0:
         if pivot == side:
-            return Transition(Moment(y, Stance(0.0, 0.0, side), supports), TAKE_OFF, 0.0, 0.0, 0.0)
+            return Transition(Moment(y, Stance(0.0, 0.0, side, side), supports), TAKE_OFF, 0.0, 0.0, 0.0)
         y, contact, kind, remaining = _impact(m, devices, y, ground, dt)
         return Transition(Moment(y, contact, supports), kind, 1.0, 0.0, remaining)
+    if which == LAW_LEFT:
+        passed = 1.0 - lost_by_deck(m) / (m.inertia + m.height * m.height)
+        y, contact = Rocking(y.v, 0.0, y.v_rate, passed * y.omega), Stance(0.0, 0.0, contact.bore, -contact.top)
+        return Transition(Moment(y, contact, supports), DECK, 0.0, 0.0, 0.0)
     if airborne(m, contact):
         y, contact, kind = _landing(m, y, contact, pivot)
         topples = abs(y.theta) >= m.alpha and not airborne(m, contact)
@@ -172,15 +194,19 @@ def transition(m, devices, now, which, ground, dt):
 def _lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
     other, _ = _lift(m, devices, y, -side, ground)
-    under = about_to_turn(devices, m, y, side, OPENS)
+    under = about_to_turn(devices, m, y, on_side(side), OPENS)
     k = rates(under, y, on_side(side), ground)
     falls_away = ground.vertical_slope < 0.0 or not _weightless(m, ground)
     unloads = normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
     if falls_away and (unloads or other >= -NO_ACCELERATION * m.p * m.p * m.alpha):
-        leave_rest(m, devices, y, 0.0)
-        return y, Stance(0.0, 0.0, 0.0), TAKE_OFF
-    leave_rest(m, devices, y, side)
-    return y, on_side(side), LIFT_OFF
+        pushed = ground.horizontal if ground.horizontal != 0.0 else ground.horizontal_slope
+        top = -math.copysign(1.0, pushed) if m.deck > 0.0 and pushed != 0.0 else 0.0
+        stance = Stance(0.0, 0.0, 0.0, top)
+        leave_rest(m, devices, y, stance)
+        return y, stance, TAKE_OFF
+    stance = on_side(side)
+    leave_rest(m, devices, y, stance)
+    return y, stance, LIFT_OFF
 
 
 @kernel
@@ -223,7 +249,7 @@ def _bounces(m, devices, omega, ground):
 @kernel
 def _closing(m, devices, y, side, ground):
     """Return θ̈ [rad/s²] of a block about its pivot on ``side`` that closes at θ = 0, against what devices then hold."""
-    under = about_to_turn(devices, m, y, side, CLOSES)
+    under = about_to_turn(devices, m, y, on_side(side), CLOSES)
     return rates(under, y, on_side(side), ground).omega
 
 
@@ -236,8 +262,8 @@ def _landing(m, y, contact, pivot):
     The impulse at the pivot has a horizontal part: its key takes over from that of the pivot that bore last. Angular momentum
     about it is kept, and its velocity is multiplied by −ε.
     """
-    left, right, left_velocity, right_velocity = clearances(m, y)
-    arm_left, arm_right = arms(m, y.theta)
+    left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
+    arm_left, arm_right = arms(m, y.theta, pivot)
     arm, velocity, other, other_velocity = arm_left, left_velocity, right, right_velocity
     if pivot == RIGHT:
         arm, velocity, other, other_velocity = arm_right, right_velocity, left, left_velocity
@@ -246,15 +272,17 @@ def _landing(m, y, contact, pivot):
     bounce = bounce if rebounds else 0.0
     if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
         if rebounds:
-            return Rocking(0.0, 0.0, -m.epsilon * y.v_rate, -m.epsilon * y.omega), Stance(0.0, 0.0, pivot), IMPACT_BOTH
+            thrown = Rocking(0.0, 0.0, -m.epsilon * y.v_rate, -m.epsilon * y.omega)
+            return thrown, Stance(0.0, 0.0, pivot, pivot), IMPACT_BOTH
         return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, IMPACT_BOTH
     stance = on_side(pivot)
     levers = lever(m, y, stance) * lever(m, y, contact)
-    omega = ((m.inertia + levers) * y.omega - arm * (y.v_rate + bounce)) * m.quickness
+    inertia = m.inertia + levers - (lost_by_deck(m) if contact.top * pivot < 0.0 else 0.0)
+    omega = (inertia * y.omega - arm * (y.v_rate + bounce)) * m.quickness
     landed = Rocking(y.v, y.theta, -bounce - arm * omega, omega)
     kind = IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT
     if rebounds:
-        return landed, Stance(0.0, 0.0, pivot), kind
+        return landed, Stance(0.0, 0.0, pivot, pivot), kind
     if pivot * y.theta < 0.0:  # both are down, to rounding
         landed = Rocking(0.0, 0.0, landed.v_rate, omega)
     return constrained(m, landed, stance), stance, kind

@@ -55,7 +55,7 @@ def _model(traits, lanes, i):
     m = get(lanes.model, i, Numbers)
     return Block(
         m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.epsilon, m.guided, m.quickness, m.rest,
-        traits.pull, True,
+        m.deck, traits.pull, True,
     )  # fmt: skip
 
 
@@ -79,7 +79,7 @@ def begin(traits, lanes, i, run):
     at_rest = run.theta == 0.0 and run.omega == 0.0
     leans = run.theta if run.theta != 0.0 else run.omega
     side = RIGHT if leans > 0.0 else LEFT
-    contact = Stance(1.0, 1.0, 0.0) if at_rest else on_side(side)
+    contact = Stance(1.0, 1.0, 0.0, 0.0) if at_rest else on_side(side)
     y = constrained(_model(traits, lanes, i), Rocking(0.0, run.theta, 0.0, run.omega), contact)
     put(lanes.now, i, y)
     put(lanes.contact, i, contact)
@@ -96,9 +96,12 @@ def take_in_step(traits, lanes, i, substep, history):
 def take_in_part(traits, lanes, i, m, part, after):
     """Keep the height of flight, state and stance."""
     if system.airborne(m, part.start.contact):
-        include_height(lanes, i, clearances(m, part.start.y), clearances(m, part.end), part.length)
+        start, top = part.start, part.start.contact.top
+        include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)
     put(lanes.now, i, after.y)
     put(lanes.contact, i, after.contact)
+    if after.contact.top == 0.0 and m.deck > 0.0 and system.airborne(m, after.contact) and after.y.theta != 0.0:
+        lanes.contact.top[i] = RIGHT if after.y.theta > 0.0 else LEFT  # the deck lay on both corners
 
 
 @system.finish.of(BlockTraits)

@@ -19,6 +19,7 @@ class Block(NamedTuple):
     guided: float  # 1: flight goes on, 0: it ends the run
     quickness: float  # 1/(I0/M + R0²) [1/m²]
     rest: float  # velocity that counts as none [m/s]
+    deck: float  # γ/(1+2γ) of the block that stands for a frame with the deck γ; 0 of any other
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     finite: bool = True
 
@@ -66,3 +67,4 @@ class Stance(NamedTuple):
     left: float  # 1 if the pivot is on the ground
     right: float
     bore: float  # pivot whose shear key holds its place: the one that bore last, LEFT or RIGHT, or NEITHER after rest
+    top: float  # pivot diagonally below the corner on which a frame's deck rests; without a deck as ``bore``

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from rockbatch.core.kernel import inlined
+from rockbatch.core.system import shift
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine
 
@@ -21,6 +22,7 @@ class Attitude(NamedTuple):
     tangent: float  # of θ/2
     by_rise: float  # 1/cos(θ/2)
     rise: float  # of the middle of the base above that at rest [m]
+    shift: float  # of devices to the right of their offsets [m]
 
 
 class Gap(NamedTuple):
@@ -45,13 +47,14 @@ def put_gap(line, at):
 
 
 @inlined
-def attitude(m, y, level):
+def attitude(m, y, contact, level):
     """Return the Attitude in state ``y``; at rest the pier is at v = ``level`` [m]."""
     if m.finite is None:
-        return Attitude(y.theta, 1.0, 0.0, 1.0, y.v - level)
+        return Attitude(y.theta, 1.0, 0.0, 1.0, y.v - level, 0.0)
     sine, cosine = sine_and_cosine(y.theta)
     tangent = sine / (1.0 + cosine)
-    return Attitude(sine, cosine, tangent, math.sqrt(1.0 + tangent * tangent), y.v - level + m.height * sine * tangent)
+    rise = y.v - level + m.height * sine * tangent
+    return Attitude(sine, cosine, tangent, math.sqrt(1.0 + tangent * tangent), rise, shift(m, contact))
 
 
 @inlined
@@ -84,7 +87,7 @@ def across(m, of, at, y):
 @inlined
 def gap_of(m, of, at, y):
     """Return the Gap of the device ``of`` in state ``y``, whose Attitude is ``at``."""
-    return gap(m, of.offset, at, y) if of.height == 0.0 else across(m, of, at, y)
+    return gap(m, of.offset + at.shift, at, y) if of.height == 0.0 else across(m, of, at, y)
 
 
 @inlined

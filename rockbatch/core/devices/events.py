@@ -174,7 +174,7 @@ def _of_friction(m, devices, now, place, h, functions):
 @kernel
 def _is_held(m, devices, now, slope, i):
     """Return whether friction holds the pivot of event function ``i`` where it is, on or just off its support."""
-    least, at = NO_ACCELERATION * m.gravity, attitude(m, now.y, devices.level[0])
+    least, at = NO_ACCELERATION * m.gravity, attitude(m, now.y, now.contact, devices.level[0])
     lift = lifted(gap(m, -m.half_width if i % 2 == 0 else m.half_width, at, now.y), now.k)
     return abs(slope) <= least and abs(lift) <= least
 
@@ -279,7 +279,7 @@ def device_event(m, devices, now, ground, h, which):
     j, what = (which - OF_PIER) // PER_DEVICE, (which - OF_PIER) % PER_DEVICE
     of, y = devices.elements[j], now.y
     if of.kind == CONTACT:
-        at = attitude(m, y, devices.level[0])
+        at = attitude(m, y, now.contact, devices.level[0])
         _stop_event(devices, j, gap_of(m, of, at, y).elongation - of.start, what)
         return
     if of.kind == TENDON:
@@ -318,7 +318,7 @@ def after_contact(m, devices, now, ground):
     """Choose directions and modes once an event at a pivot may have made all velocities jump."""
     if devices is None:
         return
-    y, at = now.y, attitude(m, now.y, devices.level[0])
+    y, at = now.y, attitude(m, now.y, now.contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         here = gap_of(m, of, at, y)
@@ -352,9 +352,9 @@ def start_devices(m, devices, now, ground):
         return
     y = now.y
     if math.isnan(devices.level[0]):
-        lies = attitude(m, y, 0.0)
+        lies = attitude(m, y, now.contact, 0.0)
         devices.level[0] = lies.rise - m.half_width * abs(lies.sine)
-    at = attitude(m, y, devices.level[0])
+    at = attitude(m, y, now.contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         devices.goes[j] = STICKS if of.kind == FRICTION and of.strength > 0.0 else OPENS
@@ -363,12 +363,12 @@ def start_devices(m, devices, now, ground):
 
 
 @kernel
-def leave_rest(m, devices, y, side):
-    """Let devices go as the pier at rest begins to turn about its pivot on ``side``, or to rise on NEITHER."""
+def leave_rest(m, devices, y, contact):
+    """Let devices go as the pier leaves rest for ``contact``: to turn about its pivot, or to rise without one."""
     if devices is None:
         return
-    at = attitude(m, y, devices.level[0])
+    at = attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
-        of, way = devices.elements[j], way_of_opening(m, devices.elements[j], side)
+        of, way = devices.elements[j], way_of_opening(m, devices.elements[j], contact)
         devices.goes[j] = way if way != STICKS or of.kind == FRICTION else OPENS
         devices.modes[j] = mode_of(of, gap_of(m, of, at, y).elongation, devices.x[j], way)

@@ -31,7 +31,7 @@ from rockbatch.core.devices.laws import (
 )
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import hook, inlined, kernel
-from rockbatch.core.system import lever, rates
+from rockbatch.core.system import lever, rates, shift
 from rockbatch.core.table import with_pull
 from rockbatch.core.types import NO_EVENT, Pull
 
@@ -165,7 +165,7 @@ def device_rates(m, devices, now, x, ground, place):
 
     Return the pier ``m`` under all devices, and the forces [m/s²] of the first two friction dampers that do not move.
     """
-    y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, devices.level[0])
+    y, n, k, at = now.y, len(devices.elements), devices.rates[place], attitude(m, now.y, now.contact, devices.level[0])
     total, moment, one, two, holds = 0.0, 0.0, 0.0, 0.0, False
     for j in range(n):
         of, goes = devices.elements[j], devices.goes[j]
@@ -225,24 +225,24 @@ def _loaded(devices, m, now, ground):
 
 
 @hook
-def about_to_turn(devices, m, y, side, sense):
-    """Return the pier ``m`` at rest under its devices, were it to turn about its pivot on ``side``, or to rise on NEITHER.
+def about_to_turn(devices, m, y, contact, sense):
+    """Return the pier ``m`` at rest under its devices, were it to have the ``contact`` that comes.
 
     ``sense`` is OPENS or, for a block that is about to land, CLOSES. Friction then resists with all that it has.
     """
 
 
 @about_to_turn.of(type(None))
-def _nothing_holds(devices, m, y, side, sense):
+def _nothing_holds(devices, m, y, contact, sense):
     return m
 
 
 @about_to_turn.of(Devices)
-def _devices_hold(devices, m, y, side, sense):
-    total, moment, at = 0.0, 0.0, attitude(m, y, devices.level[0])
+def _devices_hold(devices, m, y, contact, sense):
+    total, moment, at = 0.0, 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
-        here, way = gap_of(m, of, at, y), sense * way_of_opening(m, of, side)
+        here, way = gap_of(m, of, at, y), sense * way_of_opening(m, of, contact)
         pull = force(of, here.elongation, 0.0, devices.x[j], mode_of(of, here.elongation, devices.x[j], way), way)
         total += pull * here.by_v
         moment += pull * here.arm
@@ -250,13 +250,14 @@ def _devices_hold(devices, m, y, side, sense):
 
 
 @kernel
-def way_of_opening(m, of, side):
-    """Return where a device goes when the pier begins to turn about its pivot on ``side``, or to rise on NEITHER."""
+def way_of_opening(m, of, contact):
+    """Return where a device goes when the pier begins to turn about the pivot that ``contact`` has, or to rise without one."""
+    side = contact.right - contact.left
     if side == 0.0:
         return OPENS
     if of.height != 0.0:
         return OPENS if side * of.way > 0.0 else CLOSES
-    distance = m.half_width - side * of.offset
+    distance = m.half_width - side * (of.offset + shift(m, contact))
     return OPENS if distance > 0.0 else (CLOSES if distance < 0.0 else STICKS)
 
 

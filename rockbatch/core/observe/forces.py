@@ -3,13 +3,13 @@
 import math
 from typing import NamedTuple
 
-from rockbatch.core.block.equations import clearances, side_of
+from rockbatch.core.block.equations import clearances, key_of, on_side, side_of
 from rockbatch.core.block.model import Block
 from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Springs, Supports
 from rockbatch.core.springs.recovery import forces, quickness, top, velocity_of_top
-from rockbatch.core.system import airborne, rates
+from rockbatch.core.system import airborne, rates, shift
 from rockbatch.core.table import record
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import LEFT, RIGHT
@@ -126,6 +126,8 @@ def _at_rest(m, body, y, ground):
     pressed = LEFT if more > 0.0 else RIGHT
     down, back = (hold.left_down, hold.left_back) if pressed == LEFT else (hold.right_down, hold.right_back)
     lacks = (abs(more) - normal) * b * m.quickness
+    wider = m.half_width - b  # 0, but of a frame: the block that stands for its columns is wider than one
+    lacks += wider * (abs(horizontal) * m.height / m.half_width - m.gravity - vertical) * m.quickness
     share = lacks / back if lacks > 0.0 else 0.0
     normal += share * down if lacks <= back else 0.0
     on_left, on_right = 0.5 * (normal + more), 0.5 * (normal - more)
@@ -152,10 +154,10 @@ def on_block(m, body, now, ground):
         if turns == 0.0:
             return forces
         side = turns
-        contact = type(contact)(0.5 * (1.0 - side), 0.5 * (1.0 + side), side)
+        contact = on_side(side)
     k = rates(m, y, contact, ground)
     v_acceleration, turning = k.v_rate, k.omega
-    squared, lean = y.omega * y.omega, (side if side != 0.0 else contact.bore)
+    squared, lean = y.omega * y.omega, (side if side != 0.0 else key_of(m, contact))
     sine, cosine = sine_and_cosine(y.theta)
     half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
     lever = m.height * cosine + lean * m.half_width * sine
@@ -166,13 +168,14 @@ def on_block(m, body, now, ground):
     lifted = m.gravity + vertical + v_acceleration
     normal = grounded * (lifted + pull * half_cosine)
     shear = horizontal + along + grounded * pull * half_sine
-    wide = 0.5 * outline.width / m.half_width  # 1, but of a frame: the block that stands for its columns is wider
     place = lean * m.half_width - slope
-    moment = wide * (place * lifted - lever * (horizontal + along) - m.inertia * turning)
-    deck = outline.deck_share * along + outline.deck_above * (cosine * turning - sine * squared)
+    moment = place * lifted - lever * (horizontal + along) - m.inertia * turning - shift(m, contact) * lifted
+    held = 0.5 * (contact.bore + contact.top) - lean  # keys of the deck beyond the mean of all, of a frame in flight
+    swung = held * m.half_width * (sine * turning + cosine * squared)
+    deck = outline.deck_share * (along + swung) + outline.deck_above * (cosine * turning - sine * squared)
     on_left, on_right = contact.left, contact.right
-    left, right, left_speed, right_speed = clearances(m, y)
-    off_left, off_right = wide * (1.0 - on_left), wide * (1.0 - on_right)
+    left, right, left_speed, right_speed = clearances(m, y, contact.top)
+    off_left, off_right = 1.0 - on_left, 1.0 - on_right
     return Forces(
         shear, normal, moment, on_left * normal, on_right * normal,
         off_left * left, off_right * right, off_left * left_speed, off_right * right_speed,

@@ -109,8 +109,8 @@ def _state_within(m, devices, j, place):
     was, now = devices.states[place.i - 1, j], devices.states[place.i, j]
     if of.kind not in (HYSTERETIC, MAXWELL):
         return was + s * (now - was)
-    start = gap_of(m, of, attitude(m, step.start, level), step.start)
-    end = gap_of(m, of, attitude(m, step.end, level), step.end)
+    start = gap_of(m, of, attitude(m, step.start, step.contact, level), step.start)
+    end = gap_of(m, of, attitude(m, step.end, step.contact, level), step.end)
     rate = response(of, start.elongation, start.speed, was, TAUT, math.copysign(1.0, start.speed)).state_rate
     rate_end = response(of, end.elongation, end.speed, now, TAUT, math.copysign(1.0, end.speed)).state_rate
     return cubic(was, rate, now, rate_end, step.length, s)
@@ -128,7 +128,7 @@ def recorded_force(of, here, state, goes):
 @kernel
 def _by_laws(m, devices, place, y):
     """Return the Pull, in state ``y`` at a Place, of all that has a law: not of friction."""
-    total, moment, at = 0.0, 0.0, attitude(m, y, devices.level)
+    total, moment, at = 0.0, 0.0, attitude(m, y, place.step.contact, devices.level)
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.kind == FRICTION:
@@ -177,18 +177,18 @@ def _with_across(forces, gravity, shear, moment):
 
 
 @hook
-def _at_base(devices, m, forces, i, y):
+def _at_base(devices, m, forces, i, y, contact):
     """Return the Forces at row ``i`` in state ``y`` without what devices on the deck take."""
 
 
 @_at_base.of(type(None))
-def _all_at_base(devices, m, forces, i, y):
+def _all_at_base(devices, m, forces, i, y, contact):
     return forces
 
 
 @_at_base.of(RecordedDevices)
-def _less_deck(devices, m, forces, i, y):
-    shear, moment, at, some = 0.0, 0.0, attitude(m, y, devices.level), False
+def _less_deck(devices, m, forces, i, y, contact):
+    shear, moment, at, some = 0.0, 0.0, attitude(m, y, contact, devices.level), False
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0:
@@ -210,7 +210,7 @@ def _all_within(devices, m, forces, place, y):
 
 @_at_base_within.of(RecordedDevices)
 def _less_deck_within(devices, m, forces, place, y):
-    shear, moment, at, some = 0.0, 0.0, attitude(m, y, devices.level), False
+    shear, moment, at, some = 0.0, 0.0, attitude(m, y, place.step.contact, devices.level), False
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0:
@@ -343,7 +343,7 @@ def forces_of_run(m, body, run, extremes, out):
     under, first = with_pull(m, Pull(pulls[0, 0], pulls[0, 1])), state_of(m, rows[0])
     shaking = Ground(ground[0, 0], ground[0, 1], ground[0, 2], ground[0, 3])
     before = forces_at(under, body, Moment(first, was, supports), shaking)
-    before = _at_base(devices, m, before, 0, first)
+    before = _at_base(devices, m, before, 0, first, was)
     for i in range(len(rows)):
         y, contact, t = state_of(m, rows[i]), contact_of(m, rows[i]), rows[i].t
         supports = waiting(m, y, was, contact, supports)
@@ -351,7 +351,7 @@ def forces_of_run(m, body, run, extremes, out):
         t_start = rows[i - 1].t if i > 0 else t
         under_start, under = under, with_pull(m, Pull(pulls[i, 0], pulls[i, 1]))
         shaking = ground_at(ground, dt, 0.5 * (t_start + t), t)
-        now = _at_base(devices, m, forces_at(under, body, Moment(y, contact, supports), shaking), i, y)
+        now = _at_base(devices, m, forces_at(under, body, Moment(y, contact, supports), shaking), i, y, contact)
         if len(out) > 0:
             _put(out, i, now)
         if len(greatest) == 0:

@@ -36,7 +36,7 @@ def _contact_on_springs(m, row):
 
 @contact_of.of(Block)
 def _contact_of_block(m, row):
-    return Stance(row.left, row.right, row.bore)
+    return Stance(row.left, row.right, row.bore, row.top)
 
 
 @kernel

@@ -185,9 +185,9 @@ def _include_in_mean(lanes, i, m, now):
 
 
 @kernel
-def _in_deck(m, devices, y):
+def _in_deck(m, devices, y, contact):
     """Return the energy [J/kg] that springs and stops at the deck store in state ``y``, which depends on θ alone."""
-    energy, at = 0.0, attitude(m, y, devices.level[0])
+    energy, at = 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0 and of.kind in (CONTACT, SPRING):
@@ -205,8 +205,8 @@ def _in_devices(lanes, i, m, devices, now):
     """
     if devices is None:
         return
-    y, (left, right) = now.y, base_of(m, now)
-    at = attitude(m, y, devices.level[0])
+    y, contact, (left, right) = now.y, now.contact, base_of(m, now)
+    at = attitude(m, y, contact, devices.level[0])
     sunk = 0.5 * (left + right) - lanes.lowest.plastic[i]
     load, beyond, turning = m.gravity, 0.0, 0.0
     for j in range(len(devices.elements)):
@@ -225,7 +225,7 @@ def _in_devices(lanes, i, m, devices, now):
     lanes.waiting.load[i] = load
     limit = min(lanes.peak.theta[i], unstable_equilibrium(m, load))
     right, left = State(y.v, limit, 0.0, 0.0, 0.0, 0.0), State(y.v, -limit, 0.0, 0.0, 0.0, 0.0)
-    at_limit = min(_in_deck(m, devices, right), _in_deck(m, devices, left))
+    at_limit = min(_in_deck(m, devices, right, contact), _in_deck(m, devices, left, contact))
     lanes.waiting.stored[i] = max(beyond, 0.0) + abs(turning) * (abs(y.theta) + lanes.peak.theta[i]) - at_limit
 
 

@@ -121,6 +121,12 @@ def lever(m, y, contact):
     return at.lever + (contact.right - contact.left) * at.swing
 
 
+@system.shift.of(Springs)
+def shift(m, contact):
+    """Return 0: no frame stands on springs."""
+    return 0.0
+
+
 @system.airborne.of(Springs)
 def airborne(m, contact):
     """Return whether both pivots are in the air."""
