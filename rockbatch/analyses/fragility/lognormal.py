@@ -236,10 +236,6 @@ class _Likelihood:
         self.low, self.high = (low - self.centre) / self.width, (high - self.centre) / self.width
         self.count, self.of_record = capacities.count, capacities.of_record
         self.inputs = np.empty((len(low), 0)) if inputs is None else inputs
-        self.x1, self.x2 = (
-            np.column_stack((np.ones(len(x)), np.where(np.isinf(x), 0.0, x), self.inputs))
-            for x in (self.low, self.high)
-        )
 
     def value(self, *parameters: Values) -> Values:
         """Return ℓ of a, b and the factors on the inputs, each shape (m,); −∞ where a bracket has no probability."""
@@ -251,8 +247,8 @@ class _Likelihood:
         """Return z at both ends of every interval, shape (m, n), for ``points`` of shape (m, 2 + k)."""
         a, b = points.T[:2, :, None]
         a = a + points[:, 2:] @ self.inputs.T
-        z1 = np.where(np.isinf(self.low), -np.inf, a + b * self.x1[:, 1])
-        z2 = np.where(np.isinf(self.high), np.inf, a + b * self.x2[:, 1])
+        z1 = np.where(np.isinf(self.low), -np.inf, a + b * np.where(np.isinf(self.low), 0.0, self.low))
+        z2 = np.where(np.isinf(self.high), np.inf, a + b * np.where(np.isinf(self.high), 0.0, self.high))
         return z1, z2
 
     def derivatives(self, point: Values) -> tuple[Values, Values]:
@@ -260,12 +256,16 @@ class _Likelihood:
         z1, z2 = (z[0] for z in self._z(point[None]))
         log_d = _log_difference(z1, z2)
         g1, g2 = (np.exp(-0.5 * z**2 - 0.5 * math.log(2.0 * math.pi) - log_d) for z in (z1, z2))
-        z1, z2 = np.where(np.isinf(z1), 0.0, z1), np.where(np.isinf(z2), 0.0, z2)
-        scores = g2[:, None] * self.x2 - g1[:, None] * self.x1
-        h22, h11, h12 = (self.count * h for h in (-g2 * (z2 + g2), g1 * (z1 - g1), g1 * g2))
-        mixed = self.x1.T @ (h12[:, None] * self.x2)
-        hessian = self.x2.T @ (h22[:, None] * self.x2) + mixed + mixed.T + self.x1.T @ (h11[:, None] * self.x1)
-        return scores, hessian
+        z1, x1 = np.where(np.isinf(z1), 0.0, z1), np.where(np.isinf(self.low), 0.0, self.low)
+        z2, x2 = np.where(np.isinf(z2), 0.0, z2), np.where(np.isinf(self.high), 0.0, self.high)
+        n, inputs = self.count, self.inputs
+        scores = np.column_stack((g2 - g1, g2 * x2 - g1 * x1, (g2 - g1)[:, None] * inputs))
+        h22, h11, h12 = -g2 * (z2 + g2), g1 * (z1 - g1), g1 * g2
+        aa, ab = n * (h22 + 2 * h12 + h11), n * (h22 * x2 + h12 * (x1 + x2) + h11 * x1)
+        bb = n * (h22 * x2**2 + 2 * h12 * x1 * x2 + h11 * x1**2)
+        of_ab = np.array([[aa.sum(), ab.sum()], [ab.sum(), bb.sum()]])
+        mixed = np.array([aa, ab]) @ inputs  # an input is the same at both ends of an interval, as a is
+        return scores, np.block([[of_ab, mixed], [mixed.T, inputs.T @ (aa[:, None] * inputs)]])
 
     def maximum(self) -> Values | None:
         """Return (a, b, …) over standardised ln x at the maximum; None if b > 0 does not hold there."""
