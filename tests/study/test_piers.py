@@ -12,7 +12,7 @@ from rockbatch.analyses.sensitivity.study import applying, read_sensitivity
 from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Part, Pier
+from rockbatch.pier import Part, Pier, places
 from rockbatch.study import load_study
 from rockbatch.study.inputs import varied
 
@@ -192,6 +192,17 @@ def test_the_restitution_of_a_frame_is_in_the_results(tmp_path):
     (case,) = json.loads((tmp_path / "out" / "run.json").read_text())["cases"]
     assert case["parameters"]["restitution"] == study.cases[0].pier.restitution
     assert case["pier"]["deck_over_columns"] == 3.0
+
+
+def test_devices_of_a_frame_are_those_of_all_its_columns(tmp_path):
+    """kN over the weight of columns and deck; at the right edge of each column."""
+    case = RIGID + '[[case.tendon]]\nprestress_kN = 400\nstiffness_kN_m = 8000\nat = "right"\n'
+    (found,) = study_of(tmp_path, FRAME, case).cases
+    tendon = found.base.restraints[0]
+    assert tendon.psi == pytest.approx(400 / (560 * 9.81), rel=1e-12)
+    assert [place.offset for place in places(found.pier, tendon)] == [pytest.approx(0.75)]
+    (problem,) = problems_of(tmp_path, FRAME, RIGID + "[[case.deck_spring]]\nstiffness_kN_m = 8000\n")
+    assert "columns: devices at the deck of a rocking frame are not solved" in problem
 
 
 # Stiffness and strength in the analyses
