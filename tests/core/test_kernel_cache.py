@@ -48,7 +48,7 @@ def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
     assert run_copy(tmp_path) == before  # from the cache
     source = package / "core" / "block" / "equations.py"
     text = source.read_text(encoding="utf-8")
-    line = "return arms_about(m, y.theta, side if side != 0.0 else contact.bore)[1]\n"
+    line = "return arms_about(m, y.theta, side if side != 0.0 else key_of(m, contact))[1]\n"
     assert text.count(line) == 1
     source.write_text(text.replace(line, line.replace("return ", "return 0.0 * ")), encoding="utf-8")
     assert run_copy(tmp_path) == 0.0 < before
