@@ -462,6 +462,21 @@ def test_too_little_memory_ends_in_a_sentence(tmp_path):
     assert "Traceback" not in done.stderr
 
 
+def test_a_library_that_memory_is_too_little_for_is_reported_in_a_sentence(study, monkeypatch, capsys):
+    """As pandas is, loaded when the runs are finished: their journal stays."""
+    words = "algos.so: failed to map segment from shared object"
+
+    def load(*_):
+        raise ImportError(words)
+
+    monkeypatch.setattr("rockbatch.commands.run.main", load)
+    assert main(["run", str(study)]) == 2
+    assert f"rockbatch: {words}: is memory limited" in capsys.readouterr().err
+    words = "No module named 'pandas'"
+    with pytest.raises(ImportError, match=words):
+        main(["run", str(study)])
+
+
 @pytest.mark.parametrize(
     ("words", "answer"),
     [

@@ -158,6 +158,9 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
 
 def _value(text: str) -> float | str:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         return text
+    if not math.isfinite(number):
+        raise ValueError(f"{text} as a value of a case")
+    return number

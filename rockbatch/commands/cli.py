@@ -123,6 +123,11 @@ def _exit_code(parsed: argparse.Namespace) -> int:
             f"rockbatch: {str(error) or 'out of memory: run fewer at a time (--jobs), keep fewer histories, or allow more'}"
         )
         return 2
+    except ImportError as error:
+        if "failed to map segment" not in str(error):  # as the loader says it where memory is limited
+            raise
+        say(f"rockbatch: {error}: is memory limited (ulimit -v, or a job's limit)? Allow more, and repeat the command")
+        return 2
     except KeyboardInterrupt:
         say("rockbatch: interrupted")
         return 130

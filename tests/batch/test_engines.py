@@ -1,6 +1,7 @@
 """Engines: whatever carries out the runs, and whatever becomes of it meanwhile, the table is the same bytes."""
 
 import contextlib
+import itertools
 import json
 import os
 import pickle
@@ -287,6 +288,15 @@ def test_the_command_line_carries_out_a_study_on_processes_of_this_machine(file,
     assert "on a dask cluster of 1 thread (this machine)" in capsys.readouterr().err
     assert main(["run", str(file), "--out", str(tmp_path / "threads")]) == 0
     assert (tmp_path / "dask/peaks.csv").read_bytes() == (tmp_path / "threads/peaks.csv").read_bytes()
+
+
+def test_a_clock_that_jumps_back_an_hour_and_forth_a_day_changes_no_result(file, tmp_path, monkeypatch):
+    assert main(["run", str(file), "--out", str(tmp_path / "steady")]) == 0
+    plain, jumps = time.time, itertools.cycle([0, -3600, 86400])
+    monkeypatch.setattr(time, "time", lambda: plain() + next(jumps))
+    assert main(["run", str(file), "--out", str(tmp_path / "jumping")]) == 0
+    assert (tmp_path / "jumping/peaks.csv").read_bytes() == (tmp_path / "steady/peaks.csv").read_bytes()
+    assert 0 < json.loads((tmp_path / "jumping/run.json").read_text(encoding="utf-8"))["wall_s"] < 600
 
 
 def test_a_scheduler_that_does_not_answer_is_reported(file, tmp_path, capsys, monkeypatch):

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 from motion_files import at2_text, wiggle, write_at2
-from studies import study_text, write_study
+from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch import running
 from rockbatch.common.errors import InputError
 from rockbatch.motions import archives, folder, read_motions
 from rockbatch.motions.formats import stationxml
@@ -65,6 +66,38 @@ def test_a_file_that_is_gone_once_it_was_read_is_a_record(tmp_path, monkeypatch)
     write_at2(tmp_path, "a.AT2", wiggle(60))
     meanwhile(monkeypatch, lambda _: (tmp_path / "a.AT2").unlink())
     assert len(read_motions(tmp_path).motions) == 1
+
+
+@pytest.mark.parametrize("change", [grown, replaced, lambda path: os.truncate(path, 200), Path.unlink])
+def test_runs_use_what_was_read_whatever_becomes_of_the_files(tmp_path, monkeypatch, change):
+    records = tmp_path / "records"
+    records.mkdir()
+    for name in ("a.AT2", "b.AT2"):
+        write_at2(records, name, wiggle(60, len(name)), title="nothing, 000")
+    flat = {"alpha": 0.02, "p": 1.0}  # so that it rocks
+    study = write_study(tmp_path, study_text(pier=flat, motions={"path": "records"}, pulses=(), cases=(RIGID,)))
+    before = rb.run(study)
+    plain = running.ground_motions
+
+    def read(*given):
+        found = plain(*given)
+        for path in records.glob("*.AT2"):
+            change(path)
+        return found
+
+    with monkeypatch.context() as patch:
+        patch.setattr(running, "ground_motions", read)
+        after = rb.run(study, tmp_path / "out")
+    assert before["theta_max_over_alpha"].min() > 0
+    assert after["theta_max_over_alpha"].to_numpy() == pytest.approx(
+        before["theta_max_over_alpha"].to_numpy(), rel=1e-9
+    )
+    if change is replaced:  # records are told apart by their samples, not by their times
+        again = rb.run(study, tmp_path / "out")
+        assert (again["theta_max_over_alpha"] != after["theta_max_over_alpha"]).all()
+    else:
+        with pytest.raises(InputError, match="no ground motion"):
+            rb.run(study, tmp_path / "out")
 
 
 def test_what_is_written_between_two_looks_at_a_file_is_noticed(tmp_path):

@@ -1,5 +1,6 @@
 """The report in a real browser: nothing leaves the page, no script error, and sorting, searching and reading values work."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -7,12 +8,26 @@ import pandas as pd
 import pytest
 from browser import browse, chromium, needs_chromium
 from check_samples import verdict
-from report_samples import FIG7, FOUNDATIONS, response, write_results
+from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
 from rockbatch.checks import write_verdicts
+from rockbatch.pier import Pier
 from rockbatch.reporting import write_comparison, write_report
 
 pytestmark = needs_chromium
+
+
+RAN = "window.ran = 1"
+HOSTILE = [
+    f"<script>{RAN};alert(1)</script>", f'"><img src=x onerror="{RAN}">', f"</title><script>{RAN}</script>",
+    f"<svg/onload='{RAN}'>",
+    f"</style><style>body {{ display: none }}</style>--><script>{RAN}</script>", f"' onmouseover='{RAN}' x='", "]]>${1}{{7*7}}",
+    f'<iframe src="javascript:parent.{RAN}"></iframe>', "<base href=https://x.invalid/>", f"javascript:{RAN}", "__proto__",
+    "<meta http-equiv=refresh content='0;url=https://x.invalid/'>", "<link rel=stylesheet href=https://x.invalid/a.css>",
+    f"&lt;script&gt;{RAN}", f"\\u003cscript>{RAN}</script>", "\u202eKCAB\u2066a\u200b\u061c", "A" * 3000,
+    "/".join(60 * ["x" * 30]),
+    "<form action=https://x.invalid/><button>", "<!--", "</script></body></html>", "url(https://x.invalid/x.png)",
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +36,38 @@ def page(tmp_path_factory):
     directory = tmp_path_factory.mktemp("results")
     write_results(directory, changes={("RRS228", "2"): {"status": "overturned"}})
     return write_report(directory, [response("ERZ-NS", name, base) for name, base in FOUNDATIONS[1:3]])
+
+
+def test_names_and_notes_of_a_hostile_folder_are_words_and_stay_on_the_page(tmp_path):
+    """As elements and as tooltips, and after whatever can be clicked was."""
+    cases = [
+        case_entry(name, {}, Pier(alpha=0.13, p=0.38), base)
+        for name, (_, base) in zip(HOSTILE[-9:-4], FOUNDATIONS, strict=True)
+    ]
+    write_results(
+        tmp_path,
+        records=[(name, 0.3) for name in HOSTILE],
+        cases=cases,
+        unusable=[{"name": text, "source": text, "reason": text} for text in HOSTILE],
+        command=["rockbatch", "run", *HOSTILE],
+        machine=HOSTILE[0],
+    )
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    info["study"] |= {"title": "".join(HOSTILE), "notes": "\n\n".join(HOSTILE), "path": HOSTILE[1], "text": HOSTILE[2]}
+    for record, text in zip(info["records"], HOSTILE, strict=True):
+        record |= {"source": text, "notes": [text], "event": text, "station_name": text}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    act = """
+    for (const name of ["alert", "confirm", "prompt", "open"]) window[name] = () => window.ran = name;
+    for (const button of document.querySelectorAll("button, summary")) button.click();
+    for (const mark of [...document.querySelectorAll(".dots use, .dots .rigid")].slice(0, 60)) at(mark, 0.5, 0.5);
+    found.ran = window.ran ?? null;
+    found.scripts = document.scripts.length;
+    found.elements = document.querySelectorAll("img, iframe, base, link, form, [onerror], [onload], [onmouseover]").length;
+    """
+    found = browse(tmp_path, write_report(tmp_path, []), act)
+    own = {"ran": None, "scripts": 3, "elements": 0}  # scripts: the page's and the two of `browse`
+    assert found == own | {"wrong": [], "requests": [], "wide": True}
 
 
 @pytest.mark.parametrize("size", [(1200, 900), (500, 900)])

@@ -390,6 +390,14 @@ def test_a_verdict_of_words_that_no_check_has_is_reported(foreign, word):
     assert told(foreign) == f"{path}: damaged ({word} = 'pads'); start `rockbatch check` again"
 
 
+@pytest.mark.parametrize("value", ["inf", "-1e999", "nan"])
+def test_a_verdict_of_a_pier_that_no_case_has_is_reported(foreign, value):
+    path = foreign / "checks.csv"
+    head, row = csv.reader(path.read_text(encoding="utf-8").splitlines())
+    path.write_text(csv_line([*head, "alpha"]) + csv_line([*row, value]), encoding="utf-8")
+    assert told(foreign) == f"{path}: damaged ({value} as a value of a case); start `rockbatch check` again"
+
+
 def test_a_table_that_is_mended_between_two_looks_is_reported(foreign, monkeypatch):
     """A row that cannot be is looked for in the file again, where it may be right by then."""
     peaks = foreign / "peaks.csv"
