@@ -120,8 +120,8 @@ class Rule:
     flight: str | None = None
     failed: str | None = None
     other_law: bool = False
-    at_m: float | None = None
     confirm: tuple[str, ...] = ()
+    at_m: float | None = None
 
     def __post_init__(self) -> None:
         wrong = _unknown_words(self) or _misfits(self)
