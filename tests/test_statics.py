@@ -27,7 +27,7 @@ from rockbatch.pier import (
 )
 from rockbatch.pier.equilibrium import SlowTurn, deflection_under, first_loading
 from rockbatch.pier.free_rocking import FreeRocking
-from rockbatch.pier.statics import FACTS, sheet_of
+from rockbatch.pier.statics import FACTS, in_words, sheet_of
 
 PIER = Pier(alpha=0.2, p=1.0, mu=4.0)
 FRICTION, TENDON = rb.Damper("friction", f=0.05), rb.Tendon(psi=0.3, lam=0.2)
@@ -534,3 +534,14 @@ def test_the_sheet_of_any_pier_that_stands_has_finite_numbers(pier, base):
     assert all(value is None or math.isfinite(value) for value in sheet.row.values())
     assert np.isfinite(sheet.curve.to_numpy()).all()
     assert repr(sheet).startswith("<statics")
+
+
+def test_a_pier_at_rest_settles_by_its_weight_and_prestress_over_both_springs():
+    """g/ω_v² each, and (1 + ψ) times that with a tendon; rigid ground does not give."""
+    of_weight = 9.81 / 30.0**2
+    for base, settled in (
+        (ElasticBase(30.0), of_weight),
+        (ElasticBase(30.0, restraints=(rb.Tendon(psi=0.5),)), 1.5 * of_weight),
+    ):
+        assert in_words(rb.statics(PIER, base))["at rest"] == f"settles {1000 * settled:.3g} mm"
+    assert in_words(rb.statics(PIER, RigidBase()))["at rest"] == ""

@@ -58,6 +58,14 @@ def test_peaks_differ_by_about_the_share_and_have_a_note_beyond_five_percent(alp
     assert LINEARISED not in rows["finite"]["note"]
 
 
+def test_a_pier_that_overturns_has_no_peak_to_doubt():
+    pier = rb.Pier(0.3, 1.0)
+    pulse = rb.pulse("half-sine", name="s", amplitude=2.0 * pier.gravity, period=4.0, dt=0.005, duration=4.0)
+    row = rb.simulate(pier, rb.ElasticBase(60.0), pulse).row
+    assert row["status"] == "overturned"
+    assert LINEARISED not in row["note"]
+
+
 def test_the_terminal_and_the_report_say_so(tmp_path, capsys):
     case = {"name": "springs", "base": "elastic", "beta": 60, "epsilon": 0.1, "kinematics": ["first-order", "finite"]}
     strong = SINE | {"amplitude_g": 2.5, "period_s": 1.0}

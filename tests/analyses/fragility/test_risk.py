@@ -16,8 +16,8 @@ from studies import SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
-from rockbatch.analyses.fragility.risk import probability
-from rockbatch.analyses.fragility.study import read_fragility
+from rockbatch.analyses.fragility.risk import Risk, note, probability
+from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
@@ -169,6 +169,12 @@ def test_where_the_dispersion_is_open_the_rate_is_too():
     fitted = fit(Capacities.of_same_records(np.array([0.1, 0.2, 0.3, 0.4]), ~beyond, beyond))
     _, low, high = fitted.rate(*TABLE.quadrature())
     assert 0 <= low < high == math.inf
+
+
+@pytest.mark.parametrize(("most", "said"), [(math.inf, True), (0.01, False)])
+def test_an_open_upper_bound_of_a_rate_is_said(most, said):
+    risk = Risk(None, exactly(0.5, 0.4), 1e-3, (1e-4, most), None, 0.0, 0.0, (1e-3, 1e-3), (0.0, 0.0), (0.2, 0.6))
+    assert ("leave the upper bound of the rate open" in note(risk, FragilitySpec("ida", "PGA", (0.2, 0.4), ()))) == said
 
 
 # The study
