@@ -19,7 +19,7 @@ def kernel_of(pier: Pier, base: Base) -> tuple[System, bool]:
 
 
 def compiles() -> bool:
-    """Return whether Numba compiles at all, or its users have told it not to."""
+    """Return whether Numba compiles at all, or its users have disabled that."""
     return not config.DISABLE_JIT  # type: ignore[attr-defined]
 
 

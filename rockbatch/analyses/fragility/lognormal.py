@@ -30,7 +30,7 @@ HALVINGS = 30
 NOT_RISING = "the share of records beyond the limit does not grow with the intensity"
 
 LEAST_PER_PARAMETER = 5
-"""Runs or capacities by which a parameter can be told from chance."""
+"""Runs or capacities by which a parameter can be distinguished from chance."""
 
 SEPARATED = 1e-3
 """ℓ of an interval, below which (in magnitude) the inputs leave nothing open: a probability of 0.999."""
@@ -139,7 +139,7 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What drawn inputs contribute to the dispersion of capacities.
+    """Contribution of drawn inputs to the dispersion of capacities.
 
     Attributes
     ----------
