@@ -364,6 +364,7 @@ def basin_waves(seed: int):
 OTHERS = {
     "another seed of one spectrum": lambda a: earthquake(51),
     "a neighbour": lambda a: neighbour(a, 52),
+    "a close neighbour": lambda a: neighbour(a, 57, r=0.983),
     "a near one": lambda a: neighbour(a, 53, 0.005),
     "a neighbour, filtered": lambda a: in_band(neighbour(a, 54), 1.0, 5.0),
     "a near one, filtered": lambda a: in_band(neighbour(a, 55, 0.005), 1.0, 5.0),
