@@ -66,6 +66,22 @@ def test_friction_at_both_pivots_and_a_tendon_on_the_axis_raise_the_lift_off():
     assert others.strength_g > 1.1 * math.tan(0.2)  # the hysteretic one has yielded by then
 
 
+def test_dampers_are_held_against_what_rights_the_pier():
+    """At 0.1 α friction at the heel has f 2b cos 0.05 α, by its chord, the weight R sin 0.9 α; viscous dampers bear nothing.
+
+    A release from 0.1 α ends upright below 1 only.
+    """
+    per_force = 2.0 * PIER.half_width * math.cos(0.01) / (PIER.size * math.sin(0.18))
+    assert on_rigid(FRICTION).dampers_over_rest == pytest.approx(0.05 * per_force, rel=1e-6)
+    assert on_rigid(rb.Damper("viscous", nu=0.5)).dampers_over_rest is on_rigid(TENDON).dampers_over_rest is None
+    still = rb.Motion("still", 0.01, np.zeros(500))
+    for ratio in (0.9, 1.1):
+        base = RigidBase(restraints=(rb.Damper("friction", f=ratio / per_force),))
+        assert rb.statics(PIER, base).dampers_over_rest == pytest.approx(ratio, rel=1e-6)
+        released = rb.simulate(dataclasses.replace(PIER, initial_rotation_rad=0.02), base, still)
+        assert abs(released.history["theta"].iloc[-1]) == pytest.approx(0.02 if ratio > 1 else 0.0, abs=1e-6)
+
+
 def test_of_two_directions_the_weaker_counts():
     """A tendon at the left pivot has no arm about it, and the base's width about the right one."""
     sheet = on_rigid(rb.Tendon(psi=0.3, at="left"))

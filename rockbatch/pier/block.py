@@ -147,7 +147,14 @@ class Part(NamedTuple):
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
         """Return a uniform shaft that stands on the pivots: a rectangle."""
         _refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
-        return cls(mass_t, 0.5 * height_m, mass_t * (width_m**2 + height_m**2) / 12.0, height_m)
+        return cls.rectangle(mass_t, 0.5 * height_m, height_m, width_m)
+
+    @classmethod
+    @checked
+    def rectangle(cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0) -> "Part":
+        """Return a rectangle whose centre is at ``height_m``, ``length_m`` along the axis of the pier; or two legs, of
+        ``mass_t`` together, whose own axes are ``apart_m`` from each other."""
+        return cls(mass_t, height_m, mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0, length_m)
 
 
 def _in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:

@@ -55,6 +55,7 @@ FACTS = (
     Fact("strength_over_alpha", "static strength, θ/α", ".3g", "rotation at which it is reached"),
     Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "righting moment about the pivot that bears more"),
     Fact("moment_kN_m", "greatest moment [kN m]", ",.0f", "the same with the weight"),
+    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "their moment over all others; below 1 these right the pier"),
     Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "of weight, supports, tendons and stops, without dampers"),
     Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
     Fact("full_contact_period_s", "rocking period on both supports [s]", ".3g", "before lift-off, elastic"),
@@ -87,6 +88,9 @@ class Statics(Shown):
         that never yield, or stops, let it rise without end.
     moment_over_weight_m : float or None
         The greatest righting moment, devices included, over the weight [m]; None likewise.
+    dampers_over_rest : float or None
+        Moment of friction and hysteretic dampers at θ/α = 0.1 over that of weight, supports, tendons and stops: below 1 these
+        bring the pier back, from 1 on dampers can hold it there. None without such dampers.
     unstable_rad : float or None
         Unstable equilibrium of weight, supports, tendons and stops, without dampers [rad]; None if they hold the pier.
     settlement_m : float or None
@@ -138,6 +142,16 @@ class Statics(Shown):
         if isinstance(self.base, ElasticBase):
             return None
         return self.pier.restitution if self.base.restitution is None else self.base.restitution
+
+    @property
+    def dampers_over_rest(self) -> float | None:
+        """Return the moment of dampers over that of all else at θ/α = 0.1; None without dampers that bear any."""
+        curve = self.equilibria
+        moment, of_dampers = (
+            float(np.interp(COMPARED * self.pier.alpha, curve.theta, values))
+            for values in (curve.moment, curve.dampers)
+        )
+        return of_dampers / (moment - of_dampers) if 0.0 < of_dampers < moment else None
 
     @property
     def flexural_over_rocking(self) -> float | None:

@@ -106,12 +106,23 @@ PART = Section(("pier", "part"), (
     "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=_MASS),
     "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
         required=True, many=True, usual=_HEIGHT._replace(least=0.0)),
-    "inertia_t_m2": Key(not_negative, "0.0", "Moment of inertia about its own centre; default 0.", many=True),
+    "inertia_t_m2": Key(not_negative, "0.0",
+        "Moment of inertia about its own centre; default 0, or what follows from `width_m`.", many=True),
     "length_m": Key(not_negative, "20.0",
         "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of [output] need it.",
         many=True, usual=_HEIGHT._replace(least=0.0)),
+    "width_m": Key(not_negative, "2.4",
+        "Width of a rectangle, or of each of two legs; its inertia follows from it and `length_m`.",
+        many=True, usual=_WIDTH._replace(least=0.0)),
+    "apart_m": Key(not_negative, "10.7",
+        "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both.",
+        many=True, usual=_WIDTH._replace(least=0.0)),
     **CONFIRM,
-}, many=True)  # fmt: skip
+}, many=True, clashes=(
+    Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
+    Clash(("width_m",), "length_m is missing beside width_m; write for example length_m = 20.0", lacking=("length_m",)),
+    Clash(("apart_m",), "width_m is missing beside apart_m, of each leg; write for example width_m = 2.4", lacking=("width_m",)),
+))  # fmt: skip
 PIER_KEYS = tuple(name for name in PIER if name not in ("mass_t", "confirm"))
 """Keys that tell piers apart; the mass, which a [[case]] may have too, tells foundations apart."""
 
@@ -194,10 +205,10 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
 
 def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
     """Return a pier of parts, and the deck as one more; drift is read at the highest point that is known."""
-    all_of_them = [
-        Part(**{name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values})
-        for n in range(1, parts + 1)
-    ]
+    written = (
+        {name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values} for n in range(1, parts + 1)
+    )
+    all_of_them = [Part.rectangle(**part) if "width_m" in part else Part(**part) for part in written]
     deck = None
     if "deck_mass_t" in values:
         wrong = unlikely_deck(sum(part.mass_t for part in all_of_them), values["deck_mass_t"], common["confirm"])

@@ -22,6 +22,7 @@ PULSE = (
 RIGID = '[[case]]\nname = "rigid"\nbase = "rigid"\n'
 PADS = '[[case]]\nname = "pads"\nbase = "yielding"\nstiffness_kN_m = 2e6\nyield_kN = 4e4\n'
 SHAFT = "width_m = 4\nheight_m = 30\nmass_t = 2000\n"
+PARTS = "width_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n"
 FRAME = "width_m = 1.5\nheight_m = 10\nmass_t = 35\ndeck_mass_t = 420\ncolumns = 4\n"
 
 
@@ -62,6 +63,11 @@ def problems_of(folder, pier, *rest):
         (
             "width_m = 6\nheight_m = 24\ndeck_mass_t = 300\n[[pier.part]]\nmass_t = 900\nheight_m = 10\ninertia_t_m2 = 3e4",
             Pier.of_parts(6.0, [Part(900.0, 10.0, 3e4), Part(300.0, 24.0, length_m=0.0)]),
+        ),
+        (
+            "width_m = 6\n[[pier.part]]\nmass_t = 900\nheight_m = 10\nlength_m = 20\nwidth_m = 2\napart_m = 5\n"
+            "[[pier.part]]\nmass_t = 300\nheight_m = 25\nlength_m = 2\nwidth_m = 7",
+            Pier.of_parts(6.0, [Part.rectangle(900.0, 10.0, 20.0, 2.0, 5.0), Part.rectangle(300.0, 25.0, 2.0, 7.0)]),
         ),
         (FRAME, Pier.frame(Pier.rectangle(1.5, 10.0, mass_t=35.0), 4, 420.0)),
         (
@@ -117,6 +123,9 @@ def test_lists_of_parts_and_of_columns_are_combined_too(tmp_path):
         ("width_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\nheigth_m = 2\n", "6: [[pier.part]] no. 1: heigth_m: unknown key"),
         ("alpha = 0.1\np = 1\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "4: [pier]: [[pier.part]]: needs width_m"),
         ("width_m = 4\ndeck_mass_t = 3\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "3: [pier]: deck_height_m is missing"),
+        (PARTS + "width_m = 2\n", "6: [[pier.part]] no. 1: length_m is missing beside width_m"),
+        (PARTS + "apart_m = 2\ninertia_t_m2 = 9\n", "6: [[pier.part]] no. 1: width_m is missing beside apart_m, of each leg"),
+        (PARTS + "inertia_t_m2 = 9\nlength_m = 2\nwidth_m = 2\n", "6: [[pier.part]] no. 1: inertia_t_m2 and width_m are given"),
         ("width_m = 4\npart = []\n", "3: [pier]: part = []: a pier has one part at least"),
         ("width_m = 4\n[pier.part]\nmass_t = 1\nheight_m = 2\n", "3: pier.part: expected a list of tables; write [[pier.part]]"),
         (FRAME.replace("= 4", "= 1"), "6: [pier]: columns = 1: expected a whole number, 2 or above"),

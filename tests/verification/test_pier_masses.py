@@ -71,6 +71,14 @@ def test_a_shaft_cut_into_pieces_is_the_same_pier():
     assert Pier.of_parts(7.0, [(2000.0, 20.0, Part.shaft(7.0, 40.0, 2000.0).inertia_t_m2)]).mu == pytest.approx(3.0)
 
 
+def test_two_legs_are_a_wide_rectangle_without_its_middle():
+    """Legs of 2 m, their axes 8 m apart, are what 10 m of width have without the 6 m between them."""
+    whole, middle = (Part.rectangle(10.0 * width, 15.0, 30.0, width) for width in (10.0, 6.0))
+    legs = Part.rectangle(40.0, 15.0, 30.0, 2.0, apart_m=8.0)
+    assert legs.mass_t == whole.mass_t - middle.mass_t
+    assert legs.inertia_t_m2 == pytest.approx(whole.inertia_t_m2 - middle.inertia_t_m2, rel=1e-14)
+
+
 def test_the_top_is_the_highest_point_unless_it_is_said():
     assert Pier(0.2, 1.0).top == 2 * Pier(0.2, 1.0).height
     assert Pier.with_deck(4.0, 30.0, 2000.0, 500.0, deck_height_m=28.0).top == 30.0
