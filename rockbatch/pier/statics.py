@@ -55,7 +55,7 @@ FACTS = (
     Fact("strength_over_alpha", "static strength, θ/α", ".3g", "rotation at which it is reached"),
     Fact("moment_over_weight_m", "greatest moment over weight [m]", ".4g", "righting moment about the pivot that bears more"),
     Fact("moment_kN_m", "greatest moment [kN m]", ",.0f", "the same with the weight"),
-    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "their moment over all others; below 1 these right the pier"),
+    Fact("dampers_over_rest", "dampers over the rest at 0.1 α", ".2f", "their moment over all others; below 1 the pier returns"),
     Fact("unstable_over_alpha", "unstable equilibrium, θ/α", ".4g", "of weight, supports, tendons and stops, without dampers"),
     Fact("vertical_period_s", "vertical period [s]", ".3g", "of both supports, elastic"),
     Fact("full_contact_period_s", "rocking period on both supports [s]", ".3g", "before lift-off, elastic"),

@@ -120,7 +120,9 @@ def named(
     if 1 < len(cases) == len(rigid):
         rigid = set()  # nothing to compare with: they are foundations like others
     shown = dict.fromkeys((*BASE_KEYS, *varied))
-    values = {kind: [constants[key] for key in cases if (key in rigid) is kind] for kind in (True, False)}
+    # Supports are compared with supports: rigid ground has no values of theirs
+    kinds = {key: (key in rigid, case["base"] == "rigid") for key, (case, *_) in cases.items()}
+    values = {kind: [constants[key] for key in cases if kinds[key] == kind] for kind in kinds.values()}
     differing = {
         kind: [name for name in shown if len({str(constants_of.get(name)) for constants_of in of_kind}) > 1]
         for kind, of_kind in values.items()
@@ -133,7 +135,7 @@ def named(
     count = {True: 0, False: 0}
     for key in cases:
         kind = key in rigid
-        distinguishing = [name for name in differing[kind] if name in constants[key]]
+        distinguishing = [name for name in differing[kinds[key]] if name in constants[key]]
         words = [quantity(name, constants[key][name], digits[name]) for name in distinguishing]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
