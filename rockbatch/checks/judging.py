@@ -64,7 +64,7 @@ def judge(
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
     available: dict[str, Any] = {"scales": scales, "polarities": polarities}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
-    available["output"] = [key for key, column in BROUGHT.items() if column in runs]
+    available["output"] = [key for key, columns in BROUGHT.items() if any(name in runs for name in columns)]
     available["sections"] = set() if sections is None else set(sections["height_m"])
     available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]

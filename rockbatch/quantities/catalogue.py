@@ -27,7 +27,6 @@ from rockbatch.quantities.cases import (
     width,
 )
 from rockbatch.quantities.demands import (
-    FORCES,
     Ceiling,
     Demand,
     Estimated,
@@ -679,8 +678,11 @@ DEMANDS: dict[str, Demand] = {
 }
 """Demands by the name that a rule gives them; signs are dropped."""
 
-BROUGHT = {"forces": FORCES, "rocking": ROCKING, "devices_work": "damper_travel_m"}
-"""By keys of [output], a column that each brings."""
+BROUGHT = {
+    key: [quantity.name for quantity in COLUMNS.values() if quantity.needs == key]
+    for key in ("forces", "rocking", "devices_work")
+}
+"""By keys of [output], the columns that each brings."""
 
 
 def names(table: Iterable[Quantity]) -> list[str]:

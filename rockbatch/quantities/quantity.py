@@ -166,9 +166,11 @@ class Quantity:
         """Return whether a :class:`rockbatch.study.Study` brings it."""
         if self.requested:
             return self.requested(study)
-        if self.needs:
-            return bool(getattr(study.output, self.needs))
-        return any(device.what == self.device for case in study.cases for device in case.base.restraints)
+        if self.needs and not getattr(study.output, self.needs):
+            return False
+        return not self.device or any(
+            device.what == self.device for case in study.cases for device in case.base.restraints
+        )
 
     def demands(self) -> list[Demand]:
         """Return the demands that checks make of it."""

@@ -13,6 +13,7 @@ from rockbatch.reporting.overview import by_foundation
 from rockbatch.reporting.pair import Pair
 from rockbatch.reporting.sections import (
     answer,
+    devices,
     distribution,
     forces,
     histories,
@@ -75,6 +76,7 @@ PARTS = (
     Part("Compared with published values", "references", published.section),
     Part("Shock by shock", "shocks", shocks.section),
     Part("Forces", "forces", forces.section),
+    Part("Devices", "devices", devices.section),
     Part("Forces over the height of the shaft", "shaft", shaft.section),
     Part("Histories", "histories", histories.section),
     Part("Statistics of the suite", "suite", statistics.section, folded=True),

@@ -37,7 +37,7 @@ def section(finished: Finished) -> Markup:
     cut_short = finished.runs["status"].isin(CUT_SHORT).to_numpy()
     known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
     return render(
-        "reporting/sections/forces.html", of_cases=_of_cases(finished, shown),
+        "reporting/sections/forces.html", of_cases=of_cases(finished, shown, "Forces of every case"),
         every_run=every_run(finished, heads, cells, "Forces of every run"),
         interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
         known=int(known.sum()), on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,
@@ -46,8 +46,8 @@ def section(finished: Finished) -> Markup:
     )  # fmt: skip
 
 
-def _of_cases(finished: Finished, shown: list[Quantity]) -> Markup:
-    """Return a row for each case: the worst of its runs, column by column."""
+def of_cases(finished: Finished, shown: list[Quantity], name: str) -> Markup:
+    """Return a table with a row for each case: the worst of its runs, column by column."""
     rows: list[list[object]] = []
     for words, group in finished.groups():
         for place in group["series"].unique():
@@ -59,7 +59,7 @@ def _of_cases(finished: Finished, shown: list[Quantity]) -> Markup:
     runs_head = Head(
         "runs", note="that went through, of all; where some did not, the others bound the values from one side"
     )
-    return table([Head("case"), runs_head, *map(head, shown)], rows, sortable=True, name="Forces of every case")
+    return table([Head("case"), runs_head, *map(head, shown)], rows, sortable=True, name=name)
 
 
 def _worst(column: Quantity, runs: "pd.DataFrame", cut_short: bool) -> object:
