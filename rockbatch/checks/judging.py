@@ -12,7 +12,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, V
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, creeps, has_device
-from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
 from rockbatch.results.sections import MEANING as OF_SECTIONS
@@ -64,7 +64,12 @@ def judge(
     polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
     available: dict[str, Any] = {"scales": scales, "polarities": polarities}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
-    available["output"] = [key for key, columns in BROUGHT.items() if any(name in runs for name in columns)]
+    kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
+    available["output"] = [
+        key
+        for key, columns in BROUGHT.items()
+        if any(name in runs for name in columns) or not any(COLUMNS[name].device in kinds for name in columns)
+    ]
     available["sections"] = set() if sections is None else set(sections["height_m"])
     available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]

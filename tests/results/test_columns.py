@@ -21,7 +21,6 @@ from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
     DEMANDS,
-    DEVICES,
     FIXED,
     OPTIONAL,
     TRAILING,
@@ -171,7 +170,7 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 
 
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
-    of_devices = (*DEVICES, COLUMNS["devices_error"])  # it has neither dampers nor tendons
+    of_devices = (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"])  # it has no device
     asked = [column for column in OPTIONAL if column not in of_devices]
     assert list(table) == [*names(FIXED), *study.varied, *names(TRAILING), *names(asked)]
 

@@ -178,13 +178,21 @@ def test_who_does_not_ask_for_the_work_has_no_column_of_it_and_is_told_how_to(tm
         rb.load_study(_study(tmp_path, least_stroke_mm=2.0))
 
 
-def test_only_devices_that_a_study_has_bring_columns_of_their_work_and_a_check_of_others_does_not_apply(tmp_path):
-    case = {"name": "tied", "base": "rigid", "tendon": [{"psi": 0.1, "lambda": 0.5, "yield_kN": 1e4}]}
-    check = {"name": "travel", "demand": "damper_travel_m", "at_most": 1e-6, "reason": "a test"}
+@pytest.mark.parametrize(
+    ("devices", "verdicts"),
+    [
+        ({}, [DOES_NOT_APPLY, DOES_NOT_APPLY]),
+        ({"tendon": [{"psi": 0.1, "lambda": 0.5, "yield_kN": 1e4}]}, [DOES_NOT_APPLY, PASS]),
+    ],
+)
+def test_devices_that_a_study_lacks_bring_no_columns_and_checks_of_them_do_not_apply(tmp_path, devices, verdicts):
+    travel = {"name": "travel", "demand": "damper_travel_m", "at_most": 1e-6, "reason": "a test"}
     strain = {"name": "strain", "demand": "tendon_strain_over_yield", "at_most": 1.0, "reason": "a test"}
-    pier = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
-    text = study_text(pier=pier, pulses=(SINE,), cases=[case], output={"devices_work": True}, check=[check, strain])
+    text = study_text(
+        pier={"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}, pulses=(SINE,),
+        cases=[{"name": "rock", "base": "rigid"} | devices], output={"devices_work": True}, check=[travel, strain],
+    )  # fmt: skip
     table = rb.run(write_study(tmp_path, text), out=tmp_path / "out")
-    assert "tendon_strain_over_yield" in table
     assert not any(name.startswith("damper") for name in table)
-    assert [verdict.verdict for verdict in read_verdicts(tmp_path / "out")] == [DOES_NOT_APPLY, PASS]
+    assert ("tendon_strain_over_yield" in table) == bool(devices)
+    assert [verdict.verdict for verdict in read_verdicts(tmp_path / "out")] == verdicts
