@@ -47,12 +47,16 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         written = dict.fromkeys(format(value, form) for value in (min(values), max(values))) if values else ()
         return f"{' to '.join(written)} {unit}" if written else "unknown"
 
-    piers: dict[tuple[float, ...], Case] = {}
+    along: dict[tuple[float, ...], Case] = {}
+    across: dict[tuple[float, ...], Case] = {}
     for case in cases:
+        piers = across if case.get("across_of") else along
         piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
+    names_across = {case["case"] for case in cases if case.get("across_of")}
     return render(
         "reporting/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
-        degrees=math.degrees, piers=list(piers.values()), given=_numbers_of(finished.pier_as_given),
+        degrees=math.degrees, along=list(along.values()), across=list(across.values()),
+        foundations_along=sum(key[0] not in names_across for key in finished.places), given=_numbers_of(finished.pier_as_given),
         drawn=_drawn(finished), vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
