@@ -8,6 +8,8 @@ from pathlib import Path
 from textwrap import dedent
 
 import motion_files  # noqa: F401  loads ObsPy, which warns
+import numpy as np
+import pandas as pd
 import pytest
 from jsonschema import Draft7Validator
 
@@ -73,6 +75,25 @@ def test_the_tutorial_comes_to_a_verdict(tmp_path, monkeypatch, capsys):
     assert "uplift of the" in told
     assert main(["check", "reports/pier", "--all"]) == code
     assert "no overturning: no record overturns the pier" in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_pier_on_both_axes_comes_to_what_its_page_shows_and_a_hand_makes_of_its_peaks(
+    tmp_path, monkeypatch, capsys
+):
+    page = ROOT / "docs" / "pages" / "questions" / "axes.md"
+    (tmp_path / "records").symlink_to(ROOT / "motions" / "near_fault")
+    (tmp_path / "pier.toml").write_text(blocks(page, "toml")[0], encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "pier.toml"]) == 0
+    told = capsys.readouterr().out
+    assert blocks(page, "text")[0].strip() in told
+    assert "SRSS of both axes (rotation); 100 % +" in told
+    peaks, checks = (pd.read_csv(tmp_path / "reports" / "pier" / f"{name}.csv") for name in ("peaks", "checks"))
+    along, across = (peaks[peaks["case"] == name].set_index("record") for name in ("rock", "rock across"))
+    x, y = along["theta_max_over_alpha"], across["theta_max_over_alpha"]
+    u, v = along["top_drift_m"], across["top_drift_m"]
+    by_hand = [np.sqrt(x**2 + y**2).mean(), max((u + 0.3 * v).max(), (0.3 * u + v).max()), 0.0]
+    np.testing.assert_allclose(checks["value"], by_hand, rtol=1e-9)
 
 
 def test_the_page_of_commands_shows_every_command():
