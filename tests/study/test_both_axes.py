@@ -1,6 +1,7 @@
 """A case with ``other_width_m`` stands for both axes of its pier, each under its own component of every record."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from motion_files import wiggle, write_at2
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch.listening import Listener
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, ElasticBase, Pier, Stop, Tendon
 from rockbatch.study import Study, load_study
@@ -98,6 +100,10 @@ def test_both_components_have_one_axis_and_one_factor_each_and_are_those_of_turn
     spectrum = {"spectrum": [[0.1, 0.8], [3.0, 0.2]], "period_range_s": [0.2, 2.0], "factors": "each", "pairs": "srss"}
     (scaled,) = motions(30, [BLOCK], spectrum)
     np.testing.assert_allclose(scaled.across, scaled.factor * both.across, rtol=1e-9)
+    fitted = np.geomspace(0.2, 2.0, 200)
+    srss = rb.pair_spectrum(replace(scaled, across=None), replace(scaled.exchanged, across=None), fitted)["srss_g"]
+    target = np.exp(np.interp(np.log(fitted), np.log([0.1, 3.0]), np.log([0.8, 0.2])))
+    assert np.log(srss / target).mean() == pytest.approx(0.0, abs=0.02)  # by least squares, at fewer periods
     swapped = motions(120, [BLOCK], spectrum)[0]
     assert swapped.factor == pytest.approx(scaled.factor, rel=1e-9)  # of the pair, whichever way it is turned by 90°
 
@@ -162,6 +168,24 @@ def test_one_way_to_combine_holds_for_every_check_where_demands_add_up():
     fall = {"name": "f", "demand": "overturned", "at_most": 0, "reason": "agreed"}
     made = study(suite={"both_axes": "100_30"}, check=[check, check | {"name": "s", "both_axes": "srss"}, fall])
     assert [rule.both_axes for rule in made.checks] == ["100_30", "srss", None]
+
+
+class Said(Listener):
+    """A listener that keeps what it is told."""
+
+    def __init__(self):
+        self.words = []
+
+    def say(self, words):
+        self.words.append(words)
+
+
+@pytest.mark.slow
+def test_analyses_take_the_axis_and_say_so():
+    made, said = study([BLOCK], fragility={"measure": "PGA", "levels_g": [0.2, 0.4]}), Said()
+    result = rb.fragility(made, progress=said)
+    assert set(result.fragility["case"]) == {"rock"}
+    assert "other_width_m: this analysis takes the cases along the axis of the pier only" in said.words
 
 
 @pytest.mark.slow

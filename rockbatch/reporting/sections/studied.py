@@ -82,7 +82,8 @@ def in_a_line(finished: Finished) -> str:
     stations, records = stations_of(finished.info), finished.info["records"]
     of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
     suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
-    motions = f"{counted(len(records), 'component')} ({_vertical(finished)})"
+    axes = 1 + any(case.get("across_of") for case in finished.info["cases"])
+    motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood} end standing"
     return " · ".join(
