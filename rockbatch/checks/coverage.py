@@ -1,6 +1,7 @@
 """Coverage of the verdicts: every case at every scale with how its runs ended, and the stations of the suite."""
 
 from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,7 +73,8 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
     status_of = runs["status"].to_numpy(object)
     planned = records * runs["polarity"].nunique()
     counted = []
-    for axes in grouped(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])).values():
+    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
+        axes = list(of_axes)
         (case, _), rows = axes[0], np.concatenate([rows for _, rows in axes])
         for place, scale in enumerate(scales):
             of_scale, every = rows[scale_of[rows] == place], planned * len(axes)

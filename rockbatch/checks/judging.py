@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +22,6 @@ from rockbatch.checks.bounds import (
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
-from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, DEMANDS, OTHER_LAW
@@ -63,7 +63,7 @@ def judge(
         Rows of peaks.csv; those without a case, of files that could not be used, are in no suite, and mirror images count
         once.
     cases : sequence of mappings
-        ``cases`` of run.json, or some of them.
+        ``cases`` of run.json, or some of them; that across the axis of a pier follows the one along it.
     records : mapping, optional
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
@@ -93,9 +93,10 @@ def judge(
     runs = simulated(runs)
     polarities = list(runs["polarity"].unique())
     verdicts = []
-    for pair in grouped(suites(runs, cases), lambda pair: of_pier(pair[0])).values():
+    for _, of_axes in groupby(suites(runs, cases), lambda suite: of_pier(suite[0])):
+        pier = list(of_axes)
         for scale in scales:
-            axes = [Axis(case, complete(mine[mine["scale"] == scale], stations, polarities)) for case, mine in pair]
+            axes = [Axis(case, complete(mine[mine["scale"] == scale], stations, polarities)) for case, mine in pier]
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale):
                     of_rule = [_of_rule(rule, axis, polarities, sections) for axis in axes]

@@ -52,7 +52,8 @@ def test_the_statistic_is_that_of_each_station_s_combined_demand_and_so_are_its_
     table["station"] = [name for name in stations for _ in range(2)]
     table["theta_max_error"] = np.column_stack((error_x, error_y)).ravel()
     demand, at = [("theta_max_over_alpha", (1.0, 1.0)), ("theta_max_rad", (0.2, 0.15))][seed % 2]
-    (verdict,) = judged(table, Rule("r", demand, at_most=0.5, statistic="mean", both_axes=way))
+    shuffled = table.sample(frac=1.0, random_state=seed).reset_index(drop=True)
+    (verdict,) = judged(shuffled, Rule("r", demand, at_most=0.5, statistic="mean", both_axes=way))
 
     def by_hand(share):
         worst = {}
@@ -110,6 +111,20 @@ def test_a_run_that_is_missing_on_one_axis_leaves_the_record_open():
     assert "not run" in verdict.counted
     (out,) = judged(table, Rule("r", "theta_max_over_alpha", at_most=0.5, failed="left out"))
     assert (out.records, out.value) == (1, 0.1)
+
+
+def test_moments_in_a_section_combine_and_axial_forces_do_not():
+    table = both([0.1, 0.2], [0.1, 0.2])
+    names = table[["record", "case", "polarity", "scale"]]
+    forces = {"section_moment_kNm": [30.0, 40.0, 50.0, 10.0], "section_axial_greatest_kN": [9.0, 7.0, 6.0, 8.0]}
+    sections = names.assign(height_m=7.5, section_axial_least_kN=0.0, sections_error=0.1, **forces)
+    rules = [
+        Rule("moment", "section_moment_kNm", at_most=60.0, at_m=7.5, both_axes="srss"),
+        Rule("axial", "section_axial_kN", at_most=60.0, at_m=7.5),
+    ]
+    moment, axial = judge(rules, table, [case(), across()], sections=sections)
+    assert (moment.value, axial.value) == (pytest.approx(math.hypot(50.0, 10.0)), 9.0)
+    assert moment.high == pytest.approx(1.1 * moment.value)
 
 
 def test_of_what_is_the_whole_pier_s_the_greater_counts():

@@ -13,7 +13,9 @@ import pandas as pd
 import pytest
 from jsonschema import Draft7Validator
 
+import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, main
+from rockbatch.results.labelled import labelled
 from rockbatch.study.load import load_study
 from rockbatch.study.schema import MANIFEST, STUDY, schema_of
 
@@ -94,6 +96,17 @@ def test_the_pier_on_both_axes_comes_to_what_its_page_shows_and_a_hand_makes_of_
     u, v = along["top_drift_m"], across["top_drift_m"]
     by_hand = [np.sqrt(x**2 + y**2).mean(), max((u + 0.3 * v).max(), (0.3 * u + v).max()), 0.0]
     np.testing.assert_allclose(checks["value"], by_hand, rtol=1e-9)
+    report = (tmp_path / "reports" / "pier" / "report.html").read_text(encoding="utf-8")
+    words = " ".join(re.sub("<[^>]+>", " ", report).split())
+    assert "Each axis is a planar model of its own, without rolling or twisting" in words
+    assert "One pier on one foundation under 5 ground motions" in words
+    assert "5 stations, 10 components" in words
+    results = rb.open_results(tmp_path / "reports" / "pier")
+    shown = labelled(results.peaks, results.info, results.directory).runs
+    np.testing.assert_allclose(
+        shown["pga"], results.peaks["pga_g"], rtol=1e-3
+    )  # 9.81 of the pier, and as run.json rounds
+    assert results.plot(axes="self-similar") is not None
 
 
 def test_the_page_of_commands_shows_every_command():

@@ -9,9 +9,11 @@ from motion_files import wiggle, write_at2
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Listener
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, ElasticBase, Pier, Stop, Tendon
+from rockbatch.results import beside_peaks
 from rockbatch.study import Study, load_study
 from rockbatch.study.both_axes import across
 from rockbatch.study.suite import ground_motions
@@ -170,6 +172,11 @@ def test_one_way_to_combine_holds_for_every_check_where_demands_add_up():
     assert [rule.both_axes for rule in made.checks] == ["100_30", "srss", None]
 
 
+def test_finished_runs_count_only_under_the_same_second_component():
+    first, other = pair(), replace(pair(), across=pair(seed=8).across)
+    assert digests([first])["motions"] != digests([other])["motions"] == digests([other])["motions"]
+
+
 class Said(Listener):
     """A listener that keeps what it is told."""
 
@@ -206,6 +213,14 @@ def test_exchanged_widths_and_components_give_exchanged_rows():
             np.testing.assert_allclose(
                 mine, swapped.loc[swapped["case"] == second, numbers].to_numpy(float), rtol=1e-6, atol=1e-9
             )
+    measured = [
+        (run.row["case"], run.motion.pga, run.pier.half_width)
+        for run in beside_peaks.runs(table, study(cases), [motion])
+    ]
+    assert measured[2:] == [
+        ("rock", motion.pga, pytest.approx(1.5)),
+        ("rock across", motion.exchanged.pga, pytest.approx(2.0)),
+    ]
     alone = rb.run(study([RIGID], PIER | {"width_m": 4.0}).with_(motions=[motion.exchanged]))
     assert (
         alone["theta_max_over_alpha"].item() == table.loc[table["case"] == "rock across", "theta_max_over_alpha"].item()
