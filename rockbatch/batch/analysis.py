@@ -37,6 +37,7 @@ from rockbatch.reporting import REPORT, write_analyses
 from rockbatch.reporting.finished_analysis import digest_of
 from rockbatch.results.run_json import versions
 from rockbatch.study import Case, Motions, Study, given_study
+from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.suite import ground_motions
 
 A = TypeVar("A", bound="Analysis")
@@ -247,6 +248,10 @@ def run_analysis(
     """
     started = time.monotonic()
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    cases = along_the_axis(loaded.cases)
+    if len(cases) < len(loaded.cases):
+        listener.say("other_width_m: this analysis takes the cases along the axis of the pier only")
+        loaded = replace(loaded, cases=cases)
     spec = read(loaded)
     if out is not None:
         kind.refuse_irregular(Path(out))

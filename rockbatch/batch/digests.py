@@ -24,7 +24,7 @@ def digests(motions: Iterable[Motion], **settings: object) -> dict[str, str]:
     hashes["motions"] = hashlib.sha256()
     for motion in motions:
         hashes["motions"].update(repr((motion.name, motion.station, motion.dt, motion.npts, motion.initial)).encode())
-        for samples in (motion.horizontal, motion.vertical):
+        for samples in (motion.horizontal, motion.vertical, motion.across):
             hashes["motions"].update(b"none" if samples is None else samples.tobytes())
     return {name: digest.hexdigest()[:16] for name, digest in hashes.items()} | {"program": program()}
 

@@ -11,6 +11,7 @@ from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
+from rockbatch.quantities.cases import of_pier
 from rockbatch.toml.kinds import shown
 
 MOST_NAMES, MOST_FILES = 3, 6
@@ -126,7 +127,7 @@ def _wholly_or_in_part(stations: Mapping[str, Sequence[Any]], used: Collection[s
 
 def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
     """Return the responses that govern a case and that none of its checks bounds, by the names of cases that have any."""
-    by_case = grouped(worst, lambda response: _key(response.case["case"], response.case["columns"]))
+    by_case = grouped(worst, lambda response: _key(of_pier(response.case)[0], response.case["columns"]))
     of_cases = {
         name: unlimited(by_case.get(_key(of_case[0].case, of_case[0].columns), []), of_case)
         for name, of_case in cases.items()
@@ -134,7 +135,7 @@ def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst
     return {name: responses for name, responses in of_cases.items() if responses}
 
 
-def _key(case: str, columns: Mapping[str, float | str]) -> tuple[object, ...]:
+def _key(case: object, columns: Mapping[str, float | str]) -> tuple[object, ...]:
     """Return the key that distinguishes cases, with the ten digits of the files."""
     values = ((name, value if isinstance(value, str) else f"{value:.9g}") for name, value in columns.items())
     return str(case), *sorted(values)

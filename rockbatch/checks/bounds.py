@@ -1,6 +1,7 @@
 """Bounds of demands: of each run of a case at one scale, and of each record."""
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,23 @@ class Bounds(NamedTuple):
     low: Values
     high: Values
     estimated: bool
+
+
+_COMBINED: dict[str, Callable[[Values, Values], Values]] = {
+    "greater": np.maximum, "srss": np.hypot, "100_30": lambda x, y: np.maximum(x + 0.3 * y, 0.3 * x + y),
+}  # fmt: skip
+
+
+def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
+    """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.study.rules.BOTH_AXES`.
+
+    Every way grows with both demands, so that bounds combine to bounds.
+    """
+    if len(axes) == 1:
+        return axes[0]
+    values, lows, highs, estimated = zip(*axes, strict=True)
+    combined = _COMBINED[how]
+    return Bounds(combined(*values), combined(*lows), combined(*highs), all(estimated))
 
 
 def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:

@@ -1,13 +1,14 @@
 """Coverage of the verdicts: every case at every scale with how its runs ended, and the stations of the suite."""
 
 from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, of_pier
 from rockbatch.results.rows import NOT_RUN, rows_of_cases
 
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
@@ -56,7 +57,7 @@ ALL_STATIONS = Stations()
 
 
 def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> list[CaseRuns]:
-    """Return every case at every scale, in order.
+    """Return every case at every scale, in order; one of both axes of a pier has the runs of both.
 
     Parameters
     ----------
@@ -72,13 +73,15 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
     status_of = runs["status"].to_numpy(object)
     planned = records * runs["polarity"].nunique()
     counted = []
-    for case, rows in rows_of_cases(runs, cases):
+    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
+        axes = list(of_axes)
+        (case, _), rows = axes[0], np.concatenate([rows for _, rows in axes])
         for place, scale in enumerate(scales):
-            of_scale = rows[scale_of[rows] == place]
+            of_scale, every = rows[scale_of[rows] == place], planned * len(axes)
             ended = {status: int((status_of[of_scale] == status).sum()) for status in statuses}
-            ended[NOT_RUN] = max(planned - len(of_scale), 0)
+            ended[NOT_RUN] = max(every - len(of_scale), 0)
             counts = {status: n for status, n in ended.items() if n}
-            total = max(planned, len(of_scale))
+            total = max(every, len(of_scale))
             counted.append(CaseRuns(str(case["case"]), case["columns"], float(scale), total, counts))
     return counted
 

@@ -3,15 +3,27 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from itertools import groupby
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from rockbatch.checks.bounds import SCATTER, by_other_law, by_record, chaotic, counted, governing, lacking, of_runs
+from rockbatch.checks.bounds import (
+    SCATTER,
+    Bounds,
+    by_other_law,
+    by_record,
+    chaotic,
+    counted,
+    governing,
+    lacking,
+    of_runs,
+    on_both_axes,
+)
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case, creeps, has_device
+from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
@@ -24,6 +36,14 @@ MOST_NAMES = 5
 
 
 NOT_WEIGHED = "the study does not state the pier's mass"
+PLANAR = "each axis of the pier is a planar model of its own"
+
+
+class Axis(NamedTuple):
+    """A case, along the axis of its pier or across it, with its rows of peaks.csv at one scale; the same records on both."""
+
+    case: Case
+    suite: "pd.DataFrame"
 
 
 def judge(
@@ -34,7 +54,7 @@ def judge(
     count: str = "station",
     sections: "pd.DataFrame | None" = None,
 ) -> list[Verdict]:
-    """Evaluate every rule for every case at every scale.
+    """Evaluate every rule for every case at every scale; a case that was run on both axes of its pier is one.
 
     Parameters
     ----------
@@ -43,7 +63,7 @@ def judge(
         Rows of peaks.csv; those without a case, of files that could not be used, are in no suite, and mirror images count
         once.
     cases : sequence of mappings
-        ``cases`` of run.json, or some of them.
+        ``cases`` of run.json, or some of them; that across the axis of a pier follows the one along it.
     records : mapping, optional
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
@@ -71,24 +91,29 @@ def judge(
         if any(name in runs for name in columns) or not any(COLUMNS[name].device in kinds for name in columns)
     ]
     available["sections"] = set() if sections is None else set(sections["height_m"])
-    available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases))
+    available["cases"] = list(dict.fromkeys(str(case["case"]) for case in cases if not case.get("across_of")))
     wrong = [f"check {shown(rule.name)}: {problem}" for rule in rules for problem in unmet(rule, **available)]
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
     polarities = list(runs["polarity"].unique())
     verdicts = []
-    for case, mine in suites(runs, cases):
+    for _, of_axes in groupby(suites(runs, cases), lambda suite: of_pier(suite[0])):
+        pier = list(of_axes)
         for scale in scales:
-            suite = complete(mine[mine["scale"] == scale], stations, polarities)
+            axes = [Axis(case, complete(mine[mine["scale"] == scale], stations, polarities)) for case, mine in pier]
             for rule in rules:
-                if chooses(rule, str(case["case"]), scale):
-                    # Of a mirror image the demands are the same
-                    its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
-                    if rule.at_m is not None and sections is not None:
-                        its = at_section(its, sections, rule)
-                    verdicts.append(_verdict(rule, its, case, scale, rule.count or count))
+                if chooses(rule, str(axes[0].case["case"]), scale):
+                    of_rule = [_of_rule(rule, axis, polarities, sections) for axis in axes]
+                    verdicts.append(_verdict(rule, of_rule, scale, rule.count or count))
     return verdicts
+
+
+def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], sections: "pd.DataFrame | None") -> Axis:
+    """Return the runs that a rule is about; of a mirror image the demands are the same."""
+    suite = axis.suite
+    its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
+    return Axis(axis.case, its if rule.at_m is None or sections is None else at_section(its, sections, rule))
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> "pd.DataFrame":
@@ -104,41 +129,63 @@ def _stations(runs: "pd.DataFrame") -> dict[str, str]:
     return dict(zip(runs["record"], stations, strict=True))
 
 
-def _verdict(rule: Rule, suite: "pd.DataFrame", case: Case, scale: float, count: str) -> Verdict:
-    demand = DEMANDS[rule.demand]
+def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verdict:
+    demand, case = DEMANDS[rule.demand], axes[0].case
     unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
     of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
     if not demand.per_case:
+        suite = axes[0].suite if len(axes) == 1 else pd.concat([axis.suite for axis in axes])
         statistic, number = rule.statistic or "max", len(suite)
         of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suite), "count": count}
+    absent = [_absent(rule, axis) for axis in axes]
+    applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = Verdict(
         check=rule.name,
         case=str(case["case"]),
         columns=dict(case["columns"]),
         scale=scale,
-        **{name: getattr(rule, name) for name in ("demand", "words", "sense", "limit", "basis", "reason", "counting")},
+        **{name: getattr(rule, name) for name in ("demand", "sense", "limit", "basis", "reason", "counting")},
+        words=rule.words + (f", {rule.on_both_axes}" if len(applying) > 1 else ""),
         **of_suite,
         **unknown,
         records=0,
         verdict=DOES_NOT_APPLY,
-        note=f"a {case['base']} base has no {rule.demand}",
+        note=absent[0],
         unit="" if rule.statistic == "count" else demand.unit,
     )
-    if not demand.applies_to(case):
+    if not applying:
         return none
-    if demand.device and not has_device(case, demand.device):
-        return replace(none, note=f"the pier has no {demand.device}")
-    if demand.weighed and "mass_t" not in case["pier"]:
-        return replace(none, note=NOT_WEIGHED)
-    if rule.at_m is not None and suite["height_m"].isna().all() and (suite["status"] != "failed").any():
-        return replace(none, note=f"the pier has no section at {rule.at_m:g} m")
     if not demand.per_case:
-        return _of_suite(rule, suite, case, none)
-    value = float(demand.evaluate(suite, case).value[0])
-    if math.isnan(value):
-        return replace(none, note=NOT_WEIGHED)
-    verdict, note = _decide(rule, value, value)
-    return replace(none, **_bounded(rule, value, value, value), verdict=verdict, note=note)
+        verdict = _of_suite(rule, applying, none)
+    else:
+        worst = max if rule.sense == "at most" else min
+        value = worst(float(demand.evaluate(axis.suite, axis.case).value[0]) for axis in applying)
+        if math.isnan(value):
+            return replace(none, note=NOT_WEIGHED)
+        decided, note = _decide(rule, value, value)
+        verdict = replace(none, **_bounded(rule, value, value, value), verdict=decided, note=note)
+    if len(axes) == 1:
+        return verdict
+    alone = [f"{_place(axis)} {reason}" for axis, reason in zip(axes, absent, strict=True) if reason]
+    return replace(verdict, note="; ".join(filter(None, (verdict.note, *alone, PLANAR))))
+
+
+def _place(axis: Axis) -> str:
+    return "across the axis" if axis.case.get("across_of") else "along the axis"
+
+
+def _absent(rule: Rule, axis: Axis) -> str:
+    """Return why the demand of a rule does not apply on an axis; empty if it does."""
+    demand, (case, suite) = DEMANDS[rule.demand], axis
+    if not demand.applies_to(case):
+        return f"a {case['base']} base has no {rule.demand}"
+    if demand.device and not has_device(case, demand.device):
+        return f"the pier has no {demand.device}"
+    if demand.weighed and "mass_t" not in case["pier"]:
+        return NOT_WEIGHED
+    if rule.at_m is not None and suite["height_m"].isna().all() and (suite["status"] != "failed").any():
+        return f"the pier has no section at {rule.at_m:g} m"
+    return ""
 
 
 def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any]:
@@ -153,9 +200,12 @@ def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any
     return {"value": value, "low": low, "high": high, "ratio": ratio, "margin": margin}
 
 
-def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> Verdict:
-    """Return the verdict on a statistic of a suite; ``none`` is the verdict without its numbers."""
-    runs, counting = of_runs(rule, suite, case)
+def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
+    """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
+    suite = axes[0].suite
+    of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
+    runs = on_both_axes([bounds for bounds, _ in of_axes], rule.both_axes or "greater")
+    counting = np.logical_and.reduce([counts for _, counts in of_axes])
     counted_as, unknown = counts_as(suite, none.count)
     bounds = by_record(runs, counting, counted_as)
     n = len(bounds.value)
@@ -169,12 +219,13 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
     notes = [
         reason,
         _far(rule, value) if verdict == PASS else "",
+        _on_each([bounds for bounds, _ in of_axes], axes, deciding),
         remark(bounds.high) if remark and n else "",
         unknown,
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
-        _laws(rule, suite, case, deciding),
+        *dict.fromkeys(_laws(rule, axis.suite, axis.case, deciding) for axis in axes),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
-        _chaotic(rule, suite, case),
+        *dict.fromkeys(_chaotic(rule, axis.suite, axis.case) for axis in axes),
     ]
     run: dict[str, Any] = {}
     if deciding is not None:
@@ -189,6 +240,13 @@ def _of_suite(rule: Rule, suite: "pd.DataFrame", case: Case, none: Verdict) -> V
         count=count,
         note="; ".join(filter(None, notes)),
     )
+
+
+def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | None) -> str:
+    """Return the demand of the run that governs on each of two axes; empty on one."""
+    if len(axes) == 1 or deciding is None:
+        return ""
+    return ", ".join(f"{its.value[deciding]:.4g} {_place(axis)}" for its, axis in zip(bounds, axes, strict=True))
 
 
 def _far(rule: Rule, value: float) -> str:

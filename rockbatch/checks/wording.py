@@ -8,6 +8,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, V
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.study.rules import BOTH_AXES, EITHER, LESSER
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}
@@ -195,6 +196,15 @@ def requirement(verdict: Verdict) -> str:
 def unchecked(verdict: Verdict) -> str:
     """Return the basis of a code's statistic, which was not compared with the clause itself; empty for other statistics."""
     return STATISTICS[verdict.statistic].unchecked if verdict.statistic in STATISTICS else ""
+
+
+def both_axes(verdicts: Iterable[Verdict]) -> str:
+    """Return how the checks combine the two axes of a pier, in a sentence; empty if none does."""
+    said = ((verdict.check, verdict.words.rpartition(", ")[2]) for verdict in verdicts)
+    ways = {check: way for check, way in said if way in (*BOTH_AXES.values(), EITHER, LESSER)}
+    by_way = grouped(ways, ways.__getitem__)
+    listed = "; ".join(f"{way} ({', '.join(names)})" for way, names in by_way.items())
+    return f"Two planar models of each pier, one for each axis, combined: {listed}." if listed else ""
 
 
 def counting(verdicts: Iterable[Verdict]) -> list[str]:

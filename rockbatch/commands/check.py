@@ -108,6 +108,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
         lines.append("No limits were set: no response passes or fails; `rockbatch check --rules FILE` sets some.")
         if ended:
             lines.append(f"Greatest of {planned - ended} of {planned} runs that end standing.")
+    lines += [filled(words, 0, 2) for words in (wording.both_axes(verdicts),) if words]
     if undamped := undamped_settlement(worst):
         lines.append(filled(undamped, 0, 2))
     return "\n".join(lines)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -139,8 +139,8 @@ class Motion(Shown):
     start : float or None
         Time of the first sample [s since 1970, UTC], or counted within its station alone; ``None`` where unknown.
     across : ndarray, shape (npts,), or None
-        Horizontal acceleration square to it [m/s²], which is not simulated, for spectra of the pair; ``None`` if that is a motion
-        of its own, or there is none.
+        Horizontal acceleration square to it [m/s²], for spectra of the pair and runs on the other axis of a pier; ``None`` if
+        that is a motion of its own, or there is none.
     vertical_factor : float or None
         What the vertical component as it was recorded was multiplied by, if that is not ``factor``.
 
@@ -370,6 +370,13 @@ class Motion(Shown):
             "from": self.files,
             "check": ", ".join(finding.what for finding in self.findings),
         }
+
+    @property
+    def exchanged(self) -> "Motion":
+        """Return the motion with both horizontal components exchanged; it has the one ``across``."""
+        assert self.across is not None
+        azimuth = None if self.azimuth is None else (self.azimuth + 90.0) % 360.0
+        return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)
 
     def scaled(self, factor: float) -> "Motion":
         """Return the motion with both components ``factor`` times as large."""

@@ -52,6 +52,8 @@ class SpectrumTarget:
         and the median and the greatest over all directions; these take both components of a station.
     at_least : float, optional
         Share of the target; by default that of :data:`PAIRS`. It is a check of the suite, with "none" only if it is given.
+    both : bool
+        Whether the component ``Motion.across`` is run too, so that it is the second one of its station for "srss".
 
     Components of one station have one factor, and the vertical one has that of its horizontal.
     """
@@ -61,6 +63,7 @@ class SpectrumTarget:
     factors: str = "both"
     pairs: str = "apart"
     at_least: float | None = None
+    both: bool = False
 
     def __post_init__(self) -> None:
         low, high = self.range_s
@@ -147,15 +150,24 @@ class SpectrumTarget:
                 return spectra[i]
             return spectral_acceleration(motions[i].horizontal, motions[i].dt, periods, self.spectrum.damping) / gravity
 
+        def across(i: int) -> list[Array]:
+            second = motions[i].across if self.both else None
+            if second is None:
+                return []
+            return [spectral_acceleration(second, motions[i].dt, periods, self.spectrum.damping) / gravity]
+
         if self.pairs == "apart":
             return [spectrum_of(i) for (i,) in members]
         if self.pairs == "srss":
-            return [np.sqrt((np.array([spectrum_of(i) for i in places]) ** 2).sum(axis=0)) for places in members]
+            rows = [[row for i in places for row in (spectrum_of(i), *across(i))] for places in members]
+            return [np.sqrt((np.array(of_station) ** 2).sum(axis=0)) for of_station in rows]
         return [station_spectra([motions[i] for i in places], periods, self.spectrum.damping)[self.pairs] / gravity
                 for places in members]  # fmt: skip
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:
-        return bool(unpaired(station)) if self.pairs in DIRECTIONS else len(station) != 2
+        if self.pairs in DIRECTIONS or self.both:
+            return bool(unpaired(station))
+        return len(station) != 2
 
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
         """Return what to consider about the target of these ``motions``, a sentence each."""

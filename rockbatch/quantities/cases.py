@@ -7,10 +7,15 @@ from rockbatch.pier.bases import RATCHETING
 from rockbatch.pier.restraints import what_of
 
 Case = Mapping[str, Any]
-"""``case``, ``columns``, ``pier``, ``base``, ``parameters``."""
+"""``case``, ``columns``, ``pier``, ``base``, ``parameters``, and ``across_of`` of one across the axis of another."""
 
 Lever = Callable[[Case], float]
 """Factor of a case, such as a length by which a rotation becomes a displacement."""
+
+
+def of_pier(case: Case) -> tuple[object, ...]:
+    """Return the key that a case shares with that of the other axis of its pier: the name of the one along it, its columns."""
+    return case.get("across_of") or case["case"], *case["columns"].items()
 
 
 def always(value: float) -> Lever:

@@ -678,6 +678,16 @@ DEMANDS: dict[str, Demand] = {
 }
 """Demands by the name that a rule gives them; signs are dropped."""
 
+DIRECTED = (
+    "theta_max_over_alpha", "theta_max_rad", "theta_res_over_alpha", "theta_res_rad", "theta_rocking_over_alpha", "base_tilt_rad",
+    "differential_settlement_m", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm", "heel_gap_m", "heel_gap_mm",
+    "heel_speed_m_s", "omega_max_over_p", "base_shear_m_s2", "base_shear_kN", "base_moment_m2_s2", "base_moment_kNm",
+    "key_shear_m_s2", "key_shear_kN", "friction_demand", "deck_acceleration_m_s2", "deck_acceleration_g", "section_shear_kN",
+    "section_moment_kNm",
+)  # fmt: skip
+"""Demands that an axis of the pier has by itself, so that those of two axes add up. Of others, such as settlements, axial forces
+and counts, which have the weight or the whole pier in them on either axis, the greater counts."""
+
 BROUGHT = {
     key: [quantity.name for quantity in COLUMNS.values() if quantity.needs == key]
     for key in ("forces", "rocking", "devices_work")

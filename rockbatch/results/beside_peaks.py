@@ -37,14 +37,17 @@ class SimulatedRun(NamedTuple):
 
 def runs(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) -> Iterator[SimulatedRun]:
     """Yield the runs of ``peaks``, without mirror images."""
-    by_name = {motion.name: motion for motion in motions}
-    piers = {case_key(case.name, case.columns, study.varied): case.pier for case in study.cases}
+    along = {motion.name: motion for motion in motions}
+    cases = {case_key(case.name, case.columns, study.varied): case for case in study.cases}
+    both = any(case.across_of for case in study.cases)
+    across = {motion.name: motion.exchanged for motion in motions} if both else {}
     columns_kept = [*NAMING, *study.varied, "status", "theta_max_over_alpha"]
     table = simulated(with_case(peaks))[columns_kept]
     for cells in table.to_dict("records"):
         row = {str(name): value for name, value in cells.items()}
-        pier = piers[case_key(row["case"], row, study.varied)]
-        yield SimulatedRun(row, by_name[row["record"]], float(row["scale"]), pier)
+        case = cases[case_key(row["case"], row, study.varied)]
+        motion = (across if case.across_of else along)[row["record"]]
+        yield SimulatedRun(row, motion, float(row["scale"]), case.pier)
 
 
 def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:

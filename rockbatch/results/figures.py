@@ -243,7 +243,12 @@ def _scattered(runs: "pd.DataFrame", tone: Axis) -> Iterator[Mark]:
 
 
 def _with_groups(runs: "pd.DataFrame", results: Labelled, info: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves."""
+    """Return the runs with ω_g/p (``frequency``) and PGA/(g tan α) (``intensity``), of those under ground that moves.
+
+    Those across the axis of a pier are left out: run.json has the PGV of components along it.
+    """
+    along = [not results.cases[place].get("across_of") for place in zip(runs["series"], runs["pier"], strict=True)]
+    runs = runs[along]
     piers = [results.cases[place]["pier"] for place in zip(runs["series"], runs["pier"], strict=True)]
     pgv = runs["record"].map({record["record"]: record["pgv_m_s"] for record in info["records"]}).replace(0.0, math.nan)
     size = [pier["gravity"] / pier["p"] for pier in piers]

@@ -74,7 +74,9 @@ def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) ->
         key = foundation(case["case"], case["columns"], varied)
         grouped.setdefault(key, []).append(case)
         entries[key, pier_of(case["columns"], varied)] = case
-    series = named(grouped, [key for key in varied if _of_foundation(key)], _given(info["study"]["text"]))
+    given = _given(info["study"]["text"])
+    given |= {case["case"]: given.get(case["across_of"], set()) for case in info["cases"] if case.get("across_of")}
+    series = named(grouped, [key for key in varied if _of_foundation(key)], given)
     places = {key: place for place, key in enumerate(series)}
 
     runs = simulated(with_case(peaks)).copy(deep=False)
@@ -100,6 +102,8 @@ def labelled(peaks: "pd.DataFrame", info: Mapping[str, Any], directory: Path) ->
         runs[name] = kinds.map({kind: fact[column] for kind, fact in facts.items()})
     pga = {record["record"]: record["pga_g"] for record in info["records"]}
     runs["pga"] = runs["record"].map(pga).astype("float64") * runs["scale"]
+    if across := {case["case"] for case in info["cases"] if case.get("across_of")}:
+        runs["pga"] = runs["pga"].where(~runs["case"].isin(across), runs["pga_g"])  # of the other component
     runs["with_vertical"] = _with_vertical(runs)
     keys = [key for key in varied if key in PIER_KEYS]
     digits = [digits_that_tell(values) for values in zip(*piers, strict=True)]

@@ -70,6 +70,7 @@ SHAPE = {
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},
+            "across_of": Maybe(str),
         }
     ],
     "records": [
@@ -169,6 +170,7 @@ def describe_case(case: Case) -> dict[str, Any]:
         "pier": described(pier),
         "base": case.base.name,
         "parameters": case.base.parameters(pier),
+        **({"across_of": case.across_of} if case.across_of else {}),
     }
 
 

@@ -22,6 +22,7 @@ from rockbatch.pier import (
     problems,
 )
 from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
@@ -94,14 +95,18 @@ BASE_KEYS = {
 }  # fmt: skip
 """Keys that describe a base; in a list each value is a case."""
 CASE = Section(("case",), (
-    "A foundation. Write one for each foundation to compare. All keys but `name`, `base` and `confirm` may be "
-    "lists: every combination is a case."
+    "A foundation. Write one for each foundation to compare. All keys but `name`, `base`, `other_width_m` "
+    "and `confirm` may be lists: every combination is a case."
 ), {
     "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
     "base": Key(choice(*_BASES, called=_CALLED["base"]), '"yielding"',
         '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
         '"yielding": the same, and the springs yield.', required=True),
     **BASE_KEYS,
+    "other_width_m": Key(within(OF_PIER["width_m"]), "8.0",
+        "Width between the pivots across the axis, at right angles to `width_m` of `[pier]`. The case is then run on both axes, "
+        "each a planar model under its component of every record, and checks combine them by `both_axes`.",
+        usual=PIER["width_m"].usual),
     **CONFIRM,
 }, many=True, required=True, homes=(YieldingBase, ElasticBase), also=names({
     "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",

@@ -18,9 +18,11 @@ from rockbatch.common.units import MOST, Bounds
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
+from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT
+from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
@@ -299,6 +301,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     numerics = _numerics(file)
     piers, varied_pier = read_piers(file)
     cases, varied_case = read_cases(file, piers)
+    cases = with_other_axes(file, cases, motion_spec) if piers else cases
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     table = file.table("output")
@@ -315,7 +318,10 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     _complain_about_sections(file, [pier for pier, _ in piers], output)
     if not output.forces:
         _complain_about_friction(file)
-    checks = read_checks(file, partial(_unfit, cases, motion_spec, output) if cases else None)
+    along = along_the_axis(cases)
+    if len(along) < len(cases) and isinstance(motion_spec.target, SpectrumTarget):
+        motion_spec = replace(motion_spec, target=replace(motion_spec.target, both=True))
+    checks = read_checks(file, partial(_unfit, along, motion_spec, output) if along else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),

@@ -203,6 +203,16 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
     return pier
 
 
+def with_width(values: Values, width_m: float, confirmed: Collection[str]) -> Pier:
+    """Return the pier that these keys describe with another width, as it stands across its axis.
+
+    All else is as it is given: heights, masses, the inertias of parts and deck. A flexural period is along the axis alone.
+    Raises ``InputError`` for what is impossible or not ``confirmed``.
+    """
+    parts = sum(name.startswith("part_") and name.endswith("_mass_t") for name in values)
+    return _pier(values | {"width_m": width_m}, parts, confirmed)
+
+
 def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
     """Return a pier of parts, and the deck as one more; drift is read at the highest point that is known."""
     written = (

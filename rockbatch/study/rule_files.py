@@ -1,13 +1,13 @@
 """Rules from TOML: the tables [[check]] of a study file or of a file of rules."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from rockbatch.common.errors import InputError
-from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.study.rules import CHECK, COUNT, COUNTS, Rule
+from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.study.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, Rule
 from rockbatch.toml.kinds import choice, shown, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
@@ -15,6 +15,7 @@ from rockbatch.toml.section import Key, Section
 
 SUITE = Section(("suite",), "What holds for every check that does not say otherwise, and where more of them are.", {
     "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
+    "both_axes": Key(choice(*BOTH_AXES), '"srss"', f"{AXES}; demands that do not add up have the greater.", default="greater"),
     "checks": Key(text, '"checks.toml"',
         "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
 }, also=names({"checks": "file rules"}))  # fmt: skip
@@ -73,9 +74,9 @@ def read_checks(
     """
     suite = file.table("suite")
     read = {} if suite is None else suite.read(SUITE)
-    count = read.get("count")
+    usual = {name: value for name, value in read.items() if name != "checks"}
     names: set[str] = set()
-    rules = _rules(file, unmet, count, names)
+    rules = _rules(file, unmet, usual, names)
     rules_file = None
     if suite is not None and "checks" in read:
         try:
@@ -86,16 +87,16 @@ def read_checks(
         else:
             Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
             its = rules_file.table("suite")
-            its_count = None if its is None else its.read({"count": SUITE["count"]}).get("count")
-            rules += _rules(rules_file, unmet, its_count or count, names)
+            own = {} if its is None else its.read({name: key for name, key in SUITE.items() if name != "checks"})
+            rules += _rules(rules_file, unmet, usual | own, names)
             file.adopt(rules_file, (*suite.key_path, "checks"))
-    return Checks(tuple(rules), count or COUNTS[0], rules_file)
+    return Checks(tuple(rules), usual.get("count", COUNTS[0]), rules_file)
 
 
 def _rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, counted: str | None, names: set[str]
+    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, usual: Mapping[str, str], names: set[str]
 ) -> list[Rule]:
-    """Return the rules of usable [[check]] tables, ``counted`` unless they say otherwise; their names join ``names``."""
+    """Return the rules of usable [[check]] tables, with the ``usual`` keys that they do not give; their names join ``names``."""
     rules: list[Rule] = []
     for table in file.tables("check", title="name"):
         before = len(file.problems)
@@ -106,8 +107,9 @@ def _rules(
         if name is not None:
             names.add(name)
         if file.is_sound_since(before):
-            if counted and "demand" in read and not DEMANDS[read["demand"]].per_case:
-                read.setdefault("count", counted)
+            applying = {"count"} if "demand" in read and not DEMANDS[read["demand"]].per_case else set()
+            applying |= {"both_axes"} if read.get("demand") in DIRECTED else set()
+            read = {name: value for name, value in usual.items() if name in applying} | read
             try:
                 rule = Rule(**read)
             except InputError as error:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import (
     Choice,
@@ -43,6 +43,18 @@ station
 component
     Every horizontal component by itself, with the worse of its polarities.
 """
+BOTH_AXES = {"greater": "the greater of both axes", "srss": "SRSS of both axes", "100_30": "100 % + 30 % of both axes"}
+"""Ways to combine the demands of a record on both axes of a pier, with words for them:
+
+greater
+    The greater of the two.
+srss
+    The root of the sum of their squares.
+100_30
+    The greater of one with 0.3 of the other.
+"""
+EITHER, LESSER = "on either axis", "the lesser of both axes"
+"""Words for events, and for properties of a case of which more is better."""
 CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
@@ -89,6 +101,9 @@ class Rule:
         this a run that did not go through by the other one is unknown.
     at_m : float or None
         Height of the section that a demand such as section_moment_kNm is about [m].
+    both_axes : "greater", "srss", "100_30" or None
+        How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
+        "greater" unless given, and of demands that do not add up (:data:`rockbatch.quantities.catalogue.DIRECTED`).
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.study.rule_choices`).
 
@@ -122,6 +137,7 @@ class Rule:
     other_law: bool = False
     confirm: tuple[str, ...] = ()
     at_m: float | None = None
+    both_axes: str | None = None
 
     def __post_init__(self) -> None:
         wrong = _unknown_words(self) or _misfits(self)
@@ -142,6 +158,13 @@ class Rule:
         """Return how a run of this status counts, one of :data:`COUNTING`."""
         usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
         return getattr(self, status) or usual
+
+    @property
+    def on_both_axes(self) -> str:
+        """Return how demands on both axes combine in words: "SRSS of both axes"; of a demand of the case, the worse counts."""
+        if DEMANDS[self.demand].event:
+            return EITHER
+        return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
 
     @property
     def is_ban(self) -> bool:
@@ -184,6 +207,7 @@ COUNT = (
     'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
     'or each "component"'
 )
+AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
 _CALLED = {
     "demand": names({
         ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
@@ -216,6 +240,9 @@ CHECK = Section(("check",), (
     "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
     "count": Key(choice(*COUNTS), '"component"',
         f"{COUNT}; what `[suite]` says if it is not given."),
+    "both_axes": Key(choice(*BOTH_AXES), '"srss"',
+        f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
+        "`[suite]` says if it is not given."),
     "at_most": Key(number, "0.5", "The limit."),
     "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
     "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
@@ -294,6 +321,10 @@ def _misfits(rule: Rule) -> list[str]:
         (
             demand.needs != "sections" and rule.at_m is not None,
             "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
+        ),
+        (
+            rule.both_axes not in (None, "greater") and rule.demand not in DIRECTED,
+            f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         ),
         (rule.other_law and demand.other_law is None, f"other_law: is for {with_other_law}; leave it out"),
     ]

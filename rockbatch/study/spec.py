@@ -139,12 +139,16 @@ class Output:
 
 @dataclass(frozen=True)
 class Case:
-    """One pier on one base. ``columns`` holds the values of those varied keys that apply to it."""
+    """One pier on one base. ``columns`` holds the values of those varied keys that apply to it.
+
+    ``across_of`` is the name of the case whose pier this is across its axis, with the same ``columns``; empty along it.
+    """
 
     name: str
     pier: Pier
     base: Base
     columns: dict[str, float | str]
+    across_of: str = ""
 
     def with_columns(self, varied: Iterable[str]) -> "Case":
         """Return the case with those of its columns that are ``varied``."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
+from rockbatch.motions.motion import Unusable
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import at_targets
 from rockbatch.motions.selection import selected
@@ -19,7 +20,7 @@ def ground_motions(study: Study) -> MotionSet:
     target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, or in a strict study if
     anything is unusable.
     """
-    spec = study.motions
+    spec, both = study.motions, _both_axes(study)
     gravity, azimuths = study.cases[0].pier.gravity, _azimuths(study)
     if isinstance(spec.override, MotionSet):
         records = _as_given(spec.override, spec.vertical)
@@ -42,6 +43,8 @@ def ground_motions(study: Study) -> MotionSet:
     records, pulses = with_sequences(records, spec.sequences, pulses)
     station = {motion.name: motion.of_station for motion in records}
     records = selected(records, spec.select, gravity)
+    if both:
+        records, pulses = _with_pairs(records, pulses)
     records = at_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
     unusable = [replace(file, station=file.station or station.get(file.name, file.name)) for file in records.unusable]
     records = replace(records, unusable=unusable)
@@ -58,12 +61,33 @@ def ground_motions(study: Study) -> MotionSet:
 
 
 def _azimuths(study: Study) -> tuple[float, ...]:
-    """Return the directions that pairs are turned to: along the pier's axis and across it if the study asks for their spectra."""
+    """Return the directions that pairs are turned to: along the pier's axis, and across it if the study asks for their spectra
+    or for runs on both axes."""
     spec = study.motions
-    of_pairs = study.output.sa_pairs or (spec.target is not None and spec.target.pairs in DIRECTIONS)
+    of_pairs = spec.target is not None and (spec.target.pairs in DIRECTIONS or getattr(spec.target, "both", False))
+    of_pairs = of_pairs or study.output.sa_pairs or _both_axes(study)
     if not of_pairs or len(spec.azimuths) != 1:
         return spec.azimuths
     return spec.azimuths[0], (spec.azimuths[0] + 90.0) % 360.0
+
+
+def _both_axes(study: Study) -> bool:
+    return any(case.across_of for case in study.cases)
+
+
+def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet, list[Motion]]:
+    """Return records and pulses that have both horizontal components; those without one are unusable, with the reason."""
+    reason = (
+        "has no horizontal component at right angles, and cases with other_width_m are run on both axes; leave it out "
+        "(leave_out under [motions]), or run it in a study without other_width_m"
+    )
+    lacking = [motion for motion in (*motions, *pulses) if motion.across is None]
+    unusable = [
+        Unusable(motion.name, motion.files or motion.name, f"{motion.name} {reason}", station=motion.of_station)
+        for motion in lacking
+    ]
+    paired = [motion for motion in motions if motion.across is not None]
+    return motions.reduced_to(paired, unusable), [pulse for pulse in pulses if pulse.across is not None]
 
 
 def _along_the_axis(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:

@@ -8,11 +8,15 @@ from pathlib import Path
 from textwrap import dedent
 
 import motion_files  # noqa: F401  loads ObsPy, which warns
+import numpy as np
+import pandas as pd
 import pytest
 from jsonschema import Draft7Validator
 
+import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, main
 from rockbatch.pier.statics import FACTS, statics
+from rockbatch.results.labelled import labelled
 from rockbatch.study.load import load_study
 from rockbatch.study.schema import MANIFEST, STUDY, schema_of
 
@@ -89,6 +93,36 @@ def test_the_worked_design_is_its_study_and_has_its_statics():
         assert [cell.strip() for cell in dict(rows)[fact.heading].split("|")] == [
             fact.written(row[fact.name]) for row in shown
         ]
+
+
+def test_the_pier_on_both_axes_comes_to_what_its_page_shows_and_a_hand_makes_of_its_peaks(
+    tmp_path, monkeypatch, capsys
+):
+    page = ROOT / "docs" / "pages" / "questions" / "axes.md"
+    (tmp_path / "records").symlink_to(ROOT / "motions" / "near_fault")
+    (tmp_path / "pier.toml").write_text(blocks(page, "toml")[0], encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "pier.toml"]) == 0
+    told = capsys.readouterr().out
+    assert blocks(page, "text")[0].strip() in told
+    assert "SRSS of both axes (rotation); 100 % +" in told
+    peaks, checks = (pd.read_csv(tmp_path / "reports" / "pier" / f"{name}.csv") for name in ("peaks", "checks"))
+    along, across = (peaks[peaks["case"] == name].set_index("record") for name in ("rock", "rock across"))
+    x, y = along["theta_max_over_alpha"], across["theta_max_over_alpha"]
+    u, v = along["top_drift_m"], across["top_drift_m"]
+    by_hand = [np.sqrt(x**2 + y**2).mean(), max((u + 0.3 * v).max(), (0.3 * u + v).max()), 0.0]
+    np.testing.assert_allclose(checks["value"], by_hand, rtol=1e-9)
+    report = (tmp_path / "reports" / "pier" / "report.html").read_text(encoding="utf-8")
+    words = " ".join(re.sub("<[^>]+>", " ", report).split())
+    assert "Each axis is a planar model of its own, without rolling or twisting" in words
+    assert "One pier on one foundation under 5 ground motions" in words
+    assert "5 stations, 10 components" in words
+    results = rb.open_results(tmp_path / "reports" / "pier")
+    shown = labelled(results.peaks, results.info, results.directory).runs
+    np.testing.assert_allclose(
+        shown["pga"], results.peaks["pga_g"], rtol=1e-3
+    )  # 9.81 of the pier, and as run.json rounds
+    assert results.plot(axes="self-similar") is not None
 
 
 def test_the_page_of_commands_shows_every_command():

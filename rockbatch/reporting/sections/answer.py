@@ -5,6 +5,7 @@ from decimal import ROUND_UP, Decimal
 
 import numpy as np
 
+from rockbatch.checks import wording
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
 from rockbatch.checks.responses import RESPONSES, Worst, in_words
 from rockbatch.common.grouping import grouped
@@ -160,6 +161,8 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
             yield "No settlement: the supports are elastic. "
     else:
         yield f"{verdicts.statistics_in_words(finished)} "
+        if axes := wording.both_axes(finished.verdicts):
+            yield f"{axes} "
     if undamped := undamped_settlement(finished.worst):
         yield f"{undamped}. "
     yield _error(finished)

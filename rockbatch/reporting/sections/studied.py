@@ -47,12 +47,16 @@ def section(finished: Finished, level: str = "h3") -> Markup:
         written = dict.fromkeys(format(value, form) for value in (min(values), max(values))) if values else ()
         return f"{' to '.join(written)} {unit}" if written else "unknown"
 
-    piers: dict[tuple[float, ...], Case] = {}
+    along: dict[tuple[float, ...], Case] = {}
+    across: dict[tuple[float, ...], Case] = {}
     for case in cases:
+        piers = across if case.get("across_of") else along
         piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
+    names_across = {case["case"] for case in cases if case.get("across_of")}
     return render(
         "reporting/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
-        degrees=math.degrees, piers=list(piers.values()), given=_numbers_of(finished.pier_as_given),
+        degrees=math.degrees, along=list(along.values()), across=list(across.values()),
+        foundations_along=sum(key[0] not in names_across for key in finished.places), given=_numbers_of(finished.pier_as_given),
         drawn=_drawn(finished), vertical=_vertical(finished),
         scales=sorted(finished.runs["scale"].unique().astype(float)) if len(finished.runs) else [],
         scaled="as recorded" if as_recorded else f"scaled to the target by {' to '.join(ends)}",
@@ -78,7 +82,8 @@ def in_a_line(finished: Finished) -> str:
     stations, records = stations_of(finished.info), finished.info["records"]
     of_all = "" if len(stations.used) == stations.total or not stations.known else f" of {stations.total}"
     suite = f"{len(stations.used)}{of_all} {'station' if stations.total == 1 else 'stations'}"
-    motions = f"{counted(len(records), 'component')} ({_vertical(finished)})"
+    axes = 1 + any(case.get("across_of") for case in finished.info["cases"])
+    motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
     ended = "all end standing" if stood == runs and not finished.not_run else f"{stood} end standing"
     return " · ".join(

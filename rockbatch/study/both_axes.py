@@ -1,0 +1,105 @@
+"""The other axis of a pier: a case that gives ``other_width_m`` is followed by the case of that axis.
+
+Both are planar models of their own; each record is run along the axis by its component there, and across it by the one at
+right angles. Checks combine them (:mod:`rockbatch.checks.judging`).
+"""
+
+from collections.abc import Container, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from rockbatch.common.errors import InputError
+from rockbatch.motions import MotionSet
+from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.pier import Base, Pier, Restraint, offsets, problems
+from rockbatch.study.piers import with_width
+from rockbatch.study.spec import Case, MotionSpec
+from rockbatch.toml.kinds import shown
+from rockbatch.toml.reader import Table, TomlFile
+
+KEY = "other_width_m"
+
+
+def with_other_axes(file: TomlFile, cases: Sequence[Case], motions: MotionSpec) -> list[Case]:
+    """Return the cases, each that gives the width of its other axis followed by the case of that axis.
+
+    What stands in the way is noted in ``file``.
+    """
+    tables = file.tables("case", title="name")
+    names = [table.data.get("name") for table in tables]
+    both: list[Case] = []
+    for case in cases:
+        both.append(case)
+        if KEY in case.columns:
+            table = tables[names.index(case.name) if case.name in names else 0]  # a single one need not have a name
+            wrong = list(_unfit(case, motions, names))
+            for problem in wrong:
+                table.complain(f"{KEY}: {problem}", KEY)
+            both += [] if wrong else _across(table, case)
+    return both
+
+
+def _name(case: Case) -> str:
+    return f"{case.name} across"
+
+
+def _unfit(case: Case, motions: MotionSpec, names: Container[object]) -> Iterator[str]:
+    """Yield why a case cannot be run on both axes, with the remedy."""
+    if _name(case) in names:
+        yield f"the case across the axis is called {shown(_name(case))}; give the case of that name another one"
+    if "width_m" not in case.columns:
+        yield "is beside width_m of [pier], and the size is given otherwise; write width_m and height_m, or width_m and parts"
+    if case.pier.initial_rotation_rad or motions.still_s is not None:
+        yield "a pier that is let go turns in one plane; leave initial_rotation_rad and still_s, or this, out"
+    if len(motions.azimuths) != 1 and not isinstance(motions.override, MotionSet):
+        yield (
+            "pairs are turned to the axis; write axis_deg in [motions], the direction of width_m in degrees from north"
+            + (", instead of every_deg" if motions.azimuths else "")
+        )
+    if isinstance(motions.target, SpectrumTarget) and motions.target.pairs == "apart":
+        yield (
+            'pairs = "apart" in [motions.target], its default, fits one component and leaves the other as it comes; write '
+            'pairs = "srss" (EN 1998-2), "rotd100" (ASCE 7), "rotd50" or "geomean"'
+        )
+
+
+def _across(table: Table, case: Case) -> list[Case]:
+    """Return the case across the axis of ``case``: none if it cannot be, which is noted in ``table``."""
+    width = float(case.columns[KEY])
+    pier_table = table.file.table("pier")
+    confirmed = {name.replace(KEY, "width_m") for name in table.confirmed}
+    try:
+        pier = with_width(case.columns, width, confirmed | (pier_table.confirmed if pier_table else set()))
+        base = across(case.pier, case.base, pier)
+        if wrong := problems(pier, base):
+            raise InputError(*(f"{KEY} = {width:g}: across the axis {problem}" for problem in wrong))
+    except InputError as error:
+        for problem in error.problems:
+            table.complain(problem.replace("width_m", KEY) if KEY not in problem else problem, KEY)
+        return []
+    return [replace(case, name=_name(case), pier=pier, base=base, across_of=case.name)]
+
+
+def across(pier: Pier, base: Base, other: Pier) -> Base:
+    """Return the base of ``pier`` under ``other``, the same pier across its axis.
+
+    Its springs have the stiffness and the yield force of those along the axis at the lever of the other width. Its devices stand
+    in the plane of the axis, hence in the middle of the other width; those at the deck act in that plane alone.
+    """
+    restraints = tuple(_in_the_middle(pier, device, other) for device in base.restraints for _ in offsets(pier, device))
+    if base.on_springs:
+        return replace(base, restraints=restraints, beta=base.beta * pier.p / other.p)
+    return replace(base, restraints=restraints)
+
+
+def _in_the_middle(pier: Pier, device: Restraint, other: Pier) -> Restraint:
+    """Return a device of ``pier`` in the middle of the base of ``other``, with its stiffness and damping coefficient."""
+    levers = (other.half_width / pier.half_width) ** 2 * pier.size / other.size
+    times = {"lam": levers, "brace": levers, "nu": pier.p / other.p}
+    changed: dict[str, Any] = {name: getattr(device, name) * by for name, by in times.items() if hasattr(device, name)}
+    return replace(device, **changed | {"at": 0.0})
+
+
+def along_the_axis(cases: Iterable[Case]) -> tuple[Case, ...]:
+    """Return the cases without those across the axis of others."""
+    return tuple(case for case in cases if not case.across_of)
