@@ -89,7 +89,8 @@ class Demand:
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
-        return case["base"] in self.bases or ("held" in self.bases and holds_a_tilt(case))
+        held = "held" in self.bases and holds_a_tilt(case)
+        return case["base"] in self.bases or held or ("bending" in self.bases and case.get("shaft") == "elastic")
 
     @property
     def words(self) -> str:
