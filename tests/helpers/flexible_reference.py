@@ -55,11 +55,11 @@ def _places(of, key, q):
     return x, s, c, across, up
 
 
-def _motion(of, key, free, q, rates, ground):
+def motion_of(of, key, free, q, rates, ground):
     """Return the accelerations of the three coordinates, of which only ``free`` ones move, and N/M."""
     x, s, c, across, up = _places(of, key, q)
     _, omega, u_rate = rates
-    bend_x = omega**2 * (-x * s * 0 - x * c - of.z * s) + 2 * omega * u_rate * of.shape * -s
+    bend_x = omega**2 * (-x * c - of.z * s) + 2 * omega * u_rate * of.shape * -s
     bend_z = omega**2 * (x * s - of.z * c) + 2 * omega * u_rate * of.shape * -c
     m, across, up = of.mass, across[free], up[free]
     matrix = (across * m) @ across.T + (up * m) @ up.T
@@ -72,9 +72,23 @@ def _motion(of, key, free, q, rates, ground):
     return accelerations, np.sum(m * (of.gravity + ground[1] + rise)) / m.sum()
 
 
+def accelerations_of(of, key, q, rates, accelerations):
+    """Return the accelerations of all points over the ground, to the right and up."""
+    x, s, c, across, up = _places(of, key, q)
+    _, omega, u_rate = rates
+    along = accelerations @ across - omega**2 * (x * c + of.z * s) - 2 * omega * u_rate * of.shape * s
+    return along, accelerations @ up + omega**2 * (x * s - of.z * c) - 2 * omega * u_rate * of.shape * c
+
+
+def places_over_ground(of, key, q):
+    """Return the places of all points from where the middle of the base is at rest; the corner at ``key`` is on the ground."""
+    x, s, c, _, _ = _places(of, key, q)
+    return key * of.half_width + x * c + of.z * s, -x * s + of.z * c
+
+
 def _moment(of, side, q, rates, ground):
     """Return the moment over M that turns a pier with both corners down about the corner on ``side``, towards it."""
-    accelerations, _ = _motion(of, side, [2], q, rates, ground)
+    accelerations, _ = motion_of(of, side, [2], q, rates, ground)
     _, _, _, across, up = _places(of, side, q)
     m = of.mass
     inertial = m * (-ground[0] - of.shape * accelerations[2])
@@ -119,7 +133,7 @@ def run(of, ground, dt, theta=0.0, until=None):
             free = {"both": [2], "one": [1, 2], "none": [0, 1, 2]}[down]
 
             def slope(t, y, free=free, key=key):
-                return np.concatenate([y[3:], _motion(of, key, free, y[:3], y[3:], shaking(t))[0]])
+                return np.concatenate([y[3:], motion_of(of, key, free, y[:3], y[3:], shaking(t))[0]])
 
             def corner(y, side, key=key):
                 return y[0] + (key - side) * of.half_width * np.sin(y[1])  # height above the ground
@@ -132,7 +146,7 @@ def run(of, ground, dt, theta=0.0, until=None):
             elif down == "one":
                 events = [
                     lambda t, y, key=key: key * y[1],
-                    lambda t, y, key=key: _motion(of, key, [1, 2], y[:3], y[3:], shaking(t))[1],
+                    lambda t, y, key=key: motion_of(of, key, [1, 2], y[:3], y[3:], shaking(t))[1],
                 ]
             else:
                 events = [lambda t, y: corner(y, -1), lambda t, y: corner(y, 1)]
