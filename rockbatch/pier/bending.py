@@ -8,6 +8,8 @@ import numpy as np
 from rockbatch.pier.block import Part, Pier
 from rockbatch.pier.sections import parts_of, shaft_height, unknown_masses
 
+NO_SECTIONS = 'sections: their forces are those of a rigid shaft; write shaft = "rigid", or leave them out'
+
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 """Exact to the degree 7: the mode's square over a part is of degree 6."""
 

@@ -20,6 +20,7 @@ from rockbatch.quantities.cases import (
     Lever,
     alpha,
     always,
+    bends,
     per_gravity,
     product,
     top,
@@ -107,7 +108,7 @@ def _bent_as_well(limit: Limit) -> Limit:
     bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
 
     def either(rigid: Evaluate | None) -> Evaluate | None:
-        return rigid and (lambda runs, case: (bent if case.get("shaft") == "elastic" else rigid)(runs, case))
+        return rigid and (lambda runs, case: (bent if bends(case) else rigid)(runs, case))
 
     return limit._replace(evaluate=either(limit.evaluate), reached=either(limit.reached))
 
