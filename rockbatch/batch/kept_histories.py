@@ -15,7 +15,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.pier import Base, Pier, places, vertical_frequency
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
-from rockbatch.results.histories_file import HISTORIES, OF_SPRINGS, UNITS, write
+from rockbatch.results.histories_file import HISTORIES, columns_of, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
 from rockbatch.simulation.outcome import TERMS
@@ -122,7 +122,7 @@ def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
     and side of an event.
     """
     pier, base = run.case.pier, run.case.base
-    columns = len(UNITS) - (0 if base.on_springs else len(OF_SPRINGS))
+    columns = len(columns_of(base, base.bends))
     columns += 2 * sum(len(places(pier, device)) for device in base.restraints)  # elongations and forces
     if _has_value(row, LEDGER):
         columns += len(TERMS)

@@ -9,7 +9,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
-from rockbatch.pier import Base, Pier, problems, unlikely_devices
+from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
 from rockbatch.results import sections as of_sections
 from rockbatch.results.columns import StudyRun, as_series, row
@@ -107,6 +107,8 @@ def simulate(
         pier = replace(pier, initial_rotation_rad=initial_rotation_rad)
     numerics, run = Numerics(**steps), Run(pier, foundation, motion)
     _check(run, numerics, least_normal_share, wait)
+    if sections and foundation.bends:
+        raise InputError(NO_SECTIONS)
     heights = section_heights(pier, sections) if sections else ()
     name, outcome = case or foundation.name, _outcome(run, numerics, wait)
     response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)

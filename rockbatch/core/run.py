@@ -173,6 +173,15 @@ def _too_many_events(lanes, i):
     return tally.events[i] > EVENTS_IN_A_SAMPLE
 
 
+@inlined
+def _is_zero(y):
+    """Return whether a state is that of a pier at rest."""
+    zero = True
+    for j in range(len(y)):
+        zero = zero and y[j] == 0.0
+    return zero
+
+
 @kernel
 def _apply_event(context, i, m, now, which, x):
     """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``: status, and the Moment after it."""
@@ -191,7 +200,7 @@ def _apply_event(context, i, m, now, which, x):
     after = event.now
     if event.kind not in (LIFT_OFF, TAKE_OFF):  # these have chosen the devices' directions and modes
         after_contact(m, devices, after, here)
-    if event.kind == LIFT_OFF:  # nothing jumps
+    if event.kind == LIFT_OFF and _is_zero(now.y):  # nothing jumps, nor has it moved since the last row
         take_back(history, number)
     write(history, Stamp(number, t, event.kind), m, devices, after, here)
     _count(lanes, i, event, t)

@@ -41,8 +41,8 @@ def end_step(m, y, start, contact, remaining):
 
 
 @hook
-def lever(m, y, contact):
-    """Return H [m], by which the ground's horizontal acceleration turns the pier."""
+def ground_power(m, y, contact, ground):
+    """Return the power of the ground's inertia forces on the pier [W/kg]."""
 
 
 @hook

@@ -137,4 +137,6 @@ class Result(NamedTuple):
     drift_right: float
     v_end: float  # [m]
     theta_end: float  # [rad]
+    deflection_max: float  # greatest deflection of the top of a shaft that bends [m]
+    drift_max: float  # and greatest horizontal way of that top
     rows: int  # rows of history that were written or would have been

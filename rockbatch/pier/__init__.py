@@ -24,6 +24,10 @@ from rockbatch.pier.bases import static_deflection as static_deflection
 from rockbatch.pier.bases import tilt_over_residual as tilt_over_residual
 from rockbatch.pier.bases import vertical_frequency as vertical_frequency
 from rockbatch.pier.bases import yield_deflection as yield_deflection
+from rockbatch.pier.bending import NO_SECTIONS as NO_SECTIONS
+from rockbatch.pier.bending import Mode as Mode
+from rockbatch.pier.bending import mode_of as mode_of
+from rockbatch.pier.bending import shape_at as shape_at
 from rockbatch.pier.block import Part as Part
 from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described

@@ -11,8 +11,9 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
+from rockbatch.pier.bending import problems as bending_problems
 from rockbatch.pier.block import Pier
-from rockbatch.pier.places import holds_a_tilt, prestress_over_weight
+from rockbatch.pier.places import holds_a_tilt, places, prestress_over_weight
 from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
 from rockbatch.pier.restraints import Restraint, described_restraints
 
@@ -34,6 +35,8 @@ FLIGHT_LIMIT_MM = 5.0
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
 SpringLaw = Literal["bouc-wen", "epp", "hardening"]
+Shaft = Literal["rigid", "elastic"]
+FlexuralImpact = Literal["rate", "momentum"]
 
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
 """Laws whose first loading is Bouc–Wen's curve with the exponent n; the other has a sharp corner."""
@@ -62,6 +65,9 @@ BOUNDS = {
     "friction": Bounds(LEAST, MOST, ", the coefficient of the interface"),
     "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
     "area_m2": Bounds(LEAST, MOST, " [m²], the area of one support"),
+    "flexural_damping": Bounds(
+        0.0, 1.0, why="damping of the shaft's mode, as a share of critical, must be within 0..1"
+    ),
     "zeta": Bounds(0.0, 1.0, why="damping of the supports, as a share of critical, must be within 0..1"),
     "epsilon": Bounds(0.0, 1.0, why="the landing pivot's restitution must be within 0..1"),
     "eta": Bounds(LEAST_ETA, MOST, why=_strength),
@@ -70,7 +76,8 @@ BOUNDS = {
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (:func:`problems`)."""
 
 WORDS: dict[str, tuple[str, ...]] = {
-    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw),
+    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw), "shaft": get_args(Shaft),
+    "flexural_impact": get_args(FlexuralImpact),
 }  # fmt: skip
 """Possible words of the fields of bases."""
 
@@ -83,6 +90,9 @@ class _Traits(InNotebook):
 
     yields: ClassVar[bool] = False
     """True if these springs yield, so that the pier may settle."""
+
+    bends: bool = False
+    """True if the shaft bends in one mode."""
 
     flight: Flight
     flight_limit_mm: float
@@ -123,6 +133,9 @@ class RigidBase(_Traits):
     ``restraints`` are dampers and tendons between the pier and the ground.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm`` and ``area_m2`` are as on springs (:class:`ElasticBase`).
+    With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
+    ``flexural_damping``. At an impact ``flexural_impact`` is kept: the "momentum" of the mode, by which all else follows, or the
+    "rate" of its deflection beside e (THEORY.md, A shaft that bends).
 
     Examples
     --------
@@ -136,6 +149,9 @@ class RigidBase(_Traits):
     flight: Flight = field(default="guided", kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
     area_m2: float | None = field(default=None, kw_only=True)
+    shaft: Shaft = field(default="rigid", kw_only=True)
+    flexural_damping: float = field(default=0.05, kw_only=True)
+    flexural_impact: FlexuralImpact = field(default="momentum", kw_only=True)
 
     name = "rigid"
     on_springs: ClassVar[Literal[False]] = False
@@ -143,11 +159,18 @@ class RigidBase(_Traits):
     beta: ClassVar[float] = math.inf
     """β of ground that does not give: the limit of springs."""
 
+    @property
+    def bends(self) -> bool:  # type: ignore[override]
+        """Return whether the shaft bends."""
+        return self.shaft == "elastic"
+
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return this base under ``pier`` by the keys of run.json."""
         of_frame = None if pier.deck_over_columns is None else pier.restitution  # None stands for Housner's
         values: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
+        if self.bends:
+            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_impact")}
         return values | _interface(self) | described_restraints(self.restraints)
 
 
@@ -408,6 +431,8 @@ def problems(pier: Pier, base: Base) -> list[str]:
     if isinstance(base, ElasticBase) and base.zeta is not None and base.epsilon != 0:
         wrong.append(f"epsilon = {base.epsilon:g}: {EPSILON_AND_ZETA}")
     wrong += wrong_restraints(pier, base.restraints)
+    if base.bends:
+        wrong += _wrong_bending(pier, base)
     if base.on_springs and not wrong:
         wrong += wrong_on_springs(pier, base.restraints)
     if isinstance(base, YieldingBase):
@@ -417,6 +442,19 @@ def problems(pier: Pier, base: Base) -> list[str]:
                 f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
                 f"{prestress:g} of it; eta must be above 1 + psi"
             )
+    return wrong
+
+
+def _wrong_bending(pier: Pier, base: Base) -> list[str]:
+    wrong = bending_problems(pier)
+    if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
+        wrong.append(
+            'shaft = "elastic": devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
+        )
+    if isinstance(base, RigidBase) and base.restitution is not None and base.flexural_impact == "momentum":
+        wrong.append(
+            f'restitution = {base.restitution:g}: what a blow takes follows from flexural_impact = "momentum"; leave it out'
+        )
     return wrong
 
 

@@ -26,20 +26,25 @@ class Above(NamedTuple):
 
 def problems(pier: Pier) -> list[str]:
     """Return why forces in sections of ``pier`` cannot be computed; empty if they can."""
+    return [f"sections: {problem}" for problem in unknown_masses(pier)]
+
+
+def unknown_masses(pier: Pier) -> list[str]:
+    """Return why it is not known how the mass of ``pier`` is spread over its height; empty if it is."""
     if pier.deck_over_columns is not None:
         return [
-            "sections: how the deck of a frame presses on each of its columns is not known; leave them out, or give a bent "
+            "how the deck of a frame presses on each of its columns is not known; leave them out, or give a bent "
             "whose columns are fixed to its cap beam as one pier with parts"
         ]
     if pier.parts is None:
         if math.isclose(pier.mu, 3.0):
             return []
         return [
-            f"sections: mu = {pier.mu:g} does not say how the mass is spread over the height; give the pier by [[pier.part]], or "
+            f"mu = {pier.mu:g} does not say how the mass is spread over the height; give the pier by [[pier.part]], or "
             "as a solid rectangle, mu = 3"
         ]
     wrong = [
-        f"sections: part {n}, at {part.height_m:g} m, has no length_m, over which its mass is spread; write length_m = 0 for a "
+        f"part {n}, at {part.height_m:g} m, has no length_m, over which its mass is spread; write length_m = 0 for a "
         "mass at one height"
         for n, part in enumerate(pier.parts, 1)
         if part.length_m is None
@@ -48,13 +53,13 @@ def problems(pier: Pier) -> list[str]:
         whole = _of_parts(pier.parts, 0.0, 0.0)
         alike = zip((whole.rise, whole.inertia), (pier.height, pier.inertia), strict=True)
         if not all(math.isclose(ours, theirs, rel_tol=_SAME) for ours, theirs in alike):
-            wrong.append("sections: the parts are those of another pier; make it by Pier.of_parts again")
+            wrong.append("the parts are those of another pier; make it by Pier.of_parts again")
     return wrong
 
 
 def shaft_height(pier: Pier) -> float:
     """Return the height of the shaft's top [m]: of the highest part with a length, or of the highest one if none has."""
-    parts = _parts(pier)
+    parts = parts_of(pier)
     return max((part.height_m + 0.5 * (part.length_m or 0.0) for part in parts if part.length_m), default=0.0) or max(
         part.height_m for part in parts
     )
@@ -87,10 +92,10 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
 
 def above(pier: Pier, height: float) -> Above:
     """Return the part of ``pier`` above ``height`` [m]; a mass at that height is above."""
-    return _of_parts(_parts(pier), height, _ROUNDING * shaft_height(pier))
+    return _of_parts(parts_of(pier), height, _ROUNDING * shaft_height(pier))
 
 
-def _parts(pier: Pier) -> Sequence[Part]:
+def parts_of(pier: Pier) -> Sequence[Part]:
     """Return the parts of a pier: a solid rectangle if it has none."""
     if pier.parts is not None:
         return pier.parts

@@ -76,3 +76,8 @@ def holds_a_tilt(case: Case) -> bool:
 def _devices(case: Case) -> Iterable[Mapping[str, Any]]:
     """Return the devices of a case, as its file has them."""
     return case["parameters"].get("restraints", ()) if "parameters" in case else ()
+
+
+def bends(case: Case) -> bool:
+    """Return whether the shaft of a case bends."""
+    return bool(case.get("parameters", {}).get("shaft") == "elastic")

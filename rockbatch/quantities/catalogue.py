@@ -20,6 +20,7 @@ from rockbatch.quantities.cases import (
     Lever,
     alpha,
     always,
+    bends,
     per_gravity,
     product,
     top,
@@ -30,6 +31,7 @@ from rockbatch.quantities.demands import (
     Ceiling,
     Demand,
     Estimated,
+    Evaluate,
     axial,
     event,
     in_flight,
@@ -42,6 +44,7 @@ from rockbatch.quantities.demands import (
     toe_settlement,
 )
 from rockbatch.quantities.quantity import (
+    BENDING,
     ENDINGS,
     SPRINGS,
     TILTS,
@@ -91,6 +94,22 @@ def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
     return _rotation("theta_max", f"{name}_m", "m", in_metres), _rotation(
         "theta_max", f"{name}_mm", "mm", in_millimetres
     )
+
+
+def _top_drift(run: Run) -> float:
+    """Return the greatest drift of the top [m]: of a shaft that bends as its own run has it."""
+    bent = run.outcome.top_drift_max
+    return run.pier.top * run.outcome.theta_max if bent is None else bent
+
+
+def _bent_as_well(limit: Limit) -> Limit:
+    """Return a limit on the drift of the top that also holds for a shaft that bends, which drifts by more than it rotates."""
+    bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
+
+    def either(rigid: Evaluate | None) -> Evaluate | None:
+        return rigid and (lambda runs, case: (bent if bends(case) else rigid)(runs, case))
+
+    return limit._replace(evaluate=either(limit.evaluate), reached=either(limit.reached))
 
 
 def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None) -> Callable[[Run], float | None]:
@@ -315,8 +334,9 @@ TRAILING = (
     ),
     Quantity(
         "top_drift_m", "greatest drift of the top",
-        lambda run: run.pier.top * run.outcome.theta_max, "m", ReportFormat("top drift [mm]", ".1f", 1000, "t_max_s"),
-        ": its height times the greatest rotation", limits=_displacements("top_drift", top),
+        _top_drift, "m", ReportFormat("top drift [mm]", ".1f", 1000, "t_max_s"),
+        ": its height times the greatest rotation; of a shaft that bends its greatest horizontal way",
+        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)),
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
@@ -592,6 +612,28 @@ _ROCKING_ERROR = (
     "estimated error of rocking, and of lean, over α: the change when the step was halved; empty with a fixed step"
 )
 
+
+def _bends(study: Any) -> bool:
+    return any(case.base.bends for case in study.cases)
+
+
+_OF_BENDING = (
+    Quantity(
+        "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
+        ReportFormat("deflection [mm]", ".1f", 1000, "top_drift_m"), bases=BENDING, error="deflection_error_m",
+        limits=_LENGTHS, requested=_bends,
+    ),
+    Quantity(
+        "deflection_error_m", "estimated error of it: the change when the step was halved; empty with a fixed step",
+        "deflection_max_error", "m", ReportFormat("±", ".1g", 1000, "deflection_max_m"), bases=BENDING, stood=True,
+        requested=_bends,
+    ),
+    Quantity(
+        "top_drift_error_m", "likewise, of the drift of the top of a shaft that bends", "top_drift_max_error", "m",
+        bases=BENDING, stood=True, requested=_bends,
+    ),
+)  # fmt: skip
+
 OPTIONAL = (
     Quantity(
         MIRROR_OF, 'with both polarities, "+" in the rows of "-": the run whose mirror image this is', kind="text",
@@ -639,6 +681,7 @@ OPTIONAL = (
         requested=lambda study: any(case.base.restraints for case in study.cases),
     ),
     *_WORK,
+    *_OF_BENDING,
 )  # fmt: skip
 """Quantities at the end of a table, on request of the study."""
 
@@ -683,7 +726,7 @@ DIRECTED = (
     "differential_settlement_m", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm", "heel_gap_m", "heel_gap_mm",
     "heel_speed_m_s", "omega_max_over_p", "base_shear_m_s2", "base_shear_kN", "base_moment_m2_s2", "base_moment_kNm",
     "key_shear_m_s2", "key_shear_kN", "friction_demand", "deck_acceleration_m_s2", "deck_acceleration_g", "section_shear_kN",
-    "section_moment_kNm",
+    "section_moment_kNm", "deflection_max_m", "deflection_max_mm",
 )  # fmt: skip
 """Demands that an axis of the pier has by itself, so that those of two axes add up. Of others, such as settlements, axial forces
 and counts, which have the weight or the whole pier in them on either axis, the greater counts."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.pier import tilt_over_residual
-from rockbatch.quantities.cases import ONE, Case, Lever, alpha, holds_a_tilt, width
+from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
 from rockbatch.quantities.statistics import Values
 
 FORCES = "base_shear_m_s2"
@@ -89,7 +89,8 @@ class Demand:
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
-        return case["base"] in self.bases or ("held" in self.bases and holds_a_tilt(case))
+        held = "held" in self.bases and holds_a_tilt(case)
+        return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 
     @property
     def words(self) -> str:

@@ -16,8 +16,12 @@ YIELDING = ("yielding",)
 TILTS = (*SPRINGS, "held")
 """Bases on which a pier may rest at a tilt: springs, or any base if friction or hysteretic dampers hold it."""
 
+BENDING = ("bending",)
+"""A rigid base under a shaft that bends."""
+
 BASES_IN_WORDS = {
     ALL: "", SPRINGS: "springs", YIELDING: "yielding springs", TILTS: "springs, or dampers that hold the pier at a tilt",
+    BENDING: "a shaft that bends",
 }  # fmt: skip
 
 ENDINGS = {

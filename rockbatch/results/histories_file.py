@@ -35,7 +35,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
-from rockbatch.pier import ElasticBase, Part, Pier, RigidBase, YieldingBase, restraint_of
+from rockbatch.pier import Base, ElasticBase, Part, Pier, RigidBase, YieldingBase, restraint_of
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
@@ -67,11 +67,18 @@ UNITS = {
     "energy": "J/kg",
     "ag_h": "m/s^2",
     "ag_v": "m/s^2",
+    "deflection": "m",
 }
 """Units of the columns of a history, in their order."""
 
 OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
 """Columns of a history that only piers on springs have."""
+
+
+def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
+    """Return the columns of a history that have numbers, of a pier on ``base`` whose shaft ``bends`` or not."""
+    return [name for name in UNITS if (base.on_springs or name not in OF_SPRINGS) and (bends or name != "deflection")]
+
 
 _EVENTS = {"t": "f", "kind": "S", "pivot": "S", "before": "i", "after": "i"}
 _IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
@@ -145,7 +152,7 @@ def _write(group: "h5py.Group", response: Response) -> None:
     base = {"name": response.base.name} | asdict(response.base)
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
-    _write_all(group, response.history, [name for name in UNITS if response.base.on_springs or name not in OF_SPRINGS])
+    _write_all(group, response.history, columns_of(response.base, response.base.bends))
     _write_all(group.create_group("events"), response.events, _EVENTS)
     if response.impacts is not None:
         _write_all(group.create_group("impacts"), response.impacts, _IMPACTS)
@@ -270,7 +277,8 @@ def _read(group: "h5py.Group") -> Response:
     t = array_in(group, "t", "f")
     if not len(t) or np.isnan(t).any() or (np.diff(t) < 0).any():
         raise ValueError("t is no rising time")
-    history = _table(group, {name: "f" for name in UNITS if kind.on_springs or name not in OF_SPRINGS}, len(t))
+    bends = base.get("shaft") == "elastic"
+    history = _table(group, dict.fromkeys(columns_of(kind, bends), "f"), len(t))
     events = _table(group_in(group, "events"), _EVENTS)
     places = events[["before", "after"]].to_numpy()
     if ((places < 0) | (places >= len(t))).any():
@@ -290,7 +298,7 @@ def _read(group: "h5py.Group") -> Response:
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**pier),
         base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be chosen
-        history=history.reindex(columns=list(UNITS)),
+        history=history.reindex(columns=[name for name in UNITS if bends or name != "deflection"]),
         events=events.astype(EVENT_TYPES),
         **tables,
     )

@@ -107,6 +107,10 @@ def _with_errors(run: Run, fine: Outcome, coarse: Outcome) -> Outcome:
         errors["theta_res_error"] = max(abs(fine.theta_res - coarse.theta_res), least)
     if run.base.yields and fine.settlement is not None and coarse.settlement is not None:
         errors["settlement_error"] = max(abs(fine.settlement - coarse.settlement), least * run.pier.half_width)
+    if fine.deflection_max is not None and coarse.deflection_max is not None:
+        rounding = least * run.pier.size
+        errors["deflection_max_error"] = max(abs(fine.deflection_max - coarse.deflection_max), rounding)
+        errors["top_drift_max_error"] = max(abs((fine.top_drift_max or 0.0) - (coarse.top_drift_max or 0.0)), rounding)
     of_devices = change_of_devices(fine, coarse, run.pier)
     return fine.changed(devices_error=of_devices and CHANCE * of_devices, **errors)
 

@@ -13,7 +13,7 @@ from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Pier, RigidBase, YieldingBase
+from rockbatch.pier import Pier, RigidBase, YieldingBase, shape_at
 from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
 from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
@@ -56,7 +56,7 @@ def _observe(run: Run, rows: np.recarray, least_normal: float, forces: np.recarr
     pier, base = run.pier, run.base
     most = math.inf if base.friction is None else float(base.friction)
     limits = Limits(most, least_normal * float(pier.gravity), start_of(pier, base).unstressed)
-    body = float(pier.deck) if base.on_springs else Body(_outline(pier), _friction_hold(pier, base))
+    body = float(pier.deck) if base.on_springs else Body(_outline(pier, base), _friction_hold(pier, base))
     plain, pulls = apart(base, rows)
     devices = recorded(pier, base, rows) if base.restraints else None
     recording = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
@@ -76,15 +76,16 @@ def _friction_hold(pier: Pier, base: RigidBase) -> Hold:
     return Hold(*map(float, numbers))
 
 
-def _outline(pier: Pier) -> Outline:
+def _outline(pier: Pier, base: RigidBase) -> Outline:
     """Return the outline of a pier.
 
     The deck of a frame rests on corners of its columns, twice as far from their pivots as their centres of mass are.
     """
     size, width = float(pier.size), 2.0 * float(pier.half_width)
     if pier.deck_over_columns is not None:
-        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0)
-    return Outline(size, width, 1.0, float(pier.deck - pier.height))
+        return Outline(size, width, width / math.sin(pier.alpha) / size, 0.0, 0.0)
+    bent = shape_at(pier, pier.deck) if base.bends else 0.0
+    return Outline(size, width, 1.0, float(pier.deck - pier.height), bent)
 
 
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:

@@ -10,6 +10,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
+from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
@@ -20,7 +21,7 @@ from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.simulation.leaning import Apart, apart, may_lean, with_error_of_rocking, with_rocking
-from rockbatch.simulation.models import acceleration_at, block, ground_of, springs
+from rockbatch.simulation.models import acceleration_at, block, flexible_block, ground_of, model, springs
 from rockbatch.simulation.outcome import TERMS, Outcome, Section
 from rockbatch.simulation.response import EVENT_TYPES, Response
 from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
@@ -127,7 +128,7 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     if base.on_springs:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
     else:
-        ledger_on_rigid_base(block(pier, base), plain, pulls, ground, dt, balance)
+        ledger_on_rigid_base(model(pier, base), plain, pulls, ground, dt, balance)
     return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
 
 
@@ -277,7 +278,8 @@ def histories(
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
-    history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical})
+    bent = {"deflection": state.pop("deflection")} if base.bends else {}
+    history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical, **bent})
     events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
         motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, demands, impacts,
@@ -300,17 +302,36 @@ def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str,
 
 
 def _rigid_state(pier: Pier, base: RigidBase, rows: np.recarray) -> dict[str, Samples]:
-    """Return the rotation and its rate, and the energy stored since the start: kinetic, potential and of tendons."""
+    """Return rotation and rate, deflection of a shaft that bends, and the energy stored since the start."""
     m, theta, v = block(pier, base), rows.theta, rows.v
     side = np.where(rows.left != rows.right, rows.right - rows.left, (1.0 - m.deck) * rows.bore + m.deck * rows.top)
     lever = m.height * np.cos(theta) + side * m.half_width * np.sin(theta)
     energy = 0.5 * rows.v_rate**2 + 0.5 * (pier.inertia + lever**2) * rows.omega**2 + pier.gravity * (v - v[0])
+    bent = {}
+    if base.bends:
+        energy = _energy_of_bending(flexible_block(pier, base), rows, side)
+        energy, bent = energy - energy[0], {"deflection": rows.u}
     if base.restraints:
         energy = energy + restraints.stored(pier, base, rows)
     none = dict.fromkeys(
         ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right"), np.full(len(rows), np.nan)
     )
-    return {"theta": theta, "omega": rows.omega, **none, "energy": energy}
+    return {"theta": theta, "omega": rows.omega, **none, "energy": energy, **bent}
+
+
+def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Samples:
+    """Return kinetic, potential and elastic energy [J/kg] of a pier whose shaft bends, about the base's point at ``key``."""
+    b, sine, cosine, u = key * m.half_width, np.sin(rows.theta), np.cos(rows.theta), rows.u
+    turning = m.inertia + m.height**2 + b**2 + u * (m.second * u - 2.0 * m.first * b)
+    slope, rise = (
+        (b - m.first * u) * cosine - m.height * sine,
+        rows.v_rate - (b * cosine - m.height * sine) * rows.omega,
+    )
+    kinetic = (
+        0.5 * (m.second * rows.u_rate**2 + turning * rows.omega**2 + rise**2) + m.coupling * rows.u_rate * rows.omega
+    )
+    kinetic += rise * (slope * rows.omega - m.first * sine * rows.u_rate)
+    return kinetic + m.gravity * (rows.v - m.first * u * sine) + 0.5 * m.second * (m.frequency * u) ** 2
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:

@@ -9,6 +9,8 @@ import numpy as np
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
+from rockbatch.core.flexure import lanes as flexible_lanes
+from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
@@ -21,6 +23,7 @@ from rockbatch.pier import (
     DamperKind,
     DeckSpring,
     ElasticBase,
+    Mode,
     Pier,
     Place,
     Restraint,
@@ -29,8 +32,10 @@ from rockbatch.pier import (
     Tendon,
     YieldingBase,
     fastest,
+    mode_of,
     places,
     rocking_frequency,
+    shape_at,
     vertical_frequency,
     yield_deflection,
 )
@@ -152,15 +157,60 @@ def block(pier: Pier, base: RigidBase) -> Block:
     )
 
 
-def model(pier: Pier, base: Base) -> Block | Springs:
+@lru_cache(maxsize=4096)
+def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
+    """Return the core's numbers for ``pier`` on a rigid base whose shaft bends: plain floats, per unit mass."""
+    rigid, mode, period = block(pier, base), mode_of(pier), pier.flexural_period_s
+    assert period is not None
+    frequency = 2.0 * math.pi / period
+    return FlexibleBlock(
+        half_width=rigid.half_width,
+        height=rigid.height,
+        inertia=rigid.inertia,
+        gravity=rigid.gravity,
+        alpha=rigid.alpha,
+        p=rigid.p,
+        restitution=rigid.restitution / pier.restitution if pier.restitution > 0.0 else 0.0,
+        guided=rigid.guided,
+        rest=rigid.rest,
+        deck=0.0,
+        first=mode.first,
+        second=mode.second,
+        coupling=mode.coupling,
+        frequency=frequency,
+        damping=float(2.0 * base.flexural_damping * frequency),
+        top=float(pier.top),
+        top_shape=shape_at(pier, pier.top),
+        tipping=_tipping(rigid, mode, frequency),
+        flight_step=0.5 * FREQUENCY_STEP / _vibration(pier, base, rigid.inertia + rigid.height**2),
+        momentum=float(base.flexural_impact == "momentum"),
+    )
+
+
+def _tipping(m: Block, mode: Mode, frequency: float) -> float:
+    """Return the rotation [rad] at which the pier stands on one pivot, its shaft bent by the weight: below α."""
+    leans = m.gravity * mode.first**2 / (mode.second * frequency**2)
+    low, high = 0.0, m.alpha
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        back = m.half_width * math.cos(middle) - (m.height + leans * math.cos(middle)) * math.sin(middle)
+        low, high = (middle, high) if back > 0.0 else (low, middle)
+    return low
+
+
+def model(pier: Pier, base: Base) -> Block | FlexibleBlock | Springs:
     """Return the core's numbers for ``pier`` on ``base``."""
-    return springs(pier, base) if base.on_springs else block(pier, base)
+    if base.on_springs:
+        return springs(pier, base)
+    return flexible_block(pier, base) if base.bends else block(pier, base)
 
 
-def system_of(m: Block | Springs) -> System:
+def system_of(m: Block | FlexibleBlock | Springs) -> System:
     """Return the system of a pier, whose runs share compiled code; systems are compared by value."""
     if isinstance(m, Block):
         return block_lanes.system_of(m)
+    if isinstance(m, FlexibleBlock):
+        return flexible_lanes.system_of(m)
     system = spring_lanes.system_of(m)
     if m.exponent is None:
         return system
@@ -169,11 +219,17 @@ def system_of(m: Block | Springs) -> System:
 
 
 def line_of(
-    m: Block | Springs, timing: tuple[float, ...], readings: tuple[float, ...], prestress: float, start: Start
+    m: Block | FlexibleBlock | Springs,
+    timing: tuple[float, ...],
+    readings: tuple[float, ...],
+    prestress: float,
+    start: Start,
 ) -> Line:
     """Return a run as the core takes it: the model's numbers, then ``timing`` from ``dt`` to ``patience``."""
     if isinstance(m, Block):
         return block_lanes.line_of(m, start.theta, 0.0, *timing)
+    if isinstance(m, FlexibleBlock):
+        return flexible_lanes.line_of(m, start.theta, hanging(m, start.theta), *timing)
     return spring_lanes.line_of(m, *timing, *readings, prestress, start.v, start.theta, start.z_left, start.z_right)
 
 
@@ -265,6 +321,19 @@ def prestress(pier: Pier, base: Base) -> float:
     return sum(law.prestress for law in elements(pier, base))
 
 
+def hanging(m: FlexibleBlock, theta: float) -> float:
+    """Return the deflection [m] of the top under the weight alone, of a pier that is held by its base at ``theta`` [rad]."""
+    return m.gravity * m.first * math.sin(theta) / (m.second * m.frequency**2)
+
+
+def _vibration(pier: Pier, base: RigidBase, turning: float) -> float:
+    """Return the greater rate [1/s] of the shaft's mode beside a rotation with the moment of inertia ``turning`` [m²]."""
+    mode, frequency = mode_of(pier), 2.0 * math.pi / (pier.flexural_period_s or math.inf)
+    share = 1.0 - mode.coupling**2 / (mode.second * turning)
+    fast, decay = frequency / math.sqrt(share), base.flexural_damping * frequency / share
+    return fast if decay <= fast else decay + math.sqrt(decay**2 - fast**2)
+
+
 @lru_cache(maxsize=4096)
 def fastest_rate(pier: Pier, base: Base) -> float:
     """Return the greatest rate [1/s] of a model: of the springs, of vibration against devices, of decay by linear dampers."""
@@ -278,6 +347,8 @@ def fastest_rate(pier: Pier, base: Base) -> float:
         relaxes = max(relaxes, law.quickest if law.kind == MAXWELL and law.exponent == 1.0 else 0.0)
     if base.on_springs:
         return max(math.hypot(_fastest(pier, base), math.sqrt(stiff)), 2.0 * slows, relaxes)
+    if base.bends:
+        stiff += _vibration(pier, base, pier.inertia_about_pivot) ** 2
     return max(math.sqrt(stiff), _fastest(pier, base) if steep else slows, relaxes)
 
 

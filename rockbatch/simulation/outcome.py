@@ -191,6 +191,10 @@ class Outcome:
         Of deck springs, likewise.
     devices_error : float or None
         Estimated error of these demands but counts, as a share of the one whose error is the largest or of 1 % of its scale.
+    deflection_max, top_drift_max : float or None
+        Of a shaft that bends: greatest deflection of its top across it, and greatest horizontal way of its top [m].
+    deflection_max_error, top_drift_max_error : float or None
+        Their estimated errors [m].
     energies : mapping of str to float, or None
         Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
     forces : PeakForces or None
@@ -252,6 +256,10 @@ class Outcome:
     theta_lean_error: float | None = None
     settlement_error: float | None = None
     device_work: DeviceWork | None = None
+    deflection_max: float | None = None
+    deflection_max_error: float | None = None
+    top_drift_max: float | None = None
+    top_drift_max_error: float | None = None
 
     @property
     def was_run(self) -> bool:

@@ -61,7 +61,8 @@ class Response(Shown):
         mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
         force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
         forces of the supports per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
-        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up. On the rigid base ``v``, ``z_*``, ``v_*`` and
+        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up; ``deflection`` [m] of the top of a shaft that bends,
+        across it, positive right. On the rigid base ``v``, ``z_*``, ``v_*`` and
         ``force_*`` are NaN.
     events : DataFrame, one row per event
         ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of

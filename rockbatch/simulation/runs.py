@@ -322,6 +322,8 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     if base.on_springs:
         more = _of_springs(pier, base, result, survived=status == "ok")
         omega_v, zeta = vertical_frequency(pier, base), base.zeta or 0.0
+    elif base.bends:
+        more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}
     if result.status == types.FLIGHT:
         reason = cause_of_flight(run.motion, omega_v, pier.gravity, result.t_flight, result.t_impact, zeta)
     in_motion = result.theta_max if math.isnan(result.theta_in_motion) else result.theta_in_motion

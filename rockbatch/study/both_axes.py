@@ -49,6 +49,8 @@ def _unfit(case: Case, motions: MotionSpec, names: Container[object]) -> Iterato
         yield f"the case across the axis is called {shown(_name(case))}; give the case of that name another one"
     if "width_m" not in case.columns:
         yield "is beside width_m of [pier], and the size is given otherwise; write width_m and height_m, or width_m and parts"
+    if case.base.bends:
+        yield 'its shaft bends across the axis with another period; write a case and a [pier] for each axis, or shaft = "rigid"'
     if case.pier.initial_rotation_rad or motions.still_s is not None:
         yield "a pier that is let go turns in one plane; leave initial_rotation_rad and still_s, or this, out"
     if len(motions.azimuths) != 1 and not isinstance(motions.override, MotionSet):

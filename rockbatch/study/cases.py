@@ -49,11 +49,12 @@ _CALLED = {
     }),
 }  # fmt: skip
 _ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
+_ON_ROCK = {"base": tuple(name for name, base in _BASES.items() if not base.on_springs)}
 _YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
 BASE_KEYS = {
     "restitution": Key(within(BOUNDS["restitution"]), "0.9",
         "Factor on the angular velocity at an impact; default: Housner's, from the geometry.", many=True,
-        only={"base": ("rigid",)}),
+        only=_ON_ROCK),
     "beta": Key(positive, "40.0",
         "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
         only=_ON_SPRINGS,
@@ -90,6 +91,14 @@ BASE_KEYS = {
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True),
+    "shaft": Key(choice(*WORDS["shaft"]), '"rigid"',
+        'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
+        many=True, only=_ON_ROCK),
+    "flexural_damping": Key(within(BOUNDS["flexural_damping"]), "0.05",
+        "Damping ratio of that mode, of the pier fixed at its base.", many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
+    "flexural_impact": Key(choice(*WORDS["flexural_impact"]), '"momentum"',
+        'What the mode keeps in an impact: its "momentum", as the foot is stopped before the shaft takes part; or the "rate" of '
+        "its deflection, with `restitution` as of a rigid block.", many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
     "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
         "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True),
 }  # fmt: skip
@@ -108,7 +117,7 @@ CASE = Section(("case",), (
         "each a planar model under its component of every record, and checks combine them by `both_axes`.",
         usual=PIER["width_m"].usual),
     **CONFIRM,
-}, many=True, required=True, homes=(YieldingBase, ElasticBase), also=names({
+}, many=True, required=True, homes=(YieldingBase, ElasticBase, RigidBase), also=names({
     "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",
     "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity", "zeta": "damping dampingratio xi",
     ("restitution", "epsilon"): "cor e r coefficientofrestitution", "friction": "mu mus coefficientoffriction",
@@ -198,6 +207,9 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
         applying.pop("epsilon", None)
     if not base.has_exponent:
         applying.pop("n", None)
+    if not base.bends:
+        for key in ("shaft", "flexural_damping", "flexural_impact"):
+            applying.pop(key, None)
     return Case(case.name, pier, base, pier_values | applying)
 
 

@@ -19,7 +19,7 @@ from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.pier import Pier, described, symmetric
+from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
@@ -315,7 +315,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
-    _complain_about_sections(file, [pier for pier, _ in piers], output)
+    _complain_about_sections(file, [pier for pier, _ in piers], output, any(case.base.bends for case in cases))
     if not output.forces:
         _complain_about_friction(file)
     along = along_the_axis(cases)
@@ -405,11 +405,11 @@ def _complain_about_friction(file: TomlFile) -> None:
             )
 
 
-def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output) -> None:
-    """Note sections that some pier does not have, or whose forces are not known."""
+def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:
+    """Note sections that some pier does not have, or whose forces are not known, such as those of a shaft that bends."""
     if output.requested_sections is None:
         return
-    wrong: dict[str, None] = {}
+    wrong: dict[str, None] = {NO_SECTIONS: None} if bends else {}
     for pier in piers:
         try:
             section_heights(pier, output.requested_sections)

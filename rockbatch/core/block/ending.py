@@ -25,7 +25,7 @@ def reach_of(theta, omega, alpha, p):
 
 
 @inlined
-def _stored(m, devices, y, contact):
+def stored_by_devices(m, devices, y, contact):
     """Return the energy [J/kg] that tendons, stops and springs store in state ``y``, and what dampers may give back."""
     kept, back, at = 0.0, 0.0, attitude(m, y, contact, devices.level[0])
     for j in range(len(devices.elements)):
@@ -55,11 +55,11 @@ def _cannot_reach(m, devices, now, peak):
     """
     y, limit, inertia = now.y, min(peak, m.alpha), 1.0 / m.quickness
     level = inertia * m.p * m.p
-    kept, back = _stored(m, devices, y, now.contact)
+    kept, back = stored_by_devices(m, devices, y, now.contact)
     energy = 0.5 * inertia * y.omega * y.omega + level * math.cos(m.alpha - abs(y.theta)) + kept + back
     least = math.inf
     for side in (-1.0, 1.0):
-        there, _ = _stored(m, devices, _at(m, y, side * limit), on_side(side))
+        there, _ = stored_by_devices(m, devices, _at(m, y, side * limit), on_side(side))
         least = min(least, level * math.cos(m.alpha - limit) + there)
     return abs(y.theta) < m.alpha and energy <= least
 

@@ -3,7 +3,7 @@
 from rockbatch.core import system
 from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
 from rockbatch.core.clock import Clearances
-from rockbatch.core.kernel import inlined
+from rockbatch.core.kernel import hook, inlined
 from rockbatch.core.trigonometry import flat_sine_and_cosine, sine_and_cosine
 
 
@@ -99,7 +99,7 @@ def on_pivot(m, theta, side):
 
 
 @inlined
-def _pull_down(pull):
+def pull_down(pull):
     """Return the devices' force [m/s²] and moment [m²/s²]."""
     if pull is None:
         return 0.0, 0.0
@@ -110,7 +110,7 @@ def _pull_down(pull):
 def _accelerations(m, y, contact, ground):
     """Return v̈ [m/s²] and θ̈ [rad/s²]: rocking (eq. 14), in flight with the key of the pivot that bore last, or at rest."""
     side = side_of(contact)
-    down, back = _pull_down(m.pull)
+    down, back = pull_down(m.pull)
     if side != 0.0:
         slope, arm = arms_about(m, y.theta, side)
         turning = tilt_acceleration(m, slope, arm, ground) - m.quickness * (back + down * slope)
@@ -141,9 +141,13 @@ def stage(m, y, start, contact, remaining):
     return y
 
 
-@inlined
+@hook
 def constrained(m, y, contact):
     """Return ``y`` with v and v̇ as the pivot that is on the ground has them."""
+
+
+@constrained.of(Block)
+def _constrained_block(m, y, contact):
     side = side_of(contact)
     if side == 0.0:
         return y
@@ -157,17 +161,27 @@ def end_step(m, y, start, contact, remaining):
     return constrained(m, y, contact)
 
 
-@system.lever.of(Block)
+@inlined
 def lever(m, y, contact):
     """Return H [m]: the height of the centre of mass above the pivot that bears or bore last."""
     side = side_of(contact)
     return arms_about(m, y.theta, side if side != 0.0 else key_of(m, contact))[1]
 
 
-@inlined
-def normal_force(m, k, vertical):
+@system.ground_power.of(Block)
+def ground_power(m, y, contact, ground):
+    """Return the power of the ground's inertia forces [W/kg]."""
+    return -ground.horizontal * lever(m, y, contact) * y.omega - ground.vertical * y.v_rate
+
+
+@hook
+def normal_force(m, y, k, vertical):
     """Return N/M [m/s²] of the ground on a block that rocks, with rates ``k`` (THEORY.md, Flight on the rigid base)."""
-    return m.gravity + vertical + k.v_rate + _pull_down(m.pull)[0]
+
+
+@normal_force.of(Block)
+def _normal_of_block(m, y, k, vertical):
+    return m.gravity + vertical + k.v_rate + pull_down(m.pull)[0]
 
 
 @system.airborne.of(Block)

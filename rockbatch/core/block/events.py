@@ -9,6 +9,7 @@ from rockbatch.core.block.equations import (
     clearances,
     constrained,
     halves,
+    lever,
     lost_by_deck,
     normal_force,
     on_side,
@@ -19,9 +20,9 @@ from rockbatch.core.devices.events import leave_rest
 from rockbatch.core.devices.laws import CLOSES, OPENS
 from rockbatch.core.devices.pull import about_to_turn
 from rockbatch.core.ground import later
-from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
-from rockbatch.core.system import lever, rates
+from rockbatch.core.system import rates
 from rockbatch.core.table import along
 from rockbatch.core.types import (
     CONTACT_LEFT,
@@ -58,13 +59,22 @@ NEAR_FLIGHT = 0.3
 RESTING = Stance(1.0, 1.0, 0.0, 0.0)
 
 
-@kernel
+@inlined
 def _lift(m, devices, y, side, ground):
-    """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock, and its rate [rad/s³]."""
+    """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock."""
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
-    turning = rates(under, y, on_side(side), ground).omega
-    change = -m.quickness * (ground.vertical_slope * side * m.half_width + ground.horizontal_slope * m.height)
-    return side * turning, side * change
+    return side * rates(under, y, on_side(side), ground).omega
+
+
+@hook
+def lift_rate(m, devices, now, side):
+    """Return the rate [rad/s³] of the acceleration by which a block at rest would begin to rock towards ``side``."""
+
+
+@lift_rate.of(Block)
+def _lift_rate(m, devices, now, side):
+    ground = now.ground
+    return -side * m.quickness * (ground.vertical_slope * side * m.half_width + ground.horizontal_slope * m.height)
 
 
 @kernel
@@ -73,7 +83,7 @@ def _change_of_normal(m, y, k, contact, ground):
     near = NEARBY / m.p
     soon, there = constrained(m, along(y, k, near), contact), later(ground, near)
     k_soon = rates(m, soon, contact, there)
-    return (normal_force(m, k_soon, there.vertical) - normal_force(m, k, ground.vertical)) / near
+    return (normal_force(m, soon, k_soon, there.vertical) - normal_force(m, y, k, ground.vertical)) / near
 
 
 @inlined
@@ -104,8 +114,7 @@ def _weightless(m, ground):
     return abs(m.gravity + ground.vertical) <= WEIGHTLESS * m.gravity
 
 
-@system.event_functions.of(Block)
-def event_functions(m, devices, now):
+def event_functions_of(m, devices, now):
     """Return Signals, and slopes: at rest what keeps each pivot down; rocking the tilt and the normal force; else heights."""
     y, k, contact, _, ground = now
     side = side_of(contact)
@@ -116,7 +125,7 @@ def event_functions(m, devices, now):
             turning = turning if abs(turning) > least else least  # it has just been lifted, to rounding
             # no more than it has: a slope of ``rest`` would dwarf the tilt of a block that left the ground a moment ago
             omega = math.copysign(max(abs(omega), HARDLY) if omega * turning > 0.0 else HARDLY, turning)
-        normal, normal_rate = normal_force(m, k, ground.vertical), 0.0
+        normal, normal_rate = normal_force(m, y, k, ground.vertical), 0.0
         if normal < NEAR_FLIGHT * m.gravity:
             normal_rate = _change_of_normal(m, y, k, contact, ground)
         normal, normal_rate = _at_once(normal, normal_rate, NO_ACCELERATION * m.gravity)
@@ -124,11 +133,9 @@ def event_functions(m, devices, now):
             return Signals(side * y.theta, normal, 1.0, 1.0), Signals(omega, normal_rate, 0.0, 0.0)
         return Signals(normal, side * y.theta, 1.0, 1.0), Signals(normal_rate, omega, 0.0, 0.0)
     if contact.left != 0.0:
-        about_right, right_rate = _lift(m, devices, y, RIGHT, ground)
-        about_left, left_rate = _lift(m, devices, y, LEFT, ground)
         rounding = WEIGHTLESS * m.p * m.p if _weightless(m, ground) else 0.0
-        left, left_slope = _at_once(-about_right, -right_rate, rounding)
-        right, right_slope = _at_once(-about_left, -left_rate, rounding)
+        left, left_slope = _at_once(-_lift(m, devices, y, RIGHT, ground), -lift_rate(m, devices, now, RIGHT), rounding)
+        right, right_slope = _at_once(-_lift(m, devices, y, LEFT, ground), -lift_rate(m, devices, now, LEFT), rounding)
         return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     arm_left, arm_right = arms(m, y.theta, contact.top)
@@ -143,6 +150,9 @@ def event_functions(m, devices, now):
     return Signals(left, right, tilt, 1.0), Signals(left_velocity, right_velocity, tilt_rate, 0.0)
 
 
+system.event_functions.of(Block)(event_functions_of)
+
+
 @inlined
 def _deck_tilt(m, y, k, contact):
     """Return the tilt at whose end the deck of a frame in flight changes corners, and its rate; above zero without a deck."""
@@ -154,8 +164,8 @@ def _deck_tilt(m, y, k, contact):
     return contact.top * y.theta, rate
 
 
-@system.longest_step.of(Block)
-def longest_step(m, start, h):
+@inlined
+def within_bounce(m, start, h):
     """Return no more than a bounce that has just begun will last: a cubic over a longer sub-step could hide it."""
     y, k, contact, _, _ = start
     side = side_of(contact)
@@ -164,6 +174,12 @@ def longest_step(m, start, h):
     back = -side * k.omega
     hop = 2.0 * HOP * side * y.omega / back if back > 0.0 else math.inf
     return min(h, hop) if hop > 0.0 else h
+
+
+@system.longest_step.of(Block)
+def longest_step(m, start, h):
+    """Return what shows a bounce."""
+    return within_bounce(m, start, h)
 
 
 @system.transition.of(Block)
@@ -186,18 +202,18 @@ def transition(m, devices, now, which, ground, dt):
         topples = abs(y.theta) >= m.alpha and not airborne(m, contact)
         impacts = 0.0 if topples else (2.0 if kind == IMPACT_BOTH else 1.0)
         return Transition(Moment(y, contact, supports), kind, impacts, 0.0, 0.0)
-    y, contact, kind = _lift_off(m, devices, y, -pivot, ground)
+    y, contact, kind = lift_off(m, devices, y, -pivot, ground)
     return Transition(Moment(y, contact, supports), kind, 0.0, 1.0, 0.0)
 
 
 @kernel
-def _lift_off(m, devices, y, side, ground):
+def lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
-    other, _ = _lift(m, devices, y, -side, ground)
+    other = _lift(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     k = rates(under, y, on_side(side), ground)
     falls_away = ground.vertical_slope < 0.0 or not _weightless(m, ground)
-    unloads = normal_force(under, k, ground.vertical) <= NO_ACCELERATION * m.gravity
+    unloads = normal_force(under, y, k, ground.vertical) <= NO_ACCELERATION * m.gravity
     if falls_away and (unloads or other >= -NO_ACCELERATION * m.p * m.p * m.alpha):
         pushed = ground.horizontal if ground.horizontal != 0.0 else ground.horizontal_slope
         top = -math.copysign(1.0, pushed) if m.deck > 0.0 and pushed != 0.0 else 0.0
@@ -213,7 +229,7 @@ def _lift_off(m, devices, y, side, ground):
 def _impact(m, devices, y, ground, dt):
     """Return state, stance, kind and the time [s] left to rest, as the block passes through θ = 0 (THEORY.md, eq. 16)."""
     omega = m.restitution * y.omega
-    height, remaining = _bounces(m, devices, omega, ground)
+    height, remaining = bounces(m, devices, Rocking(0.0, 0.0, 0.0, 0.0), omega, ground)
     if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < dt):
         return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, REST, (remaining if omega != 0.0 else 0.0)
     side = RIGHT if omega > 0.0 else LEFT
@@ -222,19 +238,20 @@ def _impact(m, devices, y, ground, dt):
 
 
 @kernel
-def _bounces(m, devices, omega, ground):
+def bounces(m, devices, still, omega, ground):
     """Return the height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
+
+    ``still`` is the state of the block with its base at rest.
 
     Small bounces see a constant acceleration towards rest, friction added while they open and taken off while they close.
     Infinite if there is no rest.
     """
     here = RIGHT if omega > 0.0 else LEFT
-    still = Rocking(0.0, 0.0, 0.0, 0.0)
     speed, times, ratio, height = abs(omega), 0.0, 1.0, 0.0
     if m.restitution == 1.0 or speed == 0.0:
         return math.inf, math.inf
     for side in (here, -here):
-        slows = -_lift(m, devices, still, side, ground)[0]
+        slows = -_lift(m, devices, still, side, ground)
         speeds = -side * _closing(m, devices, still, side, ground)
         if slows <= 0.0 or speeds <= 0.0:
             return math.inf, math.inf

@@ -31,7 +31,7 @@ from rockbatch.core.devices.laws import (
 )
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import hook, inlined, kernel
-from rockbatch.core.system import lever, rates, shift
+from rockbatch.core.system import ground_power, rates, shift
 from rockbatch.core.table import with_pull
 from rockbatch.core.types import NO_EVENT, Pull
 
@@ -182,7 +182,7 @@ def device_rates(m, devices, now, x, ground, place):
         under, one, two = _with_friction(under, devices, at, now, ground)
     if place == END:
         devices.ended[0], devices.ended[1], devices.ended[2] = 0.0 if holds else 1.0, total, moment
-    k[2 * n] = -ground.horizontal * lever(m, y, now.contact) * y.omega - ground.vertical * y.v_rate
+    k[2 * n] = ground_power(m, y, now.contact, ground)
     k[2 * n + 1] = 0.0 if m.finite is not None else -m.height * y.theta * under.pull.force * y.omega
     return under, one, two
 

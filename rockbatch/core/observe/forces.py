@@ -3,8 +3,10 @@
 import math
 from typing import NamedTuple
 
-from rockbatch.core.block.equations import clearances, key_of, on_side, side_of
+from rockbatch.core.block.equations import arms_about, clearances, key_of, on_side, side_of
 from rockbatch.core.block.model import Block
+from rockbatch.core.flexure.equations import masses_about, rise_of_bending, velocity_of_centre
+from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Springs, Supports
@@ -48,6 +50,7 @@ class Outline(NamedTuple):
     width: float  # 2b between the corners [m]
     deck_share: float  # of the horizontal motion of the centre of mass that the deck makes too
     deck_above: float  # by how much the deck is higher, where it turns with the block [m]
+    deck_shape: float  # share of the top's deflection that the deck of a shaft that bends makes
 
 
 class Hold(NamedTuple):
@@ -184,6 +187,45 @@ def on_block(m, body, now, ground):
     )  # fmt: skip
 
 
+@kernel
+def on_flexible_block(m, body, now, ground):
+    """Return the forces on a pier whose shaft bends, by the motion of its mass; otherwise as :func:`on_block`."""
+    (y, contact, _), outline, horizontal, vertical = now, body.outline, ground.horizontal, ground.vertical
+    side, flies = side_of(contact), airborne(m, contact)
+    k, key = rates(m, y, contact, ground), side if side != 0.0 else key_of(m, contact)
+    sine, cosine = sine_and_cosine(y.theta)
+    half_sine, half_cosine = sine_and_cosine(0.5 * y.theta)
+    about, squared, b = masses_about(m, y.u, key), y.omega * y.omega, m.half_width
+    slope, arm = about.offset * cosine - m.height * sine, about.offset * sine + m.height * cosine
+    bent = cosine * k.u_rate - 2.0 * sine * y.u_rate * y.omega  # of what deflects by 1
+    along = arm * k.omega + slope * squared + m.first * bent
+    pull, grounded = m.pull.force * half_cosine, 0.0 if flies else 1.0
+    lifted = m.gravity + vertical + k.v_rate + rise_of_bending(m, y, k)
+    normal, shear = grounded * (lifted + pull * half_cosine), horizontal + along + grounded * pull * half_sine
+    straight_slope, straight_arm = arms_about(m, y.theta, key)
+    key_rise = k.v_rate - straight_slope * k.omega + straight_arm * squared
+    spun = m.coupling * k.u_rate + about.turning * k.omega + 2.0 * about.spread * y.u_rate * y.omega
+    moment = key * b * lifted - slope * (m.gravity + vertical + key_rise) - arm * horizontal - spun
+    left, right = contact.left * normal, contact.right * normal
+    if side == 0.0 and not flies:
+        more = (m.pull.moment - moment) / b
+        left, right = 0.5 * (normal + more), 0.5 * (normal - more)
+        lacks = max(-left, -right, 0.0)  # friction of dampers holds it
+        left, right = max(left, 0.0) - (lacks if right < 0.0 else 0.0), max(right, 0.0) - (lacks if left < 0.0 else 0.0)
+    high, to_deck = m.height + outline.deck_above, outline.deck_shape * bent
+    place = key * b - outline.deck_shape * y.u
+    to_deck += (high * cosine + place * sine) * k.omega + (place * cosine - high * sine) * squared
+    gap_left, gap_right, speed_left, speed_right = clearances(m, y, contact.top)
+    off_left, off_right = 1.0 - contact.left, 1.0 - contact.right
+    to_right, up = velocity_of_centre(m, y, contact)
+    return Forces(
+        shear, normal, moment, left, right,
+        off_left * gap_left, off_right * gap_right, off_left * speed_left, off_right * speed_right,
+        horizontal + to_deck, to_right, up, y.omega,
+        _friction(m.gravity, shear, normal), min(off_left * gap_left, off_right * gap_right),
+    )  # fmt: skip
+
+
 @hook
 def waiting(m, y, was, contact, supports):
     """Return where the supports of free pivots wait in state ``y``, whose contact ``was`` another until then."""
@@ -199,9 +241,12 @@ def _waiting_springs(m, y, was, contact, supports):
     return Supports(left, right, supports.yield_left, supports.yield_right)
 
 
-@waiting.of(Block)
 def _waiting_ground(m, y, was, contact, supports):
     return supports
+
+
+waiting.of(Block)(_waiting_ground)
+waiting.of(FlexibleBlock)(_waiting_ground)
 
 
 @hook
@@ -217,6 +262,11 @@ def _forces_on_springs(m, body, now, ground):
 @forces_at.of(Block)
 def _forces_on_block(m, body, now, ground):
     return on_block(m, body, now, ground)
+
+
+@forces_at.of(FlexibleBlock)
+def _forces_on_flexible_block(m, body, now, ground):
+    return on_flexible_block(m, body, now, ground)
 
 
 @hook
@@ -248,6 +298,9 @@ def _fastest_on_springs(m, step):
     )
 
 
-@fastest_heels.of(Block)
 def _fastest_on_ground(m, step):
     return 0.0, 0.0
+
+
+fastest_heels.of(Block)(_fastest_on_ground)
+fastest_heels.of(FlexibleBlock)(_fastest_on_ground)

@@ -7,12 +7,16 @@ nothing. What is left over tests the equations, the events and the impacts at on
 
 from typing import NamedTuple
 
-from rockbatch.core.kernel import entry, kernel
+from rockbatch.core.block.equations import lever
+from rockbatch.core.block.model import Block
+from rockbatch.core.flexure.ending import bending_energy, kinetic_and_potential
+from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
 from rockbatch.core.springs.equations import accelerations_at, geometry
 from rockbatch.core.springs.model import Contact
 from rockbatch.core.springs.recovery import forces
-from rockbatch.core.system import lever, rates
+from rockbatch.core.system import ground_power, rates
 from rockbatch.core.table import record, with_pull
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, Pull
 
@@ -54,7 +58,7 @@ def _powers(m, y, k, contact, ground):
     """Return the powers of input, plastic work, P–Δ, constraint and the dashpots under the pivots [W/kg]."""
     at = geometry(m, y.theta)
     left, right = y.v_rate + at.arm_left * y.omega, y.v_rate + at.arm_right * y.omega
-    shaken = -ground.horizontal * _lever(at, contact) * y.omega - ground.vertical * y.v_rate
+    shaken = ground_power(m, y, contact, ground)
     plastic = contact.left * m.yield_force * y.z_left * (left - m.yield_deflection * k.z_left)
     plastic += contact.right * m.yield_force * y.z_right * (right - m.yield_deflection * k.z_right)
     damping = m.damping * (contact.left * left * left + contact.right * right * right)
@@ -157,39 +161,48 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
         y = y_end
 
 
-@kernel
+@hook
+def _on_rigid_base(m, y, contact):
+    """Return kinetic, potential and elastic energy [J/kg], and the power that damping takes [W/kg]."""
+
+
+@_on_rigid_base.of(Block)
 def _of_block(m, y, contact):
-    """Return kinetic and potential energy per unit mass [J/kg]."""
     arm = lever(m, y, contact)
-    return 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega), m.gravity * y.v
+    return 0.5 * (y.v_rate * y.v_rate + (m.inertia + arm * arm) * y.omega * y.omega), m.gravity * y.v, 0.0, 0.0
 
 
-@kernel
-def _shaken(m, y, contact, ground):
-    """Return the power of the ground [W/kg]."""
-    return -ground.horizontal * lever(m, y, contact) * y.omega - ground.vertical * y.v_rate
+@_on_rigid_base.of(FlexibleBlock)
+def _of_flexible_block(m, y, contact):
+    kinetic, potential = kinetic_and_potential(m, y, contact)
+    return kinetic, potential, bending_energy(m, y.u), m.second * m.damping * y.u_rate * y.u_rate
 
 
 @entry
 def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
-    """Compute the energy balance of a run of a Block ``m`` with the history ``rows``; otherwise as :func:`ledger_on_springs`."""
+    """Compute the energy balance of a run of a Block or FlexibleBlock ``m`` with the history ``rows``.
+
+    Otherwise as :func:`ledger_on_springs`.
+    """
     y = state_of(m, rows[0])
-    kinetic, potential0 = _of_block(m, y, contact_of(m, rows[0]))
-    kinetic0, shaken, impact = kinetic, 0.0, 0.0
+    kinetic, potential0, elastic0, lost = _on_rigid_base(m, y, contact_of(m, rows[0]))
+    kinetic0, shaken, impact, damping = kinetic, 0.0, 0.0, 0.0
     for i in range(1, len(rows)):
         y_end, contact = state_of(m, rows[i]), contact_of(m, rows[i])
-        kinetic_end, potential = _of_block(m, y_end, contact)
+        kinetic_end, potential, elastic, lost_end = _on_rigid_base(m, y_end, contact)
         if rows[i].kind > 0:  # the other side of an event
             impact += kinetic - kinetic_end
         else:
             start, half_way, stop = _pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
-            s0 = _shaken(m, y, contact, step.ground)
-            s1 = _shaken(m, within(half_way, step, 0.5), contact, ground_within(step, 0.5))
-            s2 = _shaken(m, y_end, contact, step.ground_end)
+            middle = within(half_way, step, 0.5)
+            s0 = ground_power(m, y, contact, step.ground)
+            s1 = ground_power(m, middle, contact, ground_within(step, 0.5))
+            s2 = ground_power(m, y_end, contact, step.ground_end)
             shaken += step.length / 6.0 * (s0 + 4.0 * s1 + s2)
+            damping += step.length / 6.0 * (lost + 4.0 * _on_rigid_base(m, middle, contact)[3] + lost_end)
         line = out[i]
-        line.kinetic, line.potential = kinetic_end - kinetic0, potential - potential0
-        line.input, line.impact = shaken, impact
-        line.remainder = line.kinetic + line.potential - shaken + impact
-        y, kinetic = y_end, kinetic_end
+        line.kinetic, line.potential, line.elastic = kinetic_end - kinetic0, potential - potential0, elastic - elastic0
+        line.input, line.impact, line.damping = shaken, impact, damping
+        line.remainder = line.kinetic + line.potential + line.elastic - shaken + impact + damping
+        y, kinetic, lost = y_end, kinetic_end, lost_end

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.kernel import hook, kernel
 from rockbatch.core.springs.model import Contact, Springs, State
 from rockbatch.core.system import rates, share, stage
@@ -24,6 +25,11 @@ def _state_of_block(m, row):
     return Rocking(row.v, row.theta, row.v_rate, row.omega)
 
 
+@state_of.of(FlexibleBlock)
+def _state_of_flexible_block(m, row):
+    return Flexing(row.v, row.theta, row.v_rate, row.omega, row.u, row.u_rate)
+
+
 @hook
 def contact_of(m, row):
     """Return the contact in a row: that of the step that ends there, or after the event."""
@@ -34,9 +40,12 @@ def _contact_on_springs(m, row):
     return Contact(row.left, row.right, row.left_yields, row.right_yields, row.held)
 
 
-@contact_of.of(Block)
-def _contact_of_block(m, row):
+def _stance(m, row):
     return Stance(row.left, row.right, row.bore, row.top)
+
+
+contact_of.of(Block)(_stance)
+contact_of.of(FlexibleBlock)(_stance)
 
 
 @kernel
@@ -117,4 +126,14 @@ def _within_of_block(m, step, s):
     return Rocking(
         cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
         cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+    )  # fmt: skip
+
+
+@within.of(FlexibleBlock)
+def _within_of_flexible_block(m, step, s):
+    y, k, end, k_end, h = step.start, step.rates, step.end, step.rates_end, step.length
+    return Flexing(
+        cubic(y.v, k.v, end.v, k_end.v, h, s), cubic(y.theta, k.theta, end.theta, k_end.theta, h, s),
+        cubic(y.v_rate, k.v_rate, end.v_rate, k_end.v_rate, h, s), cubic(y.omega, k.omega, end.omega, k_end.omega, h, s),
+        cubic(y.u, k.u, end.u, k_end.u, h, s), cubic(y.u_rate, k.u_rate, end.u_rate, k_end.u_rate, h, s),
     )  # fmt: skip

@@ -114,11 +114,12 @@ def end_step(m, y, start, contact, remaining):
     return with_recovery(m, State(y.v, y.theta, y.v_rate, y.omega, z_left, z_right), start, contact, remaining)
 
 
-@system.lever.of(Springs)
-def lever(m, y, contact):
-    """Return H [m]."""
+@system.ground_power.of(Springs)
+def ground_power(m, y, contact, ground):
+    """Return the power of the ground's inertia forces [W/kg]."""
     at = geometry(m, y.theta)
-    return at.lever + (contact.right - contact.left) * at.swing
+    lever = at.lever + (contact.right - contact.left) * at.swing
+    return -ground.horizontal * lever * y.omega - ground.vertical * y.v_rate
 
 
 @system.shift.of(Springs)

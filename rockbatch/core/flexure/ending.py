@@ -1,0 +1,83 @@
+"""Ending of a run of a pier whose shaft bends (THEORY.md, A shaft that bends). Looked at once a sample, at the end."""
+
+import math
+
+from rockbatch.core import system
+from rockbatch.core.block.ending import stored_by_devices
+from rockbatch.core.block.equations import key_of, on_pivot, on_side, side_of
+from rockbatch.core.clock import ground_rests
+from rockbatch.core.flexure.equations import masses_about
+from rockbatch.core.flexure.model import FlexibleTraits, Flexing
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.system import airborne, pier_in
+from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED
+
+
+@inlined
+def bending_energy(m, u):
+    """Return the elastic energy [J/kg] of the bent shaft."""
+    return 0.5 * m.second * (m.frequency * u) * (m.frequency * u)
+
+
+@kernel
+def kinetic_and_potential(m, y, contact):
+    """Return the kinetic energy and that of the weight since rest [J/kg]."""
+    side = side_of(contact)
+    key = side if side != 0.0 else key_of(m, contact)
+    about, sine = masses_about(m, y.u, key), math.sin(y.theta)
+    kinetic = (
+        0.5 * (m.second * y.u_rate * y.u_rate + about.turning * y.omega * y.omega) + m.coupling * y.u_rate * y.omega
+    )
+    slope = about.offset * math.cos(y.theta) - m.height * sine
+    rise = y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega
+    kinetic += rise * (0.5 * rise + slope * y.omega - m.first * sine * y.u_rate)
+    return kinetic, m.gravity * (y.v - m.first * y.u * sine)
+
+
+@inlined
+def _leaning(m, theta):
+    """Return the least energy [J/kg] of weight and shaft at the rotation ``theta``, and the deflection there [m]."""
+    side = 1.0 if theta > 0.0 else -1.0
+    u = m.gravity * m.first * math.sin(theta) / (m.second * m.frequency * m.frequency)
+    return m.gravity * on_pivot(m, theta, side)[0] - bending_energy(m, u), u
+
+
+@kernel
+def _cannot_reach(m, devices, now, limit):
+    """Return whether the energy of this moment does not suffice to turn to ``limit`` [rad] on either side."""
+    kinetic, potential = kinetic_and_potential(m, now.y, now.contact)
+    energy, least = kinetic + potential + bending_energy(m, now.y.u), math.inf
+    if devices is not None:
+        kept, back = stored_by_devices(m, devices, now.y, now.contact)
+        energy += kept + back
+    for side in (-1.0, 1.0):
+        level, u = _leaning(m, side * limit)
+        if devices is not None:
+            there = Flexing(on_pivot(m, side * limit, side)[0], side * limit, 0.0, 0.0, u, 0.0)
+            level += stored_by_devices(m, devices, there, on_side(side))[0]
+        least = min(least, level)
+    return abs(now.y.theta) < m.tipping and energy <= least
+
+
+@system.status_at_sample.of(FlexibleTraits)
+def status_at_sample(traits, lanes, i, devices):
+    """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
+    status = _status(traits, lanes, i, devices)
+    return status, max(lanes.clock.npts[i] - 1.0, lanes.clock.sample[i] + 1.0)
+
+
+@kernel
+def _status(traits, lanes, i, devices):
+    """Return how the run in lane ``i`` has ended, RUNNING if it goes on."""
+    sample, samples, longest = lanes.clock.sample[i], lanes.clock.samples[i], lanes.ending.longest[i]
+    if sample < samples:
+        return RUNNING
+    m, now = pier_in(traits, lanes, i)
+    grounded = not airborne(m, now.contact)
+    if grounded and ground_rests(lanes, i) and _cannot_reach(m, devices, now, min(lanes.peak.theta[i], m.tipping)):
+        return SURVIVED
+    if sample < longest:
+        return RUNNING
+    if longest == samples:  # nothing is waited for
+        return SURVIVED
+    return RESTLESS if _cannot_reach(m, devices, now, m.tipping) else UNDECIDED

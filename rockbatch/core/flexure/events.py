@@ -1,0 +1,141 @@
+"""Events of a pier whose shaft bends; those at which nothing jumps are a rigid block's (THEORY.md, A shaft that bends)."""
+
+from rockbatch.core import system
+from rockbatch.core.block.equations import airborne, clearances, constrained, key_of, on_pivot, on_side, side_of
+from rockbatch.core.block.events import (
+    NEARBY,
+    NEGLIGIBLE,
+    RESTING,
+    bounces,
+    event_functions_of,
+    lift_off,
+    lift_rate,
+    within_bounce,
+)
+from rockbatch.core.block.model import Stance
+from rockbatch.core.devices.laws import OPENS
+from rockbatch.core.devices.pull import about_to_turn
+from rockbatch.core.flexure.equations import masses_about
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import kernel
+from rockbatch.core.roots import NO_ACCELERATION
+from rockbatch.core.system import rates
+from rockbatch.core.table import along
+from rockbatch.core.trigonometry import sine_and_cosine
+from rockbatch.core.types import (
+    CONTACT_LEFT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LEFT,
+    REST,
+    RIGHT,
+    TAKE_OFF,
+    Moment,
+    Transition,
+)
+
+system.event_functions.of(FlexibleBlock)(event_functions_of)
+
+
+@system.longest_step.of(FlexibleBlock)
+def longest_step(m, start, h):
+    """Return what shows a bounce, and in flight what resolves the mode."""
+    return min(h, m.flight_step) if airborne(m, start.contact) else within_bounce(m, start, h)
+
+
+@lift_rate.of(FlexibleBlock)
+def _lift_rate(m, devices, now, side):
+    near, stance = NEARBY / m.frequency, on_side(side)
+    under = about_to_turn(devices, m, now.y, stance, OPENS)
+    soon = along(now.y, now.k, near)
+    change = rates(under, soon, stance, later(now.ground, near)).omega - rates(under, now.y, stance, now.ground).omega
+    return side * change / near
+
+
+@system.transition.of(FlexibleBlock)
+def transition(m, devices, now, which, ground, dt):
+    """Return the Transition by event ``which``."""
+    y, contact, supports = now
+    side = side_of(contact)
+    pivot = LEFT if which == CONTACT_LEFT else RIGHT
+    if side == pivot:
+        return Transition(Moment(y, Stance(0.0, 0.0, side, side), supports), TAKE_OFF, 0.0, 0.0, 0.0)
+    if side != 0.0:
+        y, contact, kind, remaining = _impact(m, devices, y, side, ground, dt)
+        return Transition(Moment(y, contact, supports), kind, 1.0, 0.0, remaining)
+    if airborne(m, contact):
+        y, contact, kind = _landing(m, y, contact, pivot)
+        topples = abs(y.theta) >= m.alpha and kind != IMPACT_BOTH
+        impacts = 0.0 if topples else (2.0 if kind == IMPACT_BOTH else 1.0)
+        return Transition(Moment(y, contact, supports), kind, impacts, 0.0, 0.0)
+    y, contact, kind = lift_off(m, devices, y, -pivot, ground)
+    return Transition(Moment(y, contact, supports), kind, 0.0, 1.0, 0.0)
+
+
+@kernel
+def _after_blow(m, y, key, rise, pivot):
+    """Return θ̇ and u̇ behind a blow at ``pivot``; until then the base turned about its ``key`` and that rose at ``rise`` [m/s].
+
+    The blow has no moment about the pivot, so that the angular momentum about it is kept; and none on the mode, whose momentum
+    is kept, or whose rate where a stiff shaft takes part in the blow. Carrying the rate over can create energy: then the
+    momentum is kept, with which none is.
+    """
+    sine, cosine = sine_and_cosine(y.theta)
+    about, b = masses_about(m, y.u, pivot), m.half_width
+    across = (
+        m.inertia + m.height * m.height + key * pivot * b * b + y.u * (m.second * y.u - m.first * (key + pivot) * b)
+    )
+    bending = m.second * y.u_rate + m.coupling * y.omega - m.first * sine * rise
+    turning = m.coupling * y.u_rate + across * y.omega - rise * (m.height * sine - about.offset * cosine)
+    if m.momentum == 0.0:
+        omega = m.restitution * (turning - m.coupling * y.u_rate) / about.turning
+        before = masses_about(m, y.u, key)
+        was = 0.5 * before.turning * y.omega * y.omega + m.coupling * y.u_rate * y.omega + 0.5 * rise * rise
+        was += rise * ((before.offset * cosine - m.height * sine) * y.omega - m.first * sine * y.u_rate)
+        if 0.5 * about.turning * omega * omega + m.coupling * y.u_rate * omega <= was:
+            return omega, y.u_rate
+    determinant = m.second * about.turning - m.coupling * m.coupling
+    omega = (m.second * turning - m.coupling * bending) / determinant
+    return omega, (about.turning * bending - m.coupling * turning) / determinant
+
+
+@kernel
+def _flat(m, y):
+    """Return the state as both pivots stop at once: nothing but the mode moves on, with its momentum or its rate."""
+    kept = m.coupling / m.second * y.omega if m.momentum != 0.0 else 0.0
+    return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + kept)
+
+
+@kernel
+def _impact(m, devices, y, side, ground, dt):
+    """Return state, stance, kind and the time [s] left to rest, as the base passes through θ = 0.
+
+    Where the pier would not turn on about the new pivot, both stay down.
+    """
+    y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
+    omega, u_rate = _after_blow(m, y, side, 0.0, -side)
+    if -side * omega <= 0.0:
+        return _flat(m, y), RESTING, IMPACT_BOTH, 0.0
+    landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
+    if m.momentum == 0.0:
+        height, remaining = bounces(m, devices, Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate), omega, ground)
+        if height < NEGLIGIBLE * m.alpha and remaining < dt:
+            return _flat(m, landed), RESTING, REST, remaining
+    stance = on_side(-side)
+    return constrained(m, landed, stance), stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT, 0.0
+
+
+@kernel
+def _landing(m, y, contact, pivot):
+    """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant."""
+    left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
+    other, other_velocity = (right, right_velocity) if pivot == LEFT else (left, left_velocity)
+    if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
+        return _flat(m, y), RESTING, IMPACT_BOTH
+    key = key_of(m, contact)
+    omega, u_rate = _after_blow(m, y, key, y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega, pivot)
+    stance = on_side(pivot)
+    landed = constrained(m, Flexing(y.v, y.theta, 0.0, omega, y.u, u_rate), stance)
+    return landed, stance, IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT

@@ -1,0 +1,115 @@
+"""Lanes of piers whose shaft bends: what a table holds of them, how runs begin and end."""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core import system
+from rockbatch.core.block.equations import clearances, constrained, on_side
+from rockbatch.core.block.model import Stance, Tilt
+from rockbatch.core.clock import COMMON, TIMING, include_height
+from rockbatch.core.flexure import ending, events, passing  # noqa: F401  hooks of the flexible block
+from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.roots import largest_within
+from rockbatch.core.system import System
+from rockbatch.core.table import get, lanes_of, put, taken
+from rockbatch.core.types import LEFT, RIGHT, Moment
+
+
+class Ending(NamedTuple):
+    """Number that decides when the run is over, and its greatest displacements so far."""
+
+    longest: float  # sample at which the pier is no longer waited for
+    deflection: float  # of the top across the shaft [m]
+    drift: float  # of the top, horizontally from above where it stands at rest [m]
+
+
+LANE = lanes_of(COMMON | {
+    "model": Numbers, "now": Flexing, "end": Tilt, "rates": Flexing, "contact": Stance, "ending": Ending,
+})  # fmt: skip
+
+
+LINE = (
+    *NUMBERS,
+    ("theta", float),  # at the start [rad]
+    ("u", float),  # [m]
+    *TIMING,
+)  # fmt: skip
+"""Fields of a run as it is requested."""
+
+Line = NamedTuple("Line", LINE)  # type: ignore[misc]
+
+
+@inlined
+def _model(traits, lanes, i):
+    """Return the FlexibleBlock of lane ``i``."""
+    m = get(lanes.model, i, Numbers)
+    return FlexibleBlock(
+        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.guided, m.rest, m.deck, m.first, m.second,
+        m.coupling, m.frequency, m.damping, m.top, m.top_shape, m.tipping, m.flight_step,
+        m.momentum, traits.pull, True,
+    )  # fmt: skip
+
+
+@system.pier_in.of(FlexibleTraits)
+def pier_in(traits, lanes, i):
+    """Return the FlexibleBlock of lane ``i``, and its Moment; the ground needs no support."""
+    return _model(traits, lanes, i), Moment(get(lanes.now, i, Flexing), get(lanes.contact, i, Stance), None)
+
+
+@inlined
+def _drift(m, y):
+    """Return how far the top is to the right of the middle of the base, beyond rest [m], and its rate [m/s]."""
+    sine, cosine = math.sin(y.theta), math.cos(y.theta)
+    u, u_rate = m.top_shape * y.u, m.top_shape * y.u_rate
+    return m.top * sine + u * cosine, (m.top * cosine - u * sine) * y.omega + u_rate * cosine
+
+
+@system.begin.of(FlexibleTraits)
+def begin(traits, lanes, i, run):
+    """Put the model and the start of ``run`` into lane ``i``."""
+    put(lanes.model, i, taken(run, Numbers))
+    contact = Stance(1.0, 1.0, 0.0, 0.0) if run.theta == 0.0 else on_side(RIGHT if run.theta > 0.0 else LEFT)
+    m = _model(traits, lanes, i)
+    y = constrained(m, Flexing(0.0, run.theta, 0.0, 0.0, run.u, 0.0), contact)
+    put(lanes.now, i, y)
+    put(lanes.contact, i, contact)
+    lanes.ending.longest[i] = lanes.clock.samples[i] + run.patience
+    lanes.ending.deflection[i], lanes.ending.drift[i] = abs(y.u), abs(_drift(m, y)[0])
+
+
+@kernel
+def _include_displacements(lanes, i, m, part):
+    """Bring the greatest displacements up to those of a Part."""
+    start, end, kept = part.start.y, part.end, lanes.ending
+    kept.deflection[i] = largest_within(start.u, start.u_rate, end.u, end.u_rate, part.length, kept.deflection[i])[1]
+    way, rate = _drift(m, start)
+    way_end, rate_end = _drift(m, end)
+    kept.drift[i] = largest_within(way, rate, way_end, rate_end, part.length, kept.drift[i])[1]
+
+
+@system.take_in_part.of(FlexibleTraits)
+def take_in_part(traits, lanes, i, m, part, after):
+    """Keep displacements, the height of flight, state and stance."""
+    _include_displacements(lanes, i, m, part)
+    if system.airborne(m, part.start.contact):
+        start, top = part.start, part.start.contact.top
+        include_height(lanes, i, clearances(m, start.y, top), clearances(m, part.end, top), part.length)
+    put(lanes.now, i, after.y)
+    put(lanes.contact, i, after.contact)
+
+
+@system.finish.of(FlexibleTraits)
+def finish(traits, lanes, i, t, result):
+    """Write the greatest displacements."""
+    result.deflection_max, result.drift_max = lanes.ending.deflection[i], lanes.ending.drift[i]
+
+
+def system_of(m):
+    """Return the System of the pier ``m`` (FlexibleBlock)."""
+    return System(FlexibleTraits(), Line, LANE, Flexing._fields + Stance._fields)
+
+
+def line_of(m, theta, u, *timing):
+    """Return the Line of a run of the pier ``m`` (FlexibleBlock); ``timing`` is what Line has from ``dt`` on."""
+    return Line(*m[:-2], theta, u, *timing)

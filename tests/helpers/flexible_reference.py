@@ -1,0 +1,218 @@
+"""A rocking pier whose shaft bends, as mass points: Jacobians of their places, DOP853 and located events.
+
+It shares nothing with the core: no integral of the mode, no mass matrix in closed form. In each phase (both corners down, one
+down, none) the equations are Jᵀ m (J q̈ + γ) = Jᵀ f with the Jacobian J of the places in the coordinates that are free; a blow
+projects the velocities of all points on those that the new corner allows.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+STILL = 1e-7
+"""Angular velocity [rad/s] behind an impact that counts as none."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Mass points of a pier: masses, places from the middle of the base, and their shares of the top's deflection."""
+
+    mass: np.ndarray
+    x: np.ndarray
+    z: np.ndarray
+    shape: np.ndarray
+    half_width: float
+    frequency: float
+    damping_ratio: float
+    gravity: float
+    restitution: float  # over that which keeps the angular momentum
+    keeps_momentum: bool
+
+
+def points_of(parts, top, **numbers):
+    """Return Points of ``parts``, each (mass, low, high, half of the distance between two columns of points)."""
+    mass, x, z = [], [], []
+    for total, low, high, spread in parts:
+        count = 1 if low == high else 400
+        for level in low + (high - low) * (np.arange(count) + 0.5) / count:
+            mass += [0.5 * total / count] * 2
+            x += [-spread, spread]
+            z += [level] * 2
+    ratio = np.array(z) / top
+    bent = np.where(ratio < 1, (3 * ratio**2 - ratio**3) / 2, 1 + 1.5 * (ratio - 1))
+    return Points(np.array(mass), np.array(x), np.array(z), bent, **numbers)
+
+
+def _places(of, key, q):
+    _, theta, u = q
+    x = of.x - key * of.half_width + of.shape * u
+    s, c = np.sin(theta), np.cos(theta)
+    nothing = np.zeros_like(x)
+    across = np.stack([nothing, -x * s + of.z * c, of.shape * c])
+    up = np.stack([nothing + 1, -x * c - of.z * s, -of.shape * s])
+    return x, s, c, across, up
+
+
+def motion_of(of, key, free, q, rates, ground):
+    """Return the accelerations of the three coordinates, of which only ``free`` ones move, and N/M."""
+    x, s, c, across, up = _places(of, key, q)
+    _, omega, u_rate = rates
+    bend_x = omega**2 * (-x * c - of.z * s) + 2 * omega * u_rate * of.shape * -s
+    bend_z = omega**2 * (x * s - of.z * c) + 2 * omega * u_rate * of.shape * -c
+    m, across, up = of.mass, across[free], up[free]
+    matrix = (across * m) @ across.T + (up * m) @ up.T
+    force = across @ (m * (-ground[0] - bend_x)) + up @ (m * (-of.gravity - ground[1] - bend_z))
+    modal = np.sum(m * of.shape**2) * (of.frequency**2 * q[2] + 2 * of.damping_ratio * of.frequency * u_rate)
+    force[free.index(2)] -= modal
+    accelerations = np.zeros(3)
+    accelerations[free] = np.linalg.solve(matrix, force)
+    rise = accelerations[free] @ up + bend_z
+    return accelerations, np.sum(m * (of.gravity + ground[1] + rise)) / m.sum()
+
+
+def accelerations_of(of, key, q, rates, accelerations):
+    """Return the accelerations of all points over the ground, to the right and up."""
+    x, s, c, across, up = _places(of, key, q)
+    _, omega, u_rate = rates
+    along = accelerations @ across - omega**2 * (x * c + of.z * s) - 2 * omega * u_rate * of.shape * s
+    return along, accelerations @ up + omega**2 * (x * s - of.z * c) - 2 * omega * u_rate * of.shape * c
+
+
+def places_over_ground(of, key, q):
+    """Return the places of all points from where the middle of the base is at rest; the corner at ``key`` is on the ground."""
+    x, s, c, _, _ = _places(of, key, q)
+    return key * of.half_width + x * c + of.z * s, -x * s + of.z * c
+
+
+def _moment(of, side, q, rates, ground):
+    """Return the moment over M that turns a pier with both corners down about the corner on ``side``, towards it."""
+    accelerations, _ = motion_of(of, side, [2], q, rates, ground)
+    _, _, _, across, up = _places(of, side, q)
+    m = of.mass
+    inertial = m * (-ground[0] - of.shape * accelerations[2])
+    return side * (across[1] @ inertial + up[1] @ (m * (-of.gravity - ground[1]))) / m.sum()
+
+
+def _blow(of, key, corner, q, rates):
+    """Return θ̇ and u̇ behind a blow at ``corner``."""
+    _, _, _, across, up = _places(of, key, q)
+    along, rise = rates @ across, rates @ up
+    _, _, _, across, up = _places(of, corner, q)
+    m, across, up = of.mass, across[1:], up[1:]
+    matrix, momentum = (across * m) @ across.T + (up * m) @ up.T, across @ (m * along) + up @ (m * rise)
+    energy = 0.5 * np.sum(m * (along**2 + rise**2))
+    if not of.keeps_momentum:
+        carried = np.array([of.restitution * (momentum[0] - matrix[0, 1] * rates[2]) / matrix[0, 0], rates[2]])
+        if 0.5 * carried @ matrix @ carried <= energy:
+            return carried
+    return np.linalg.solve(matrix, momentum)
+
+
+def run(of, ground, dt, theta=0.0, until=None):
+    """Return times, θ and u of the run under ``ground``, rows of horizontal and vertical acceleration each ``dt``."""
+    steps = len(ground) - 1 if until is None else round(until / dt)
+    ground = np.vstack([ground, np.zeros((max(0, steps + 2 - len(ground)), 2))])
+    key, down = (0.0, "both") if theta == 0 else (np.sign(theta), "one")
+    state = np.zeros(6)
+    state[1] = theta
+    if theta:
+        weight = of.gravity * np.sum(of.mass * of.shape)
+        state[2] = weight * np.sin(theta) / np.sum(of.mass * of.shape**2) / of.frequency**2
+    out = [(0.0, *state[:3])]
+    peaks = np.abs(state[1:3])
+    for step in range(steps):
+        start, end = step * dt, (step + 1) * dt
+
+        def shaking(t, step=step, start=start):
+            return ground[step] + (t - start) / dt * (ground[step + 1] - ground[step])
+
+        t = start
+        while t < end:
+            free = {"both": [2], "one": [1, 2], "none": [0, 1, 2]}[down]
+
+            def slope(t, y, free=free, key=key):
+                return np.concatenate([y[3:], motion_of(of, key, free, y[:3], y[3:], shaking(t))[0]])
+
+            def corner(y, side, key=key):
+                return y[0] + (key - side) * of.half_width * np.sin(y[1])  # height above the ground
+
+            if down == "both":
+                events = [
+                    lambda t, y: -_moment(of, 1, y[:3], y[3:], shaking(t)),
+                    lambda t, y: -_moment(of, -1, y[:3], y[3:], shaking(t)),
+                ]
+            elif down == "one":
+                events = [
+                    lambda t, y, key=key: key * y[1],
+                    lambda t, y, key=key: motion_of(of, key, [1, 2], y[:3], y[3:], shaking(t))[1],
+                ]
+            else:
+                events = [lambda t, y: corner(y, -1), lambda t, y: corner(y, 1)]
+            happened, at_once = None, [event(t, state) for event in events]
+            if down == "both" and min(at_once) < 0:
+                happened = int(np.argmin(at_once))
+            elif down == "one" and at_once[1] < 0:
+                happened = 1
+            else:
+                for event in events:
+                    event.terminal, event.direction = True, -1
+                length = end
+                if down == "one" and state[1] == 0.0:  # a bounce must not begin and end within one step
+                    back = -key * slope(t, state)[4]
+                    length = min(end, t + 0.5 * key * state[4] / back) if key * state[4] > 0 < back else end
+                found = solve_ivp(
+                    slope,
+                    (t, length),
+                    state,
+                    "DOP853",
+                    rtol=1e-10,
+                    atol=1e-13,
+                    max_step=dt / 3,
+                    events=events,
+                    dense_output=True,
+                )
+                inside = found.sol(np.linspace(t, found.t[-1], 9))
+                peaks = np.maximum(peaks, np.abs(inside[1:3]).max(axis=1))
+                t, state = found.t[-1], found.y[:, -1].copy()
+                if found.status == 1:
+                    happened = next(i for i, times in enumerate(found.t_events) if len(times))
+            if happened is None:
+                continue
+            if down == "both":
+                key, down = (1.0, "one") if happened == 0 else (-1.0, "one")
+            elif down == "one" and happened == 1:
+                down = "none"
+            else:
+                landing = -key if down == "one" else (-1.0 if happened == 0 else 1.0)
+                omega, u_rate = _blow(of, key, landing, state[:3], state[3:])
+                if down == "one":
+                    state[1] = 0.0
+                height = state[1]
+                key, down = landing, "one"
+                state = np.array([0.0, height, state[2], 0.0, omega, u_rate])
+                if height == 0.0 and landing * omega <= STILL:
+                    kept = (
+                        np.sum(of.mass * of.shape * of.z) / np.sum(of.mass * of.shape**2) if of.keeps_momentum else 0.0
+                    )
+                    before = found.y[:, -1]
+                    state = np.array([0.0, 0.0, before[2], 0.0, 0.0, before[5] + kept * before[4]])
+                    key, down = 0.0, "both"
+        out.append((end, *state[:3]))
+        if abs(state[1]) > np.pi / 2:
+            break
+    return np.array(out), peaks
+
+
+def tipping(of):
+    """Return the rotation at which the pier stands on a corner with its shaft bent by the weight."""
+    m = of.mass
+    weight, stiffness = of.gravity * np.sum(m * of.shape), np.sum(m * of.shape**2) * of.frequency**2
+
+    def back(theta):
+        u = weight * np.sin(theta) / stiffness
+        _, _, _, _, up = _places(of, 1.0, (0.0, theta, u))
+        return -(up[1] @ m)
+
+    return brentq(back, 0.0, 1.0)

@@ -1,0 +1,76 @@
+"""Cases whose shaft bends: keys of the study, their messages, columns, histories and checks of a run."""
+
+import numpy as np
+import pytest
+from studies import study_text, write_study
+
+import rockbatch as rb
+
+SHAFT = {"width_m": 8.0, "height_m": 40.0, "mass_t": 3000.0, "flexural_period_s": 0.9}
+ROCK = {"name": "rock", "base": "rigid"}
+BENDS = {"name": "bends", "base": "rigid", "shaft": "elastic"}
+
+
+def messages(tmp_path, **tables):
+    """Return what is said of a study that cannot be run."""
+    with pytest.raises(rb.InputError) as error:
+        rb.load_study(write_study(tmp_path, study_text(**{"pier": SHAFT} | tables)))
+    return "\n".join(error.value.problems)
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        ({"pier": {k: v for k, v in SHAFT.items() if k != "flexural_period_s"}, "cases": [BENDS]},
+         'shaft = "elastic": flexural_period_s is missing'),
+        ({"pier": {"alpha": 0.15, "p": 0.5, "mu": 4.0, "flexural_period_s": 0.9}, "cases": [BENDS]},
+         'shaft = "elastic": mu = 4 does not say how the mass is spread'),
+        ({"cases": [BENDS | {"restitution": 0.9}]}, "restitution = 0.9: what a blow takes follows from"),
+        ({"cases": [{"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}]}, "shaft"),
+        ({"cases": [ROCK | {"flexural_damping": 0.02}]}, "flexural_damping"),
+        ({"cases": [BENDS | {"flexural_damping": 1.5}]}, "must be within 0..1"),
+        ({"cases": [BENDS], "output": {"sections": 3}}, "sections: their forces are those of a rigid shaft"),
+        ({"cases": [BENDS | {"deck_spring": [{"gap_mm": 50.0, "stiffness_kN_m": 1e4}]}]}, "devices on the deck"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_a_remedy(tmp_path, tables, message):
+    assert message in messages(tmp_path, **tables)
+
+
+def test_a_rigid_and_a_bending_shaft_are_compared_in_one_study(tmp_path):
+    """Drift of the bending one is its own way, not height times rotation; its checks and histories know it."""
+    rules = [
+        {"name": "drift", "demand": "top_drift_mm", "at_most": 100.0, "reason": "joint"},
+        {"name": "shaft", "demand": "deflection_max_m", "at_most": 0.2, "reason": "steel"},
+    ]
+    text = study_text(pier=SHAFT, cases=[ROCK, BENDS], check=rules, output={"histories": "all"})
+    study = rb.load_study(write_study(tmp_path, text))
+    rb.run(study, tmp_path / "out")
+    results = rb.open_results(tmp_path / "out")
+    peaks = results.peaks.set_index("case")
+    rigid, bent = peaks.loc[["rock"]], peaks.loc[["bends"]]
+    top = study.cases[0].pier.top
+    alpha = study.cases[0].pier.alpha
+    np.testing.assert_allclose(rigid.top_drift_m, top * alpha * rigid.theta_max_over_alpha, rtol=1e-9)
+    assert rigid.deflection_max_m.isna().all()
+    assert (bent.top_drift_m > top * alpha * bent.theta_max_over_alpha).all()
+    assert (bent.deflection_error_m < 1e-3 * bent.deflection_max_m).all()
+    for response in results.responses:
+        if response.case == "bends":
+            assert 0.9 < abs(response.history.deflection).max() / peaks.loc["bends"].deflection_max_m <= 1.0
+        else:
+            assert "deflection" not in response.history
+    verdicts = {(verdict.case, verdict.check): verdict for verdict in rb.check(tmp_path / "out").itertuples()}
+    values = {case: verdicts[case, "drift"].value for case in ("rock", "bends")}
+    assert values["bends"] == pytest.approx(1000.0 * bent.top_drift_m.max())
+    assert values["rock"] == pytest.approx(1000.0 * rigid.top_drift_m.max())
+    shaft = verdicts["bends", "shaft"]
+    assert (shaft.verdict == "pass") == (shaft.value <= 0.2)
+    assert shaft.value == pytest.approx(bent.deflection_max_m.max())
+    assert verdicts["rock", "shaft"].verdict == "does not apply"
+
+
+def test_the_other_axis_of_a_shaft_that_bends_has_another_period(tmp_path):
+    assert "its shaft bends across the axis with another period" in messages(
+        tmp_path, cases=[BENDS | {"other_width_m": 12.0}], motions={"axis_deg": 0.0}
+    )
