@@ -8,12 +8,13 @@ import numpy as np
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
 from rockbatch.results.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
 """Demands that are the greatest rotation times a length of the case."""
+DRIFTS = frozenset(("top_drift_m", "top_drift_mm"))
 TILTS = frozenset(("theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m"))
 _SETTLED = frozenset(("settlement_m", "toe_settlement_m"))
 
@@ -46,7 +47,7 @@ residual rotation follows from the tilt."""
 
 _TAKEN = (
     "theta_max_over_alpha", "theta_max_error", "theta_res_over_alpha", "theta_res_error", "settlement_m", "base_tilt_rad",
-    "ductility_left", "ductility_right",
+    "ductility_left", "ductility_right", "top_drift_m", "top_drift_error_m",
 )  # fmt: skip
 """Columns of peaks.csv that they are made of."""
 
@@ -117,7 +118,7 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
     """Return the responses of a case that govern its design, and that no check bounds.
 
-    Rotation always governs, and stands for drift and uplift; settlement, tilt and ductility do where a support yields, the
+    Rotation always governs, and stands for drift and uplift, but the drift of a shaft that bends governs beside it; settlement, tilt and ductility do where a support yields, the
     residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
@@ -129,7 +130,9 @@ def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst
         for peak in worst
         if peak.demand == "theta_res_rad" and peak.value > _HELD * peak.case["pier"]["alpha"]
     ]
-    return [peak for peak in worst if peak.demand in governing and not checked & RESPONSES[peak.demand].bounded_by]
+    free = [peak for peak in worst if peak.demand in governing and not checked & RESPONSES[peak.demand].bounded_by]
+    bent = [peak for peak in worst if peak.demand == "top_drift_m" and bends(peak.case) and not checked & DRIFTS]
+    return free + bent
 
 
 def in_words(worst: Worst) -> str:

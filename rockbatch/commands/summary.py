@@ -101,14 +101,14 @@ def flexible(study: Study) -> list[str]:
     flexible_cases = [case for case in study.cases if case.pier.flexural_period_s is not None]
     if not flexible_cases:
         return []
-    from rockbatch.pier.statics import MOST_FLEXURE, flexure, sheet_of
+    from rockbatch.pier.statics import flexure, is_too_soft, sheet_of
 
     sheets = [(case, sheet_of(case.pier, case.base)) for case in flexible_cases]
     return [
         f"{case.name} {named(case.columns, case.columns.values())}".rstrip()
         + f": {flexure(sheet)}".replace("α", "alpha")
         for case, sheet in sheets
-        if (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE
+        if is_too_soft(sheet)
     ]
 
 

@@ -272,6 +272,11 @@ def in_words(sheet: Statics) -> dict[str, str]:
     }
 
 
+def is_too_soft(sheet: Statics) -> bool:
+    """Return whether bending matters for a pier that is taken as rigid, by its flexural period."""
+    return (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE and not sheet.base.bends
+
+
 def flexure(sheet: Statics) -> str:
     """Return a sentence on the flexural period, which says whether the pier is rigid; empty if it is not known."""
     ratio = sheet.flexural_over_rocking

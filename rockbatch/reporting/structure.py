@@ -67,7 +67,8 @@ def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
         base = replace(base, restraints=restraints_of(case))
     except (InputError, TypeError, ValueError):
         return None
-    return None if problems(pier, base) else base
+    # How the mass is spread, which a shaft that bends needs, is not in run.json
+    return None if problems(pier, replace(base, shaft="rigid") if base.bends else base) else base
 
 
 def in_words(pier: Pier, restraint: Restraint) -> str:

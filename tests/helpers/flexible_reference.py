@@ -15,6 +15,10 @@ STILL = 1e-7
 """Angular velocity [rad/s] behind an impact that counts as none."""
 
 
+HOP = 3e-5
+"""Longest step in flight [s], within which a pivot must not leave the ground and land."""
+
+
 @dataclass(frozen=True)
 class Points:
     """Mass points of a pier: masses, places from the middle of the base, and their shares of the top's deflection."""
@@ -95,7 +99,7 @@ def _moment(of, side, q, rates, ground):
     return side * (across[1] @ inertial + up[1] @ (m * (-of.gravity - ground[1]))) / m.sum()
 
 
-def _blow(of, key, corner, q, rates):
+def _blow(of, key, corner, q, rates, restitution):
     """Return θ̇ and u̇ behind a blow at ``corner``."""
     _, _, _, across, up = _places(of, key, q)
     along, rise = rates @ across, rates @ up
@@ -104,7 +108,7 @@ def _blow(of, key, corner, q, rates):
     matrix, momentum = (across * m) @ across.T + (up * m) @ up.T, across @ (m * along) + up @ (m * rise)
     energy = 0.5 * np.sum(m * (along**2 + rise**2))
     if not of.keeps_momentum:
-        carried = np.array([of.restitution * (momentum[0] - matrix[0, 1] * rates[2]) / matrix[0, 0], rates[2]])
+        carried = np.array([restitution * (momentum[0] - matrix[0, 1] * rates[2]) / matrix[0, 0], rates[2]])
         if 0.5 * carried @ matrix @ carried <= energy:
             return carried
     return np.linalg.solve(matrix, momentum)
@@ -158,7 +162,7 @@ def run(of, ground, dt, theta=0.0, until=None):
             else:
                 for event in events:
                     event.terminal, event.direction = True, -1
-                length = end
+                length, longest = end, HOP if down == "none" else dt / 3
                 if down == "one" and state[1] == 0.0:  # a bounce must not begin and end within one step
                     back = -key * slope(t, state)[4]
                     length = min(end, t + 0.5 * key * state[4] / back) if key * state[4] > 0 < back else end
@@ -169,7 +173,7 @@ def run(of, ground, dt, theta=0.0, until=None):
                     "DOP853",
                     rtol=1e-10,
                     atol=1e-13,
-                    max_step=dt / 3,
+                    max_step=longest,
                     events=events,
                     dense_output=True,
                 )
@@ -186,7 +190,7 @@ def run(of, ground, dt, theta=0.0, until=None):
                 down = "none"
             else:
                 landing = -key if down == "one" else (-1.0 if happened == 0 else 1.0)
-                omega, u_rate = _blow(of, key, landing, state[:3], state[3:])
+                omega, u_rate = _blow(of, key, landing, state[:3], state[3:], of.restitution if down == "one" else 1.0)
                 if down == "one":
                     state[1] = 0.0
                 height = state[1]

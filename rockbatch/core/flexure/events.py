@@ -75,12 +75,12 @@ def transition(m, devices, now, which, ground, dt):
 
 
 @kernel
-def _after_blow(m, y, key, rise, pivot):
+def _after_blow(m, y, key, rise, pivot, restitution):
     """Return θ̇ and u̇ behind a blow at ``pivot``; until then the base turned about its ``key`` and that rose at ``rise`` [m/s].
 
     The blow has no moment about the pivot, so that the angular momentum about it is kept; and none on the mode, whose momentum
-    is kept, or whose rate where a stiff shaft takes part in the blow. Carrying the rate over can create energy: then the
-    momentum is kept, with which none is.
+    is kept, or whose rate where a stiff shaft takes part in the blow: then θ̇ is multiplied by ``restitution`` besides. Carrying
+    the rate over can create energy: then the momentum is kept, with which none is.
     """
     sine, cosine = sine_and_cosine(y.theta)
     about, b = masses_about(m, y.u, pivot), m.half_width
@@ -90,7 +90,7 @@ def _after_blow(m, y, key, rise, pivot):
     bending = m.second * y.u_rate + m.coupling * y.omega - m.first * sine * rise
     turning = m.coupling * y.u_rate + across * y.omega - rise * (m.height * sine - about.offset * cosine)
     if m.momentum == 0.0:
-        omega = m.restitution * (turning - m.coupling * y.u_rate) / about.turning
+        omega = restitution * (turning - m.coupling * y.u_rate) / about.turning
         before = masses_about(m, y.u, key)
         was = 0.5 * before.turning * y.omega * y.omega + m.coupling * y.u_rate * y.omega + 0.5 * rise * rise
         was += rise * ((before.offset * cosine - m.height * sine) * y.omega - m.first * sine * y.u_rate)
@@ -115,7 +115,7 @@ def _impact(m, devices, y, side, ground, dt):
     Where the pier would not turn on about the new pivot, both stay down.
     """
     y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
-    omega, u_rate = _after_blow(m, y, side, 0.0, -side)
+    omega, u_rate = _after_blow(m, y, side, 0.0, -side, m.restitution)
     if -side * omega <= 0.0:
         return _flat(m, y), RESTING, IMPACT_BOTH, 0.0
     landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
@@ -135,7 +135,7 @@ def _landing(m, y, contact, pivot):
     if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
         return _flat(m, y), RESTING, IMPACT_BOTH
     key = key_of(m, contact)
-    omega, u_rate = _after_blow(m, y, key, y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega, pivot)
+    omega, u_rate = _after_blow(m, y, key, y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega, pivot, 1.0)
     stance = on_side(pivot)
     landed = constrained(m, Flexing(y.v, y.theta, 0.0, omega, y.u, u_rate), stance)
     return landed, stance, IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT

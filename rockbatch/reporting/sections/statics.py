@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rockbatch.pier.figures import Sheet, statics
-from rockbatch.pier.statics import FACTS, MOST_FLEXURE, Statics, flexure, sheet_of
+from rockbatch.pier.statics import FACTS, Statics, flexure, is_too_soft, sheet_of
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, paragraphs, tag
 from rockbatch.reporting.structure import base_of, in_words, pier_of
@@ -38,9 +38,7 @@ def section(finished: Finished) -> Markup:
     if not sheets:
         return Markup("")
     omitted = len(finished.info["cases"]) - MOST_CASES
-    soft = [
-        f"{name}: {flexure(sheet)}" for name, sheet in sheets if (sheet.flexural_over_rocking or 0.0) > MOST_FLEXURE
-    ]
+    soft = [f"{name}: {flexure(sheet)}" for name, sheet in sheets if is_too_soft(sheet)]
     tables = [_table(sheets[i : i + ABREAST], devices[i : i + ABREAST]) for i in range(0, len(sheets), ABREAST)]
     return join(
         paragraphs(*map(alarm, soft)),
