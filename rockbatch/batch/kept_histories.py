@@ -10,6 +10,7 @@ import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import simulations
+from rockbatch.batch.repeated import repeated
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.pier import Base, Pier, places, vertical_frequency
@@ -20,7 +21,6 @@ from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
 from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.response import FORCE_UNITS, Response
-from rockbatch.simulation.runs import run_fixed
 from rockbatch.study import Study
 
 LEDGER = "energy_input_J_kg"
@@ -40,28 +40,11 @@ def keep_histories(
     progress: Advance = silent,
     records: Collection[str] = (),
 ) -> Path | None:
-    """Write ``histories.h5`` beside finished results: the histories that the study asks for.
+    """Write ``histories.h5`` beside the finished results of ``runs``: what the study asks for, and all histories of ``records``.
 
-    They come one after another: memory holds two at most.
-
-    Parameters
-    ----------
-    saved : Saved
-        The results of all ``runs`` of ``study``.
-    progress : function, optional
-        Called after each of :func:`to_keep`.
-    records : collection of str, optional
-        Records all of whose runs are kept, too.
-
-    Returns
-    -------
-    Path of the file, or None if there is nothing to keep. An earlier file is replaced as a whole, or not at all.
-
-    Raises
-    ------
-    InputError
-        If the disk is full; and at the end, when all others are written, if the history of some run is too long to be
-        held in memory.
+    They come one after another: memory holds two at most. Returns the path, or None if there is nothing to keep; an earlier file
+    is replaced as a whole, or not at all. Raises ``InputError`` if the disk is full, and at the end, when all others are
+    written, if the history of some run is too long to be held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
     chosen = to_keep(study, runs, table, records).numbers
@@ -166,9 +149,7 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
 def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
     case, quiet_s = planned.case, study.numerics.quiet_s
     (run,) = simulations([planned])
-    # With the same steps it comes to the same bits; of the row only ten digits are on disk
-    outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
-    outcome = replace(outcome, status=row["status"], reason=row["reason"])
+    outcome = replace(repeated(run, row, quiet_s), status=row["status"], reason=row["reason"])
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
         ledger=_has_value(row, LEDGER), forces=_has_value(row, FORCES),

@@ -356,16 +356,8 @@ def cause_of_flight(
 ) -> str:
     """Return why a pier flies at ``t_flight`` [s], and what to do, in words.
 
-    Parameters
-    ----------
-    omega_v : float or None
-        Circular frequency of the vertical vibration [rad/s]; ``None`` on a rigid base.
-    gravity : float
-        g [m/s²].
-    t_impact : float
-        Time of the last impact before [s]; NaN without one.
-    zeta : float
-        Damping of the vertical vibration, as a share of critical.
+    ``omega_v`` [rad/s] and ``zeta`` are of the vertical vibration, None on a rigid base and as a share of critical; the last
+    impact before was at ``t_impact`` [s], NaN without one.
     """
     opening = f"both pivots left the ground at {t_flight:.3f} s: "
     peak, down = 0.0, 0.0

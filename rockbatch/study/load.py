@@ -292,9 +292,9 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
 
 
 def _checked(file: TomlFile, motions: Motions) -> Study:
-    top = Table(file, (), "", file.data).read(
-        TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *_tables_of_analyses()))
-    )
+    of_analyses = (name for door in doors().values() for name in door.tables)  # read by their own commands
+    others = dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *of_analyses))
+    top = Table(file, (), "", file.data).read(TOP, other=others)
     motion_spec = read_motions_table(file, as_source(motions))
     numerics = _numerics(file)
     piers, varied_pier = read_piers(file)
@@ -333,12 +333,6 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
         lined=bool(file.lines),
     )
-
-
-def _tables_of_analyses() -> Iterator[str]:
-    """Yield the names of tables that analyses read, by their own commands."""
-    for door in doors().values():
-        yield from door.tables
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:

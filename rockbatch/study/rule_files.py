@@ -63,13 +63,8 @@ def read_checks(
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 
-    Parameters
-    ----------
-    file : TomlFile
-    unmet : function, optional
-        Returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does.
-    opened : function, optional
-        Opens the file that [suite] names, or raises ``InputError``.
+    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does; ``opened``
+    opens the file that [suite] names, or raises ``InputError``.
     """
     suite = file.table("suite")
     read = {} if suite is None else suite.read(SUITE)

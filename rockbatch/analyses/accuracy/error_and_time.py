@@ -141,14 +141,10 @@ def measure(
     listener: Listener | None = None,
     clock: Clock | None = None,
 ) -> "pd.DataFrame":
-    """Measure time and error of fixed steps, with and without the location of events, and of the study's own setting.
+    """Return time and error of fixed steps, with and without the location of events, and of the study's own setting, a row each.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
     :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so.
-
-    Returns
-    -------
-    DataFrame with the columns :data:`COLUMNS`, one row per method and setting.
     """
     listener, clock = listener or Listener(), clock or Clock()
     table = pd.DataFrame(_of_steps(study, references, listener, clock), columns=list(COLUMNS))
@@ -186,7 +182,7 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
                 break
             started, share = time.monotonic(), (place + 1) / len(settings)
             deadline = clock.remaining(REFERENCES + share * (1.0 - REFERENCES))
-            rows.append(setting | _measured(references, simulate, REPEATS, deadline))
+            rows.append(setting | _measured(references, simulate, deadline))
             took = time.monotonic() - started
             advance(len(references))
     order = ("located", "not located", "study")
@@ -197,14 +193,12 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _measured(
-    references: Sequence[Reference], simulate: Simulate, repeats: int, seconds: float = math.inf
-) -> dict[str, Any]:
+def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, Any]:
     """Return errors and times of ``simulate`` over the references; once at least, repeated while ``seconds`` remain."""
     runs = [ref.run for ref in references]
     times: list[float] = []
     clock = Clock(seconds)
-    while not times or (len(times) < repeats and clock.remaining() > 0):
+    while not times or (len(times) < REPEATS and clock.remaining() > 0):
         start = time.thread_time()
         ends = simulate(runs)
         times.append(time.thread_time() - start)

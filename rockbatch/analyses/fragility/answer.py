@@ -42,12 +42,11 @@ def of_rates(info: Info) -> Markup:
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
     sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
-    return _answer(sentences, [*_without_rates(info), *_narrow(info)])
-
-
-def _without_rates(info: Info) -> Iterator[str]:
-    if lost := sum(not curve["risk"] for curve in info["curves"]):
-        yield f"{lost} of {len(info['curves'])} curves could not be fitted: what has no rate here may be exceeded more often."
+    curves, remarks = info["curves"], list(_narrow(info))
+    if lost := sum(not curve["risk"] for curve in curves):
+        words = f"{lost} of {len(curves)} curves could not be fitted"
+        remarks.insert(0, f"{words}: what has no rate here may be exceeded more often.")
+    return _answer(sentences, remarks)
 
 
 def _answer(sentences: Sequence[str], remarks: Iterable[str]) -> Markup:

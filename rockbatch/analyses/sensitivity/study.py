@@ -119,13 +119,7 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
 
 
 def read_sensitivity(study: Study) -> SensitivitySpec:
-    """Return what the study file asks for in [sensitivity].
-
-    Raises
-    ------
-    InputError
-        With every mistake, or because there is no such table.
-    """
+    """Return what the study file asks for in [sensitivity]; ``InputError`` with every mistake, or if there is no such table."""
     file = study.file()
     table = file.table("sensitivity", required="[sensitivity] and [sensitivity.uniform] with alpha = [0.12, 0.16]")
     read: dict[str, Any] = {}
