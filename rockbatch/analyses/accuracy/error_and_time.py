@@ -17,6 +17,7 @@ from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import StudyRun
@@ -62,13 +63,6 @@ class Reference:
     run: StudyRun
     outcome: Outcome
     change: float
-
-
-def spread(runs: Sequence[StudyRun], most: int) -> list[StudyRun]:
-    """Return at most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
-    if len(runs) <= most:
-        return list(runs)
-    return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
 def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
