@@ -27,8 +27,7 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions.limits import MOST_SAMPLES
-from rockbatch.motions.motion import Initial, Motion, Samples
+from rockbatch.motions.motion import MOST_SAMPLES, Initial, Motion, Samples
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
 

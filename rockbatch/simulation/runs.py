@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.notes import LINEARISED, RATCHETS
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.laws import STICKS, Element
@@ -41,7 +42,7 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import LINEARISED, RATCHETS, RELEASED, Outcome
+from rockbatch.simulation.outcome import RELEASED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 

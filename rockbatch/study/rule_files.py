@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import CHECK, COUNT, COUNTS, Rule
-from rockbatch.toml.kinds import choice, shown, text
+from rockbatch.toml.kinds import choice, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
