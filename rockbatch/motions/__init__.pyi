@@ -10,7 +10,7 @@ from rockbatch.motions.design_spectra import NzsSpectrum as NzsSpectrum
 from rockbatch.motions.design_spectra import TableSpectrum as TableSpectrum
 from rockbatch.motions.design_spectra import read_spectrum as read_spectrum
 from rockbatch.motions.folder import read_motions as read_motions
-from rockbatch.motions.formats import ReadOptions as ReadOptions
+from rockbatch.motions.formats.record_file import ReadOptions as ReadOptions
 from rockbatch.motions.hazard import HazardCurve as HazardCurve
 from rockbatch.motions.manifest_draft import write_manifest as write_manifest
 from rockbatch.motions.measures import arias_intensity as arias_intensity

@@ -459,7 +459,3 @@ def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         inner = inner[np.repeat(largest > 1.0, count)]
         inner = inner[~kept[inner]]
     return places[kept]
-
-
-def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
-    return " ".join(map(str, numbers)).replace(" -", "-")

@@ -12,7 +12,7 @@ from rockbatch.common.units import GRAVITY, Bounds
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset
-from rockbatch.motions.formats import LAYOUTS, ROLES, ReadOptions
+from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, unlikely
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.sequences import read_sequences
