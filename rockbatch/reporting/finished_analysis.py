@@ -4,7 +4,7 @@ import functools
 import hashlib
 import json
 import warnings
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.labels import counted
-from rockbatch.reporting.markup import Markup, tag
+from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labels import quantity
 
 MOST_NAMES = 60
@@ -133,6 +133,17 @@ def of_analysis(
         return section
 
     return section_of
+
+
+def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
+    """Return the paragraphs that answer what was analysed, and a line below for each remark on them."""
+    lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)
+    return join(*(tag("p", paragraph, class_="lead") for paragraph in paragraphs), *lines)
+
+
+def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
+    """Return a sentence with what leaves it open at its end, marked."""
+    return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 
 def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.lazy import pd
-from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, answered, named, of_analysis, sentence
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
@@ -40,8 +40,7 @@ def section(
 def _answer(fit: Mapping[str, Any], keys: Sequence[str]) -> Markup:
     """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
     doubt = fit["remark"].rpartition("; ")[0]
-    words = join("; ", tag("span", doubt, class_="undecided")) if doubt else ""
-    return tag("p", f"{named(fit, keys)}: {quantities.in_words(fit)}", words, ".", class_="lead")
+    return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", [doubt] if doubt else ()))
 
 
 def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:
