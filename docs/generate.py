@@ -26,11 +26,12 @@ from printing import as_pdf
 import rockbatch
 from rockbatch import motions
 from rockbatch.commands.cli import COMMANDS, main
+from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import BASES_IN_WORDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.schema import FILES, MANIFEST, STUDY, schema_of
-from rockbatch.toml.kinds import Choice, shown
+from rockbatch.toml.kinds import Choice
 from rockbatch.toml.section import Key, Section
 
 HERE = Path(__file__).parent

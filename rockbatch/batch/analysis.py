@@ -1,6 +1,5 @@
 """Results of an analysis and its folder: the tables, and NAME.json, which describes them."""
 
-import hashlib
 import json
 import os
 import time
@@ -35,7 +34,7 @@ from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet, Unusable
 from rockbatch.reporting import REPORT, write_analyses
 from rockbatch.reporting.finished_analysis import digest_of
-from rockbatch.results.run_json import versions
+from rockbatch.results.run_json import describe_study, versions
 from rockbatch.study import Case, Motions, Study, given_study
 from rockbatch.study.both_axes import along_the_axis
 from rockbatch.study.suite import ground_motions
@@ -125,15 +124,7 @@ class AnalysisFolder:
         self.directory, self.study, self.fresh, self.temporary = directory, study, fresh, temporary
         self.listener, self.engine, self.suite = listener or Listener(), engine or Threads(1), MotionSet()
         self.path = directory / f"{name}.json"
-        sha256 = hashlib.sha256(study.text.encode()).hexdigest()
-        of_study = {
-            "path": str(study.path),
-            "title": study.title,
-            "notes": study.notes,
-            "text": study.text,
-            "sha256": sha256,
-        }
-        self.info: dict[str, Any] = {"rockbatch": __version__, "versions": versions(), "study": of_study}
+        self.info: dict[str, Any] = {"rockbatch": __version__, "versions": versions(), "study": describe_study(study)}
         self.info |= {"files": [], "digests": {}}
         self._earlier = {} if fresh else _earlier(self.path)
 

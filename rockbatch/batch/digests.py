@@ -12,7 +12,7 @@ from rockbatch.study import Study
 SHOW = ("commands", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
-OF_ANALYSES = ("command.py", "section.py", "risk_section.py")
+OF_ANALYSES = ("command.py", "section.py")
 """Modules of analyses that only show rows, likewise."""
 
 _TOP = Path(__file__).parents[1]

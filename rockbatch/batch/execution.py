@@ -48,18 +48,9 @@ def execute_runs(
 ) -> None:
     """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
 
-    Of mirror images one is simulated, and both are written.
-
-    Parameters
-    ----------
-    first : int
-        Number of ``runs[0]`` in the journal; the others follow.
-    among : range, optional
-        Indices of the runs that are wanted, if not all.
-    row : function, optional
-        The row of a finished run, where that is not a row of peaks.csv.
-    progress : function, optional
-        Called with the number of simulations of each group that is finished.
+    Of mirror images one is simulated, and both are written. ``first`` is the number of ``runs[0]`` in the journal, ``among`` the
+    indices of the runs that are wanted, if not all; ``row`` makes the row of a finished run, where that is not one of peaks.csv,
+    and ``progress`` is called with the number of simulations of each group that is finished.
     """
     requested = range(len(runs)) if among is None else among
     remaining = to_simulate(runs, requested, journal, first)

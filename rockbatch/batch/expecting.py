@@ -9,12 +9,12 @@ from itertools import accumulate
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.groups import least_steps, outcomes_of
-from rockbatch.batch.kept_histories import history_bytes
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, some_of
 from rockbatch.batch.running import check_records, described, share_of
 from rockbatch.common.errors import starting_threads
 from rockbatch.results.columns import StudyRun, columns, row
+from rockbatch.results.histories_file import history_bytes
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Study

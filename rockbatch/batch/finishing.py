@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.batch.execution import to_simulate
-from rockbatch.batch.half_cycles import HALF_CYCLES, rows_of_half_cycles
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep
 from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
-from rockbatch.batch.sections import rows_of_sections
-from rockbatch.batch.shocks import rows_by_shock, sequences_of
+from rockbatch.batch.repeated import HALF_CYCLES, rows_beside
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.checking import verdicts
@@ -135,10 +133,7 @@ def unchanged(
 def to_be_replaced(directory: Path, study: Study) -> str | None:
     """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
 
-    Raises
-    ------
-    InputError
-        Where they are of another study: of another file, or of one that is not there any more and had another title.
+    Raises ``InputError`` for those of another study: of another file, or of one that is gone and had another title.
     """
     try:
         earlier = json.loads(read_text(directory / INFO))
@@ -218,17 +213,11 @@ def _tables(
     for name in {INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS}.difference(asked):
         remove(saved.directory / name)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
-    if INTENSITY in asked:
-        yield INTENSITY, intensities(saved.peaks, study, motions.motions)
-    if SHOCKS in asked:
-        with listener.progress(len(sequences_of(runs))) as progress:
-            yield SHOCKS, rows_by_shock(study, runs, saved.peaks, jobs, progress)
-    if HALF_CYCLES in asked:
-        with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-            yield HALF_CYCLES, rows_of_half_cycles(study, runs, saved.peaks, jobs, progress)
-    if SECTIONS in asked:
-        with listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-            yield SECTIONS, rows_of_sections(study, runs, saved.peaks, jobs, progress)
+    for name in asked:
+        if name == INTENSITY:
+            yield name, intensities(saved.peaks, study, motions.motions)
+        else:
+            yield name, rows_beside(name, study, runs, saved.peaks, jobs, listener)
 
 
 def _keep_histories(

@@ -88,7 +88,8 @@ class Journal:
         self.runs = runs
         self._fresh = fresh
         self._tell = tell or (lambda _: None)
-        self._first = _encoded(csv_line([_digest_text(self.digest), *self.columns]))[:-1]
+        said = " ".join(f"{name}:{value}" for name, value in digest.items())
+        self._first = _encoded(csv_line([said, *self.columns]))[:-1]
         self._seed = zlib.crc32(self._first)
         self._forget()
         self._written = False
@@ -346,7 +347,3 @@ def _damaged(lines: int) -> str:
 
 def _encoded(line: str) -> bytes:
     return line.encode(errors="backslashreplace")
-
-
-def _digest_text(digest: Mapping[str, str]) -> str:
-    return " ".join(f"{name}:{value}" for name, value in digest.items())

@@ -1,36 +1,22 @@
 """Histories kept beside the peaks: their runs are repeated and recorded."""
 
-import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import simulations
+from rockbatch.batch.repeated import repeated
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.pier import Base, Pier, places, vertical_frequency
-from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
-from rockbatch.results.histories_file import HISTORIES, columns_of, write
+from rockbatch.results.histories_file import FORCES, HISTORIES, LEDGER, has_value, history_bytes, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
-from rockbatch.simulation.outcome import TERMS
-from rockbatch.simulation.response import FORCE_UNITS, Response
-from rockbatch.simulation.runs import run_fixed
+from rockbatch.simulation.response import Response
 from rockbatch.study import Study
-
-LEDGER = "energy_input_J_kg"
-"""A column of every run with an energy ledger."""
-
-BYTES_OF_A_DATASET = 2500.0
-"""Bytes of a dataset in HDF5 beside its numbers, with its share of the groups."""
-
-BYTES_OF_AN_EVENT = 56.0
-"""In the table of events: three numbers and two words."""
 
 
 def keep_histories(
@@ -40,28 +26,11 @@ def keep_histories(
     progress: Advance = silent,
     records: Collection[str] = (),
 ) -> Path | None:
-    """Write ``histories.h5`` beside finished results: the histories that the study asks for.
+    """Write ``histories.h5`` beside the finished results of ``runs``: what the study asks for, and all histories of ``records``.
 
-    They come one after another: memory holds two at most.
-
-    Parameters
-    ----------
-    saved : Saved
-        The results of all ``runs`` of ``study``.
-    progress : function, optional
-        Called after each of :func:`to_keep`.
-    records : collection of str, optional
-        Records all of whose runs are kept, too.
-
-    Returns
-    -------
-    Path of the file, or None if there is nothing to keep. An earlier file is replaced as a whole, or not at all.
-
-    Raises
-    ------
-    InputError
-        If the disk is full; and at the end, when all others are written, if the history of some run is too long to be
-        held in memory.
+    They come one after another: memory holds two at most. Returns the path, or None if there is nothing to keep; an earlier file
+    is replaced as a whole, or not at all. Raises ``InputError`` if the disk is full, and at the end, when all others are
+    written, if the history of some run is too long to be held in memory.
     """
     table = saved.peaks.iloc[: len(runs)]  # then come the files that could not be used
     chosen = to_keep(study, runs, table, records).numbers
@@ -117,35 +86,6 @@ def to_keep(study: Study, runs: Sequence[StudyRun], table: "pd.DataFrame", recor
     return Kept(sorted(every, key=lambda number: number % len(study.cases)), len(chosen) - len(numbers))
 
 
-def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
-    """Return the bytes that the history of a run takes on disk, up to a third too many: eight for each number of each sample
-    and side of an event.
-    """
-    pier, base = run.case.pier, run.case.base
-    columns = len(columns_of(base, base.bends))
-    columns += 2 * sum(len(places(pier, device)) for device in base.restraints)  # elongations and forces
-    if _has_value(row, LEDGER):
-        columns += len(TERMS)
-    if _has_value(row, FORCES):
-        columns += len(FORCE_UNITS)
-    events = row["impacts"] + row["separations"] + _reversals(pier, base) * row["t_end_s"]
-    rows = row["t_end_s"] / run.record.dt + 2.0 * events
-    return columns * (BYTES_OF_A_DATASET + 8.0 * rows) + BYTES_OF_AN_EVENT * events
-
-
-def _reversals(pier: Pier, base: Base) -> float:
-    """Return how often a second springs that yield in every cycle change their branch: both, twice a period of the vibration."""
-    if not base.ratchets:
-        return 0.0
-    return 2.0 * vertical_frequency(pier, base) / math.pi
-
-
-def _has_value(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
-    """Return whether the row has a number there: it was requested, and the run is not very long."""
-    value = row.get(column)
-    return value is not None and value == value
-
-
 def worst(table: "pd.DataFrame", cases: int) -> list[int]:
     """Return the number of the worst run of each case, in the order of the cases; none for a case that only failed.
 
@@ -166,11 +106,9 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
 def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
     case, quiet_s = planned.case, study.numerics.quiet_s
     (run,) = simulations([planned])
-    # With the same steps it comes to the same bits; of the row only ten digits are on disk
-    outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), quiet_s)
-    outcome = replace(outcome, status=row["status"], reason=row["reason"])
+    outcome = replace(repeated(run, row, quiet_s), status=row["status"], reason=row["reason"])
     return histories(
         run, outcome, quiet_s, case.name, case.columns,
-        ledger=_has_value(row, LEDGER), forces=_has_value(row, FORCES),
+        ledger=has_value(row, LEDGER), forces=has_value(row, FORCES),
         polarity=planned.polarity, scale=planned.scale,
     )  # fmt: skip

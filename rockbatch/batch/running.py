@@ -123,25 +123,11 @@ def run_into(
     share: tuple[int, int] | None = None,
     records: Collection[str] = (),
 ) -> FinishedBatch | None:
-    """Carry out what is not finished in ``directory`` yet, and write the results.
+    """Carry out what is not finished in ``directory`` yet, and write the results; return what is in it, None after a share.
 
-    Parameters
-    ----------
-    command : sequence of str
-        The words after ``rockbatch`` that do it again, for run.json.
-    share : tuple of two ints, optional
-        (i, n): carry out the i-th of n shares only, and leave it in its journal.
-    records : collection of str, optional
-        Records all of whose histories are kept, beside those that the study asks for.
-
-    Returns
-    -------
-    What is in the folder; None after a share.
-
-    Raises
-    ------
-    InputError
-        As :func:`run`.
+    ``command`` are the words after ``rockbatch`` that do it again, for run.json. Of a ``share``, (i, n), the i-th of n shares
+    alone is carried out, and left in its journal. All histories of ``records`` are kept, beside those that the study asks for.
+    Raises ``InputError`` as :func:`run`.
     """
     started = time.monotonic()
     refuse_irregular(*(directory / name for name in OUTPUTS))

@@ -1,8 +1,6 @@
 """Runs in waves, each of which depends on the results of the one before; all of them in one journal."""
 
-from collections.abc import Mapping
 from contextlib import nullcontext
-from typing import Any
 
 from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.journal import Journal
@@ -10,8 +8,7 @@ from rockbatch.batch.listening import Listener, silent
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.catalogue import COUNTS, TEXTS
-from rockbatch.results.columns import as_table
+from rockbatch.results.columns import as_table, read_cells
 from rockbatch.study import Study
 
 
@@ -36,19 +33,4 @@ class Waves:
             execute_runs(
                 runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
             )
-        return as_table((_read(self.journal[number]) for number in range(first, self.finished)), self.study)
-
-
-def _read(cells: Mapping[str, str]) -> dict[str, Any]:
-    """Return cells as numbers if they are numbers, None if empty."""
-    return {
-        name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
-        for name, text in cells.items()
-    }
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:  # a varied key such as kinematics
-        return text
+        return as_table((read_cells(self.journal[number]) for number in range(first, self.finished)), self.study)

@@ -118,8 +118,8 @@ def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
 def unlimited(worst: Sequence[Worst], verdicts: Sequence[Verdict]) -> list[Worst]:
     """Return the responses of a case that govern its design, and that no check bounds.
 
-    Rotation always governs, and stands for drift and uplift, but the drift of a shaft that bends governs beside it; settlement, tilt and ductility do where a support yields, the
-    residual rotation where dampers hold the pier at one on rigid ground.
+    Rotation always governs, and stands for drift and uplift; the drift of a shaft that bends governs beside it; settlement, tilt
+    and ductility do where a support yields, the residual rotation where dampers hold the pier at one on rigid ground.
     ``worst`` and ``verdicts`` are those of the case.
     """
     checked = {verdict.demand for verdict in verdicts if verdict.verdict != DOES_NOT_APPLY}

@@ -17,12 +17,11 @@ from rockbatch.common.errors import AboutResults, InputError
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import __version__
-from rockbatch.toml.meant import names
 
-_COMMANDS_MEANT = names({
+_COMMANDS_MEANT = {word: name for name, words in {
     "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",
     "check": "verify", "report": "plot show view html", "fragility": "ida curves", "spectrum": "spectra map",
-})  # fmt: skip
+}.items() for word in words.split()}  # fmt: skip
 """Commands by other words for what they do."""
 
 _OPTIONS_MEANT = {"-v": "--version", "-V": "--version", "-o": "--out", "-j": "--jobs"}

@@ -74,25 +74,10 @@ def example(name: str) -> Example:
 
 
 def copy(name: str, to: Path, study: str) -> list[Path]:
-    """Copy an example, its records and the design checks into a folder of one's own.
+    """Copy an example, its records and the design checks into a folder, which is made; ``study`` names its file there.
 
-    Parameters
-    ----------
-    name : str
-        Name of the example.
-    to : Path
-        The folder, made if missing.
-    study : str
-        Name of the study's file in it.
-
-    Returns
-    -------
-    Paths written: the study, the checks, and the folder of records if the study has one.
-
-    Raises
-    ------
-    InputError
-        If one of them exists already; nothing is written then.
+    Returns what is written: the study, the checks, and the folder of records if the study has one. Raises ``InputError`` if one
+    of them exists already; nothing is written then.
     """
     chosen = example(name)
     text = chosen.path.read_text(encoding="utf-8")

@@ -9,9 +9,9 @@ from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.results.rows import with_case
-from rockbatch.simulation.outcome import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.study import PIER_KEYS, Study
 
 MOST_RUNS = 1000

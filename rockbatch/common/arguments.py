@@ -35,7 +35,7 @@ def checked(door: Door) -> Door:
     kinds = dict(_kinds(parameters))
     keywords = kinds.keys() - parameters.keys() if any(map(_is_unpacked, parameters.values())) else None
     kinds = {name: alternatives for name, alternatives in kinds.items() if all(map(_is_known, alternatives))}
-    plain = {name: _AS_THEY_ARE.intersection(map(_type_of, of_name)) for name, of_name in kinds.items()}
+    plain = {name: {type(None) if kind is None else kind for kind in kinds[name]} & _AS_THEY_ARE for name in kinds}
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -82,10 +82,6 @@ def _alternatives(annotation: Any) -> tuple[Any, ...]:
     if get_origin(annotation) in (Union, types.UnionType):
         return tuple(kind for part in get_args(annotation) for kind in _alternatives(part))
     return (None if annotation is type(None) else annotation,)
-
-
-def _type_of(kind: Any) -> Any:
-    return type(None) if kind is None else kind
 
 
 def _is_known(kind: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Things in groups, names that tell them apart, and the name that was meant."""
+"""Things in groups, a few of many, names that tell them apart, and the name that was meant."""
 
 import difflib
 from collections import Counter
@@ -17,6 +17,14 @@ def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     for item in items:
         groups.setdefault(key(item), []).append(item)
     return groups
+
+
+def spread(items: Sequence[T], most: int) -> list[T]:
+    """Return at most ``most`` of ``items``, evenly over all of them, the first and the last among them."""
+    if len(items) <= most:
+        return list(items)
+    step = (len(items) - 1) / (most - 1) if most > 1 else 0.0
+    return [items[round(i * step)] for i in range(most)]
 
 
 def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[str]:

@@ -1,10 +1,14 @@
-"""Display of objects: a few lines in a terminal, a small table in a notebook."""
+"""Display of objects: a few lines in a terminal, a small table in a notebook; and of values, as TOML writes them."""
 
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import fields
 from html import escape
+from itertools import islice
+from typing import Any
 
+from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 
 MOST_ROWS = 12
@@ -62,3 +66,21 @@ def _short(value: object) -> str:
 def several(n: int, noun: str) -> str:
     """Return a number of things: "1 run", "2 runs"; empty for none."""
     return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def shown(value: Any, limit: int = 60) -> str:
+    """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
+    if isinstance(value, bool):
+        written = str(value).lower()
+    elif isinstance(value, str):
+        written = json.dumps(value[: limit + 1], ensure_ascii=False)  # TOML's basic strings are JSON's
+    elif isinstance(value, list):
+        written = "[" + ", ".join(map(shown, value[:limit])) + "]"
+    elif isinstance(value, dict):
+        written = "{ " + ", ".join(f"{key} = {shown(item)}" for key, item in islice(value.items(), limit)) + " }"
+    elif isinstance(value, int) and value.bit_length() > 64:
+        written = hex(value)  # Python refuses to write thousands of digits
+    else:
+        written = str(value)
+    written = legible(written)
+    return written if len(written) <= limit else written[: limit - 1] + "…"

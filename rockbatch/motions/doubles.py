@@ -1,66 +1,26 @@
-"""One recording in several files: which set of components is used.
+"""One recording in several files: which set of components is used."""
 
-Two components are of one recording if they point alike, and their headers name one sensor and one event, their samples are
-the same, or, where headers do not decide, they correlate once aligned. Two sets are, as wholes, if both are alike in some
-frame: copies are cut, turned, filtered, or labelled otherwise. The parts of a long recording, which claim one time of
-triggering, are not: each file is a whole set of components, processed alike, and its samples do not correlate.
-"""
-
-import hashlib
 import math
 import re
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import product
-from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.common.grouping import grouped
-from rockbatch.motions.archives import bare
-from rockbatch.motions.component import UNKNOWN_SENSOR, Component, file_of
+from rockbatch.motions.component import Component
 from rockbatch.motions.formats import is_usual
-from rockbatch.motions.motion import Finding, LeftOut, Samples
-from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
+from rockbatch.motions.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of, suffix_of
+from rockbatch.motions.motion import Finding, LeftOut
 from rockbatch.motions.plausible import gross_findings, in_a_borehole
-from rockbatch.motions.stations import in_one_event, is_numbered
+from rockbatch.motions.stations import in_one_event
 
 _CORRECTED = {True: 0, None: 1, False: 2}
-_ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
-_CERTAIN = 0.95  # correlation that decides where headers do not
-_IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in the time that both have
-_SIGNIFICANT = (
-    4.0  # standard deviations of Fisher's transform of it: random walks have 3 at most, real files of one recording 27
-)
-_SAME_STEP = 1e-3  # relative
-_SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
-_NO_FACTOR, _GROSS_FACTOR = 0.005, 0.05  # relative: values of g, and rounding; what has to be confirmed
+_GROSS_FACTOR = 0.05  # relative: what has to be confirmed
 _UNITS, _SAME_UNIT = (9.81, 10.0, 98.1, 100.0, 981.0, 1000.0, 9810.0), 0.003
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
-_SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of ∫a² dt
-_SPREAD, _BLUR = 0.1, 0.05  # of the significant duration, and s: how far the times of these shares may differ in copies
 _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
-
-_BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5), np.arange(50.0, 101.0, 5.0)))  # Hz
-_SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
-
-_COHERENT = 0.995  # median over bands: copies filtered to 1–5 Hz have more, neighbours in an array 0.992 at most
-_BAND, _FEWEST_BANDS = 0.5, 6  # Hz, and how many of them a median needs
-_ENERGETIC = 0.01  # of the largest energy of a band: less is noise, or was filtered out
-_TAPER = 0.1  # of a record, at either end
-_WINDOWED = (1.5, 4.5)  # Hz: a band that filters leave alone
-_PER_SECOND = 16.0
-_PEAKS = 12  # of an envelope, the largest
-_AROUND = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # s
-_SAME_ENVELOPE = 0.05  # of its peak
-_FLAT = 0.8  # of its peak: harmonic waves are alike around all of theirs
-
-Pairs = dict[int, set[int]]
-Indices = npt.NDArray[np.int64]
-Truths = npt.NDArray[np.bool_]
 
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
@@ -70,9 +30,8 @@ def without_boreholes(components: Sequence[Component]) -> tuple[list[Component],
     used_components: list[Component] = []
     left_out: list[LeftOut] = []
     for component in components:
-        above = (
-            at_surface.get(component.sensor.number, []) if in_a_borehole(component) and not component.preferred else []
-        )
+        below = in_a_borehole(component) and not component.preferred
+        above = at_surface.get(component.sensor.number, []) if below else []
         used = next((candidate for candidate in above if in_one_event(component, candidate)), None)
         if used is None:
             used_components.append(component)
@@ -92,8 +51,8 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     that of a unit, both have to be. A vertical that is in two sets of other horizontals is used with both, which say so.
     """
     components, below = without_boreholes(components)
-    pairs, scaled = _pairs(components)
-    factors = {(i, j): _factor(components[i], components[j]) for i, copies in pairs.items() for j in copies}
+    pairs, scaled = pairs_of_one_recording(components)
+    factors = {(i, j): factor_between(components[i], components[j]) for i, copies in pairs.items() for j in copies}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
     stands_for: dict[int, int] = {}
@@ -118,7 +77,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
             findings.setdefault(j, []).append(finding)
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
         for k, copy_by_factor in ((i, components[j]), (j, components[i])):
-            factor = _factor(copy_by_factor, components[k])
+            factor = factor_between(copy_by_factor, components[k])
             assert factor is not None  # so they are found
             text = f"{copy_by_factor.source} has the same samples times {factor:.4g}"
             if _is_unit(factor):
@@ -142,169 +101,12 @@ def _shared_verticals(
     def place(i: int) -> tuple[str, str]:
         return components[i].folder, components[i].station or components[i].site
 
-    for members in _sets(components):
+    for members in sets_of(components):
         verticals = [i for i in members if components[i].orientation.vertical]
         horizontals = [i for i in members if i not in verticals and i not in stands_for]
         copied = [i for i in verticals if i in stands_for and place(i) != place(stands_for[i])]
         if horizontals and len(verticals) == len(copied) == 1:
             yield copied[0], horizontals
-
-
-def _pairs(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]]]:
-    """Return the components that are of the same recording as each component; those without any are missing.
-
-    And copies by a factor of which nothing but their samples says that they are one recording, in order.
-    """
-    table = _Table(components)
-    pairs: Pairs = {}
-    scaled = []
-
-    def join(i: int, j: int) -> None:
-        pairs.setdefault(i, set()).add(j)
-        pairs.setdefault(j, set()).add(i)
-
-    for i in range(len(components)):
-        for j in (*table.copies(i), *table.same_by_headers(i)):
-            join(i, j)
-    for i, j in table.alike():
-        first, second = components[i], components[j]
-        if j in pairs.get(i, ()) or first.sensor.is_distinct_from(second.sensor):
-            continue
-        factor = _factor(first, second)
-        if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
-            scaled.append((i, j))
-        elif _correlate(first, second):
-            join(i, j)
-    for i, j in _of_sets(components, pairs, scaled, table):
-        join(i, j)
-    return pairs, sorted(scaled)
-
-
-def _of_sets(
-    components: Sequence[Component], pairs: Pairs, scaled: Sequence[tuple[int, int]], table: "_Table"
-) -> Iterator[tuple[int, int]]:
-    """Yield further pairs of two sets that are of one recording as wholes, each component with that which it resembles.
-
-    They correlate, if a component of both is of one recording already, or else are coherent wherever both have energy: that
-    tells a copy that was cut, turned and filtered from a neighbour in an array, and a correlation does not. Those with ``scaled``
-    components stay two.
-    """
-    sets = list(_sets(components))
-    set_of = {i: number for number, members in enumerate(sets) for i in members}
-    linked = {(set_of[i], set_of[j]) for i, copies in pairs.items() for j in copies if set_of[i] < set_of[j]}
-    by_factor = {tuple(sorted((set_of[i], set_of[j]))) for i, j in scaled}
-    for pair in sorted(linked | _similar_envelopes(components, sets) - by_factor):
-        coherent = pair in linked
-        for upright in (False, True):
-            first, second = ([i for i in sets[n] if components[i].orientation.vertical is upright] for n in pair)
-            joined = all(pairs.get(i, set()).intersection(second) for i in first)
-            if joined or len(first) != len(second) or len(first) > 2:
-                continue
-            if not (coherent or (not upright and table.may_be_one(first, second))):
-                break
-            in_parts = 4 if coherent else 1  # a shift by less hardly changes how coherent they are
-            likeness = _in_any_frame([components[i] for i in first], [components[i] for i in second], in_parts)
-            if likeness.coherence >= _COHERENT or (coherent and likeness.correlation >= _CERTAIN):
-                coherent, crossed = True, np.trace(likeness.each[::-1]) > np.trace(likeness.each)
-                yield from zip(first, reversed(second) if crossed else second, strict=True)
-
-
-def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
-    """Return pairs of sets whose horizontals swell and fade alike around a peak, however they were turned, cut or filtered."""
-    shapes, owners = [np.empty((0, len(_AROUND)))], list[int]()
-    for number, members in enumerate(sets):
-        horizontals = [components[i] for i in members if not components[i].orientation.vertical]
-        if 1 <= len(horizontals) <= 2 and horizontals[0].dt < 0.5 / _WINDOWED[1]:
-            shapes.append(_shapes(horizontals))
-            owners += [number] * len(shapes[-1])
-    shape, owner = np.concatenate(shapes), np.array(owners, dtype=np.int64)
-    order = np.argsort(shape[:, 0])
-    shape, owner = shape[order], owner[order]
-    ends = np.searchsorted(shape[:, 0], shape[:, 0] + _SAME_ENVELOPE)
-    similar: set[tuple[int, int]] = set()
-    for k, end in enumerate(ends.tolist()):
-        near = k + 1 + np.flatnonzero((np.abs(shape[k + 1 : end] - shape[k]) <= _SAME_ENVELOPE).all(axis=1))
-        similar.update((min(owner[k], n), max(owner[k], n)) for n in owner[near].tolist() if n != owner[k])
-    return similar
-
-
-def _shapes(horizontals: Sequence[Component]) -> Samples:
-    """Return the envelope of horizontals in a band ``_AROUND`` its largest peaks, over each of these, shape (peaks, times)."""
-    dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
-    n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
-    low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
-    spectra = (np.fft.rfft(c.acceleration, n)[low:high] for c in horizontals)
-    count = max(round(n * dt * _PER_SECOND), high - low)
-    energy = sum(np.square(np.abs(np.fft.ifft(spectrum * np.hanning(high - low), count))) for spectrum in spectra)
-    envelope = np.sqrt(energy)[: math.ceil(longest * dt * _PER_SECOND)]
-    steps = np.round(np.multiply(_AROUND, _PER_SECOND)).astype(int)
-    inside = envelope[-steps[0] : -steps[-1]]
-    peaks = 1 + np.flatnonzero((inside[1:-1] > inside[:-2]) & (inside[1:-1] >= inside[2:])) - steps[0]
-    peaks = peaks[np.argsort(-envelope[peaks])[:_PEAKS]]
-    shape = envelope[peaks[:, None] + steps] / envelope[peaks, None]
-    return np.asarray(shape[shape.min(axis=1) < _FLAT])
-
-
-class _Likeness(NamedTuple):
-    """How alike two sets are in the frame and at the shift that make them most alike, and each component to each."""
-
-    correlation: float
-    coherence: float
-    each: Samples  # covariances, shape (n, n)
-
-
-def _in_any_frame(first: Sequence[Component], second: Sequence[Component], parts: int) -> _Likeness:
-    """Return the likeness of two sets of one or two components each.
-
-    Over all shifts, by ``parts`` of a step, the greatest trace of their covariances after a rotation or reflection is the sum of
-    the singular values of these; it is divided by the energies in the time that both have, where most of one of them lies.
-    """
-    dt = max(c.dt for c in (*first, *second))
-    a, b = (
-        np.array([x[:shortest] - x[:shortest].mean() for x in series])
-        for series in ([_at_step(c, dt) for c in side] for side in (first, second))
-        for shortest in (min(map(len, series)),)
-    )
-    n = 1 << (a.shape[1] + b.shape[1] - 1).bit_length()
-    spectra = np.einsum("if,jf->ijf", np.fft.rfft(a, n), np.conj(np.fft.rfft(b, n)))
-    covariances = parts * np.fft.irfft(spectra, parts * n)
-    norms = np.square(covariances).sum(axis=(0, 1))
-    if len(a) == 2:
-        norms += 2.0 * np.abs(covariances[0, 0] * covariances[1, 1] - covariances[0, 1] * covariances[1, 0])
-    shift = np.arange(parts * n) // parts
-    shift[shift >= a.shape[1]] -= n
-    from_a, to_a = np.maximum(shift, 0), np.clip(b.shape[1] + shift, 0, a.shape[1])
-    energy = [np.concatenate(([0.0], np.cumsum(np.square(x).sum(axis=0)))) for x in (a, b)]
-    from_b, to_b = (np.clip(ends - shift, 0, b.shape[1]) for ends in (from_a, to_a))
-    shared = [energy[0][to_a] - energy[0][from_a], energy[1][to_b] - energy[1][from_b]]
-    enough = np.maximum(shared[0] / (energy[0][-1] or 1.0), shared[1] / (energy[1][-1] or 1.0)) >= _IN_COMMON
-    with np.errstate(divide="ignore", invalid="ignore"):
-        r = np.nan_to_num(np.where(enough, np.sqrt(norms / (shared[0] * shared[1])), 0.0))
-    best = int(r.argmax())
-    left, _, right = np.linalg.svd(covariances[:, :, best])
-    common = a[:, from_a[best] : to_a[best]], (left @ right @ b)[:, from_b[best] : to_b[best]]
-    return _Likeness(float(r[best]), _coherence(*common, dt), np.abs(covariances[:, :, best]))
-
-
-def _coherence(a: Samples, b: Samples, dt: float) -> float:
-    """Return the median, over bands in which both sets have energy, of how coherent they are; 0 of few such bands.
-
-    Shape of both: (components, npts). A filter, whose phase and amplitude are nearly constant in a band, does not change it.
-    """
-    n = a.shape[1]
-    place = np.arange(n) + 0.5
-    taper = np.square(np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(place, n - place) / max(_TAPER * n, 1.0))))
-    first, second = np.fft.rfft(a * taper), np.fft.rfft(b * taper)
-    band = (np.fft.rfftfreq(max(n, 1), dt) / _BAND).astype(int)
-    cross, *energies = (
-        np.bincount(band, x.real) + 1j * np.bincount(band, x.imag)
-        for x in ((p * np.conj(q)).sum(axis=0) for p, q in ((first, second), (first, first), (second, second)))
-    )
-    both = np.logical_and(*(x.real > _ENERGETIC * x.real.max() for x in energies))
-    if both.sum() < _FEWEST_BANDS:
-        return 0.0
-    coherence = np.abs(cross[both]) / np.sqrt(energies[0].real[both] * energies[1].real[both])
-    return float(np.median(coherence))
 
 
 def _ranks(
@@ -317,7 +119,7 @@ def _ranks(
     more intense shaking, by powers of two; the suffix of a format; the shorter name; the first.
     """
     sets: dict[int, list[int]] = {}
-    for members in _sets(components):
+    for members in sets_of(components):
         sets.update(dict.fromkeys(members, members))
     energy = {i: float(c.acceleration @ c.acceleration) * c.dt for i, c in enumerate(components) if i in sets}
     for (i, j), factor in factors.items():
@@ -337,266 +139,12 @@ def _ranks(
             not first.unit,
             float(f"{first.dt:.3g}"),
             -round(math.log2(sum(energy[i] for i in members) or 1e-300)),
-            not is_usual(_suffix(first)),
+            not is_usual(suffix_of(first)),
             min(len(c.source) for c in of_set),
             members[0],
         )
         ranks.update({i: (*rank, i) for i in members})
     return ranks
-
-
-def _sets(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Return the components that belong together: of a file with several, or else of one station, step and processing."""
-
-    def place(i: int) -> Hashable:
-        c = components[i]
-        return c.folder, c.station or c.sensor.station or c.site, c.event, c.processed, f"{c.dt:.3g}"
-
-    files = grouped(range(len(components)), lambda i: _file(components[i])).values()
-    yield from (members for members in files if len(members) > 1)
-    for members in grouped((members[0] for members in files if len(members) == 1), place).values():
-        directions = {(o.vertical, o.azimuth, o.label) for o in (components[i].orientation for i in members)}
-        if len(directions) == len(members):
-            yield members
-        else:
-            yield from grouped(members, lambda i: (components[i].site, _suffix(components[i]))).values()
-
-
-def _file(component: Component) -> str:
-    """Its file, by folder and source."""
-    return f"{component.folder}/{file_of(component.source)}"
-
-
-def _suffix(component: Component) -> str:
-    """Return its file's suffix, in lower case."""
-    return bare(Path(file_of(component.source))).suffix.lower()
-
-
-def _samples(component: Component) -> bytes:
-    """Return a digest of the step and the samples."""
-    digest = hashlib.sha256(repr(component.dt).encode())
-    digest.update(np.ascontiguousarray(component.acceleration).tobytes())
-    return digest.digest()
-
-
-def _codes(values: Iterable[Hashable]) -> Indices:
-    """Return equal numbers for equal values, -1 for None and empty ones, shape (n,)."""
-    codes: dict[Hashable, int] = {}
-    return np.array([codes.setdefault(value, len(codes)) if value else -1 for value in values], dtype=np.int64)
-
-
-class _Table:
-    """Facts by headers and samples, a column for each, so that a component is compared to all others at once.
-
-    ``growth`` holds the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitude in
-    ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` its squares up to each band. Both are
-    NaN until they are asked for.
-    """
-
-    def __init__(self, components: Sequence[Component]) -> None:
-        self.components = components
-        self.file, self.suffix = _codes(map(_file, components)), _codes(map(_suffix, components))
-        self.numbered = _codes(c.site if is_numbered(c.site) else "" for c in components)
-        self.sensor, self.event = _codes(c.sensor.number for c in components), _codes(c.event for c in components)
-        self.samples = _codes(map(_samples, components))
-        self.way = _codes(map(_kind_of_direction, components))
-        self.azimuth = np.array([c.orientation.azimuth for c in components], dtype=float)
-        self.start = np.array([c.start for c in components], dtype=float)
-        self.end = self.start + [c.duration for c in components]
-        self.dated = np.array([c.dated for c in components], dtype=bool)
-        self.growth = np.array([_growth(component) for component in components]).reshape(-1, len(_SHARES))
-        self.bands = np.array([np.searchsorted(_BANDS, 0.5 / c.dt, "right") - 1 for c in components], dtype=np.int64)
-        self.amplitude = np.full((len(components), len(_BANDS) - 1), math.nan, dtype=np.float32)
-        self.energy = np.full((len(components), len(_BANDS)), math.nan, dtype=np.float32)
-        vertical = np.array([c.orientation.vertical for c in components], dtype=bool)
-        self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
-
-    def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
-        return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
-
-    def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components point the same way as ``i``, by azimuths, or else by their labels."""
-        angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
-        return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
-
-    def _overlap(self, i: int, j: Indices) -> Truths:
-        """Return whether components have a time in common with ``i``, as far as is known."""
-        return ~((self.start[j] >= self.end[i]) | (self.start[i] >= self.end[j]))
-
-    def _joinable(self, i: int, j: Indices) -> Truths:
-        """Return whether headers do not say that components are of other files, times or events than ``i``."""
-        differ = self._differ(self.event, i, j) & (
-            self.suffix[j] == self.suffix[i]
-        )  # formats write of events as they like
-        differ |= self._differ(self.numbered, i, j) | (self.file[j] == self.file[i])
-        return ~differ & self._overlap(i, j)
-
-    def may_be_one(self, first: Sequence[int], second: Sequence[int]) -> bool:
-        """Return whether headers allow that two sets are of one recording, which a single component tells by its direction."""
-        parts, j = self.components, np.array(second)
-        distinct = any(parts[i].sensor.is_distinct_from(parts[k].sensor) for i, k in product(first, second))
-        turned = len(first) > 1 or bool(self._pointing_alike(first[0], j).all())
-        return not distinct and turned and all(self._joinable(i, j).all() for i in first)
-
-    def copies(self, i: int) -> list[int]:
-        """Return later components with the same samples that may be of the same sensor, event and direction."""
-        j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
-        j = j[~self._differ(self.event, i, j)]
-        alike = dict(zip(j.tolist(), self._pointing_alike(i, j), strict=True))
-        parts = self.components
-        return [
-            k
-            for k in alike
-            if (UNKNOWN_SENSOR in (parts[i].sensor, parts[k].sensor) or parts[i].sensor.may_be_same_as(parts[k].sensor))
-            and (alike[k] or UNKNOWN in (parts[i].orientation, parts[k].orientation))
-        ]
-
-    def same_by_headers(self, i: int) -> list[int]:
-        """Return later components that headers say are of the same recording; those in one file are of different sensors.
-
-        Two whole files of one step that are processed alike may be parts of one recording; their samples decide.
-        """
-        if self.sensor[i] < 0:
-            return []
-        near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]
-        j = i + 1 + np.flatnonzero(near & (self.sensor[i + 1 :] == self.sensor[i]))
-        same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
-        same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
-        differ = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
-        first, parts = self.components[i], self.components
-        return [
-            k
-            for k in j[same_event & ~differ & self._pointing_alike(i, j)].tolist()
-            if first.sensor.may_be_same_as(parts[k].sensor)
-            and not (self.whole_file[i] and self.whole_file[k] and _are_parts(first, parts[k]))
-        ]
-
-    def alike(self) -> Iterator[tuple[int, int]]:
-        """Return pairs whose ∫a² dt grows alike in time, and whose spectra are alike, whatever their scale, start and step.
-
-        Few of them are no copies. Headers do not say that they are of other files, times, events or directions.
-        """
-        order = np.argsort(self.growth[:, -1], kind="stable")
-        length = self.growth[order, -1]
-        for n, i in enumerate(order.tolist()):
-            if self.way[i] < 0:
-                continue
-            within = _SPREAD * length[n] + _BLUR
-            j = order[n + 1 : np.searchsorted(length, length[n] + within, "right")]
-            j = j[self.way[j] == self.way[i]]
-            j = j[self._joinable(i, j) & self._pointing_alike(i, j)]
-            j = j[(np.abs(self.growth[j, :-1] - self.growth[i, :-1]) <= within).all(axis=1)]
-            yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
-
-    def _similar(self, i: int, j: Indices) -> Truths:
-        """Return whether the spectra allow a correlation that decides: Σ AᵢAⱼ e^iφ, whatever the shift, is at most Σ |Aᵢ||Aⱼ|."""
-        for k in (i, *j[np.isnan(self.amplitude[j, 0])].tolist()) if len(j) else ():
-            if math.isnan(self.amplitude[k, 0]):
-                self.amplitude[k] = _amplitudes(self.components[k])
-                self.energy[k] = np.concatenate(([0.0], np.cumsum(np.square(self.amplitude[k]))))
-        common = np.minimum(self.bands[i], self.bands[j])
-        product = self.amplitude[j] @ self.amplitude[i]
-        return np.asarray(np.square(product) >= _SIMILAR**2 * self.energy[i, common] * self.energy[j, common])
-
-
-def _kind_of_direction(component: Component) -> tuple[str, ...]:
-    """Return what components that point alike share beside their azimuth; empty if nothing is known."""
-    orientation = component.orientation
-    if orientation.vertical:
-        return ("vertical",)
-    if orientation.azimuth is not None:
-        return ("azimuth",)
-    return ("label", orientation.label.upper()) if orientation.label else ()
-
-
-def _growth(component: Component) -> Samples:
-    """Return the times [s] between the ``_SHARES`` of ∫a² dt, and their sum."""
-    energy = np.cumsum(np.square(component.acceleration))
-    times = np.searchsorted(energy, np.multiply(_SHARES, energy[-1])) * component.dt
-    return np.append(np.diff(times), times[-1] - times[0])
-
-
-def _amplitudes(component: Component) -> Samples:
-    """Return the Fourier amplitude in each of ``_BANDS``, 1 in all of them."""
-    a, dt = component.acceleration - component.acceleration.mean(), component.dt
-    n = 1 << max(2 * len(a), math.ceil(2.0 / (dt * _BANDS[1]))).bit_length()
-    energy = np.concatenate(([0.0], np.cumsum(np.square(np.abs(np.fft.rfft(a, n))))))
-    ends = np.minimum(np.ceil(_BANDS * n * dt).astype(int), len(energy) - 1)
-    return np.asarray(np.sqrt(np.maximum(np.diff(energy[ends]), 0.0) / (energy[-1] or 1.0)))
-
-
-def _are_parts(a: Component, b: Component) -> bool:
-    """Return whether components that headers say are of one recording are parts of it: alike, but with other samples."""
-    alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
-    return alike and correlation(a.acceleration, b.acceleration) < _ALIKE
-
-
-def _correlate(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components, brought to one step, are those of one recording.
-
-    A few waves of one period look alike whoever recorded them: of n independent values, the inverse hyperbolic tangent of a
-    correlation by chance has a standard deviation of 1/√(n − 3) (Fisher), and what is found has to be far above that.
-    """
-    coarse, fine = sorted((a, b), key=lambda c: -c.dt)
-    first, second = coarse.acceleration, _at_step(fine, coarse.dt)
-    r = correlation(first, second)
-    if r < _CERTAIN:
-        return False
-    n = _independent_values(first, second)
-    return n > 3.0 and math.atanh(min(r, 1.0 - 1e-12)) * math.sqrt(n - 3.0) >= _SIGNIFICANT
-
-
-def _independent_values(a: Samples, b: Samples) -> float:
-    """Return how many independent values two series of one step have in common: 2BT.
-
-    B is the bandwidth of their power spectra S₁ and S₂, ∫S₁df ∫S₂df / ∫S₁S₂df; T is the shorter of the times in which 5 to
-    95% of ∫a² dt grow, over 0.9.
-    """
-    n = 1 << (len(a) + len(b)).bit_length()
-    first, second = (np.square(np.abs(np.fft.rfft(x - x.mean(), n))) for x in (a, b))
-    bandwidth = float(first.sum() * second.sum()) / (float(first @ second) or 1.0) / n
-    return 2.0 * bandwidth * min(map(_strong_samples, (a, b))) / 0.9
-
-
-def _strong_samples(values: Samples) -> int:
-    """Return the number of samples in which 5 to 95% of the sum of their squares grow."""
-    energy = np.cumsum(np.square(values))
-    first, last = np.searchsorted(energy, [0.05 * energy[-1], 0.95 * energy[-1]])
-    return int(last - first)
-
-
-def _at_step(component: Component, dt: float) -> Samples:
-    """Return the accelerations at a step ``dt`` [s], as coarse or coarser, without what it cannot show."""
-    a = component.acceleration
-    if abs(component.dt - dt) <= _SAME_STEP * dt:
-        return a
-    spectrum = np.fft.rfft(a)
-    spectrum[np.fft.rfftfreq(len(a), component.dt) > 0.5 / dt] = 0.0
-    times = np.arange(0.0, component.duration + 0.5 * component.dt, dt)
-    return np.interp(times, np.arange(len(a)) * component.dt, np.fft.irfft(spectrum, len(a)))
-
-
-def correlation(first: Samples, second: Samples) -> float:
-    """Return the largest correlation of two series of one step, either way up, over all shifts of one against the other.
-
-    Shifts are by quarters of a step. It is 1 where one of them never moves.
-    """
-    first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
-    n = 1 << (len(first) + len(second) - 1).bit_length()
-    shifted = 4.0 * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), 4 * n)
-    norm = float(np.linalg.norm(first) * np.linalg.norm(second))
-    return float(np.abs(shifted).max()) / norm if norm > 0 else 1.0
-
-
-def _factor(a: Component, b: Component) -> float | None:
-    """Return how many times larger ``a`` is than ``b``, if their samples are the same but for that; ``None`` if not."""
-    first, second = a.acceleration, b.acceleration
-    if len(first) != len(second) or abs(a.dt - b.dt) > _SAME_STEP * a.dt or not second.any():
-        return None
-    factor = float(first @ second) / float(second @ second)
-    if abs(factor - 1.0) <= _NO_FACTOR or np.abs(first - factor * second).max() > _SAME_SHAPE * np.abs(first).max():
-        return None
-    return factor or None
 
 
 def _is_unit(factor: float) -> bool:
@@ -607,7 +155,8 @@ def _is_unit(factor: float) -> bool:
 
 def _reason(copy: Component, used: Component, factor: float | None) -> str:
     """Return why ``copy`` is left out: which other one is used, and what it has that this one does not."""
-    words = "a copy of" if _samples(copy) == _samples(used) else "the same recording as"
+    same = copy.dt == used.dt and np.array_equal(copy.acceleration, used.acceleration)
+    words = "a copy of" if same else "the same recording as"
     if _CORRECTED[used.processed] < _CORRECTED[copy.processed]:
         words = "the same recording, less corrected, as"
     if factor is not None:

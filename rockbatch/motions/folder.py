@@ -21,7 +21,9 @@ from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
-from rockbatch.motions.formats import HEAD, ReadOptions, RecordFile, format_of, read_record, usable
+from rockbatch.motions.formats import format_of, read_record, usable
+from rockbatch.motions.formats.obspy_plugin import HEAD
+from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.leaving_out import LeaveOut, Reading
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable

@@ -5,12 +5,12 @@ from pathlib import PurePosixPath
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.plausible import fits
 from rockbatch.motions.stations import station_of
-from rockbatch.toml.kinds import shown
 
 Reading = Component | Unusable | LeftOut
 

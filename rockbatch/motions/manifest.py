@@ -16,15 +16,16 @@ from typing import Any
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import LAYOUTS, ReadOptions
+from rockbatch.motions.formats.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.sequences import SEQUENCE, ShockSequence, read_sequences
-from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, shown, text
+from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from rockbatch.common.grouping import distinct, grouped
+from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.azimuths import rotated_to
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
@@ -21,7 +22,6 @@ from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
 from rockbatch.motions.plausible import ANY, Judged, doubt, findings, fits
 from rockbatch.motions.stations import by_station, station_names, station_of
-from rockbatch.toml.kinds import shown
 
 _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "

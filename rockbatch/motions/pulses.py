@@ -27,8 +27,7 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions.limits import MOST_SAMPLES
-from rockbatch.motions.motion import Initial, Motion, Samples
+from rockbatch.motions.motion import MOST_SAMPLES, Initial, Motion, Samples
 
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
 
@@ -144,7 +143,7 @@ def _problems(
         if not (math.isfinite(value) and value > 0)
     ]
     if not wrong and duration / dt > MOST_SAMPLES:
-        wrong.append(f"duration = {duration:g}: more than {MOST_SAMPLES:,} samples of {dt:g} s; take a shorter one")
+        wrong.append(f"dt = {dt:g}: more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger one")
     times_are_sound = not wrong
     if not math.isfinite(amplitude) or amplitude == 0:
         wrong.append(f"amplitude = {amplitude:g}: must be a number other than 0 [m/s²]")

@@ -154,15 +154,9 @@ def with_vertical(
 ) -> MotionSet:
     """Return motions whose vertical components have a factor of their own, the same for all components of a station.
 
-    Parameters
-    ----------
-    recorded : mapping
-        The vertical component of each motion before it was scaled, by its name.
-    target : Target or SpectrumTarget, optional
-        What the vertical components are scaled to instead of by the factor of their horizontal ones. As of :func:`at_target` a
-        motion is unusable whose vertical component takes more than :data:`MOST_FACTOR` to meet a spectrum.
-    scale : float
-        A further factor on them.
+    ``recorded`` has the vertical components before they were scaled, by the motions' names. They are scaled to ``target``, if
+    there is one, instead of by the factor of their horizontal ones, and by ``scale`` on top. As of :func:`at_target` a motion is
+    unusable whose vertical component takes more than :data:`MOST_FACTOR` to meet a spectrum.
     """
     if target is None and scale == 1.0:
         return motion_set

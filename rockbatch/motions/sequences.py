@@ -15,13 +15,14 @@ import numpy as np
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.origin import UNKNOWN_ORIGIN
-from rockbatch.toml.kinds import boolean, choice, positive, shown, text
+from rockbatch.toml.kinds import boolean, choice, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual

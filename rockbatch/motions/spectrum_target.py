@@ -164,11 +164,6 @@ class SpectrumTarget:
         return [station_spectra([motions[i] for i in places], periods, self.spectrum.damping)[self.pairs] / gravity
                 for places in members]  # fmt: skip
 
-    def _is_alone(self, station: Sequence[Motion]) -> bool:
-        if self.pairs in DIRECTIONS or self.both:
-            return bool(unpaired(station))
-        return len(station) != 2
-
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
         """Return what to consider about the target of these ``motions``, a sentence each."""
         paired = any(len(station) == 2 for station in _stations(motions))
@@ -177,13 +172,15 @@ class SpectrumTarget:
 
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
         """Return what run.json says of it: the target, and the mean of the spectra of ``motions`` as they are used, 0 of none."""
+        stations = [[motions[i] for i in station] for station in _stations(motions)]
+        in_directions = self.pairs in DIRECTIONS or self.both
         return {
             "spectrum": str(self.spectrum),
             "damping": self.spectrum.damping,
             "range_s": list(self.range_s),
             "factors": self.factors,
             "pairs": self.pairs,
-            "alone": sum(self._is_alone([motions[i] for i in station]) for station in _stations(motions)),
+            "alone": sum(bool(unpaired(s)) if in_directions else len(s) != 2 for s in stations),
             "at_least": self.share,
             "required": self.factors != "none" or self.at_least is not None,
             "remarks": self.remarks(motions),

@@ -1,7 +1,5 @@
 """The report of finished results: one HTML file that needs nothing else. Never loads the compiler."""
 
-import hashlib
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,13 +7,14 @@ from pathlib import Path
 
 from rockbatch.checks import as_table, read_verdicts
 from rockbatch.common.arguments import checked
-from rockbatch.common.files import is_plain, made_folder, read_text, write_output, write_whole
+from rockbatch.common.files import made_folder, write_output, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import pair
 from rockbatch.results.opened import Results, open_results
+from rockbatch.results.run_json import describe_study, is_of
 from rockbatch.simulation.response import Response
 from rockbatch.study import Study
 
@@ -32,25 +31,11 @@ def write_report(
     saved: Results | None = None,
     whole: bool = False,
 ) -> Path:
-    """Write ``report.html`` beside its results.
+    """Write ``report.html`` beside its results, or ``out`` instead; return its path.
 
-    Parameters
-    ----------
-    directory : Path
-        Folder with ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them. Histories, verdicts and the measurement
-        of ``rockbatch accuracy`` are shown if ``histories.h5``, ``checks.csv`` and ``accuracy.csv`` exist.
-    responses : sequence of Response, optional
-        Runs whose histories are shown instead of those in ``histories.h5``.
-    out : Path, optional
-        File to write instead.
-    saved : Results, optional
-        The results, where they were read already.
-    whole : bool, optional
-        Whether sections that are folded are printed, too.
-
-    Returns
-    -------
-    Path of the report. An earlier one is replaced as a whole, or not at all.
+    ``directory`` has ``peaks.csv`` and ``run.json``, as ``rockbatch run`` leaves them, ``saved`` if they were read already.
+    Histories, those of ``responses`` in place of ``histories.h5``, verdicts and the measurement of ``rockbatch accuracy`` are
+    shown if they exist. With ``whole`` folded sections are printed, too. An earlier report is replaced as a whole, or not at all.
 
     Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
@@ -77,21 +62,12 @@ def write_analyses(directory: Path, study: Study) -> Path:
 
     Otherwise they get a page of their own, ``analyses.html``.
     """
-    sha256 = hashlib.sha256(study.text.encode()).hexdigest()
-    if _holds_results(directory, sha256):
+    description = describe_study(study)
+    if is_of(directory, description["sha256"]):
         return write_report(directory)
     target = directory / "analyses.html"
-    description = {"title": study.title, "notes": study.notes, "text": study.text, "sha256": sha256}
     write_whole(target, page(Contents(directory, description)))
     return target
-
-
-def _holds_results(directory: Path, sha256: str) -> bool:
-    try:
-        info = json.loads(read_text(directory / "run.json"))
-        return bool(info["study"]["sha256"] == sha256) and is_plain(directory / "peaks.csv")
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,10 +1,10 @@
 """Results of a command other than ``rockbatch run`` in a folder: NAME.json and its tables."""
 
+import functools
 import hashlib
 import json
 import warnings
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.common.files import read_table, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.labels import counted
-from rockbatch.reporting.markup import Markup, tag
+from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labels import quantity
 
 MOST_NAMES = 60
@@ -105,22 +105,45 @@ def _warn_edited(path: Path) -> None:
     warnings.warn(message, EditedTable, stacklevel=3)
 
 
-@contextmanager
-def of_files(name: str) -> Iterator[None]:
-    """Raise ``InputError`` if NAME.json and its tables, of which a section is drawn, do not fit each other; a decorator, too.
+def of_analysis(
+    name: str, **tables: Collection[str]
+) -> Callable[[Callable[..., Markup]], Callable[[Contents], Markup]]:
+    """Have a section drawn of the analysis ``name`` and these ``tables`` of it, by their columns; empty without one of them.
 
-    Numbers of which a picture cannot be made, since arithmetic on them overflows, do not fit either.
+    It raises ``InputError`` if NAME.json and its tables do not fit each other. Numbers of which a picture cannot be made, since
+    arithmetic on them overflows, do not fit either.
     """
-    try:
-        with np.errstate(divide="raise", over="raise", invalid="raise"):
-            yield
-    except InputError:
-        raise
-    except _DAMAGE as error:
-        reason = f"{type(error).__name__}: {error}"
-        raise InputError(
-            f"{name}.json and its tables do not fit each other, or are damaged ({reason}); start `rockbatch {name}` again"
-        ) from error
+
+    def section_of(drawn: Callable[..., Markup]) -> Callable[[Contents], Markup]:
+        @functools.wraps(drawn)
+        def section(contents: Contents) -> Markup:
+            try:
+                analysis = contents.analysis(name)
+                found = [analysis and analysis.table(f"{table}.csv", columns) for table, columns in tables.items()]
+                if analysis is None or any(table is None for table in found):
+                    return Markup("")
+                with np.errstate(divide="raise", over="raise", invalid="raise"):
+                    return drawn(analysis, *found)
+            except InputError:
+                raise
+            except _DAMAGE as error:
+                fault = f"do not fit each other, or are damaged ({type(error).__name__}: {error})"
+                raise InputError(f"{name}.json and its tables {fault}; start `rockbatch {name}` again") from error
+
+        return section
+
+    return section_of
+
+
+def answered(*paragraphs: str, remarks: Iterable[str] = ()) -> Markup:
+    """Return the paragraphs that answer what was analysed, and a line below for each remark on them."""
+    lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)
+    return join(*(tag("p", paragraph, class_="lead") for paragraph in paragraphs), *lines)
+
+
+def sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
+    """Return a sentence with what leaves it open at its end, marked."""
+    return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
 
 
 def named(values: Mapping[str, Any], shown: Sequence[str]) -> str:

@@ -68,7 +68,8 @@ def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
     except (InputError, TypeError, ValueError):
         return None
     # How the mass is spread, which a shaft that bends needs, is not in run.json
-    return None if problems(pier, replace(base, shaft="rigid") if base.bends else base) else base
+    rigid = replace(base, shaft="rigid") if isinstance(base, RigidBase) else base
+    return None if problems(pier, rigid) else base
 
 
 def in_words(pier: Pier, restraint: Restraint) -> str:

@@ -124,21 +124,18 @@ class Entry(NamedTuple):
 
 def key(legend: Sequence[Entry]) -> Markup:
     """Return the legend of what each entry stands for; empty without entries."""
-    entries = [
-        tag("li", _sample(one.marks), tag("span", one.words), data_of=one.kind or None, data_value=one.value or None)
-        for one in legend
-    ]
+    entries = []
+    for one in legend:
+        drawn = map(_in_key, sorted(one.marks, key=lambda mark: isinstance(mark, Points)))
+        sample = tag("svg", *drawn, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
+        shown = {"data_of": one.kind or None, "data_value": one.value or None}
+        entries.append(tag("li", sample, tag("span", one.words), **shown))
     return tag("ul", *entries, class_="key") if entries else Markup("")
 
 
 def key_of(figure: Figure) -> Markup:
     """Return the legend of a figure; empty without entries."""
     return key([*starmap(Entry, figure.legend.items())])
-
-
-def _sample(marks: Sequence[Mark]) -> Markup:
-    shown = [_in_key(mark) for mark in sorted(marks, key=lambda mark: isinstance(mark, Points))]
-    return tag("svg", *shown, class_="plot", viewBox="0 0 22 14", width=22, height=14, aria_hidden="true")
 
 
 def _in_key(mark: Mark) -> Markup:
@@ -430,8 +427,8 @@ def _relative(x: Array, y: Array) -> str:
             continue
         points = np.rint(FINE * np.column_stack([x[piece], y[piece]])).astype(np.int64)
         points = points[_bends(points)]
-        steps = np.diff(points, axis=0)
-        parts.append(f"M{points[0, 0]} {points[0, 1]}" + (f"l{_compact(steps.ravel())}" if len(steps) else "h0"))
+        steps = " ".join(map(str, np.diff(points, axis=0).ravel())).replace(" -", "-")
+        parts.append(f"M{points[0, 0]} {points[0, 1]}" + (f"l{steps}" if steps else "h0"))
     return "".join(parts)
 
 
@@ -462,7 +459,3 @@ def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         inner = inner[np.repeat(largest > 1.0, count)]
         inner = inner[~kept[inner]]
     return places[kept]
-
-
-def _compact(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
-    return " ".join(map(str, numbers)).replace(" -", "-")

@@ -2,22 +2,22 @@
 
 import csv
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.common.files import csv_text, opened_text, replacing, write_whole
+from rockbatch.common.errors import InputError
+from rockbatch.common.files import csv_text, opened_text, read_table, replacing, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.quantities.catalogue import TEXTS
 from rockbatch.results.columns import PEAKS
-from rockbatch.results.rows import simulated, with_case
+from rockbatch.results.rows import as_in_peaks, simulated, with_case
 from rockbatch.study import Study
 
 NAMING = ("record", "case", "polarity", "scale")
 """Columns that name a run, with those of the varied keys."""
-
 
 SEMICOLONS = "peaks_semicolon.csv"
 """peaks.csv as spreadsheets open it where numbers have a decimal comma."""
@@ -57,6 +57,22 @@ def write(path: Path, table: Iterable[Mapping[str, Any]]) -> Path:
     return path
 
 
+def read_beside(
+    path: Path, varied: Sequence[str], columns: Iterable[str], texts: Collection[str] = ()
+) -> "pd.DataFrame":
+    """Return such a table of a study that varies these keys; its ``columns``, but for ``texts``, are numbers.
+
+    Raises ``InputError`` if it is not as it was written.
+    """
+    table = read_table(path)
+    wrong = [f"column {name} is missing" for name in (*NAMING, *varied, *columns) if name not in table]
+    numbers = [name for name in columns if name in table and name not in texts]
+    wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
+    if wrong:
+        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
+    return table
+
+
 def write_semicolons(directory: Path) -> Path:
     """Write peaks.csv again with semicolons between cells and decimal commas.
 
@@ -85,11 +101,5 @@ def _comma(cell: str) -> str:
 
 
 def case_key(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> tuple[object, ...]:
-    """Return the key that distinguishes a case; numbers with the ten digits of peaks.csv."""
-    return (case, *(_plain(columns.get(name)) for name in varied))
-
-
-def _plain(value: object) -> object:
-    if value is None or value != value:
-        return ""
-    return float(f"{value:.10g}") if isinstance(value, float | int) else value
+    """Return the key that distinguishes a case."""
+    return (case, *(as_in_peaks(columns.get(name)) for name in varied))

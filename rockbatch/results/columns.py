@@ -104,6 +104,21 @@ def as_table(rows: Iterable[Mapping[str, Any]], study: Study) -> "pd.DataFrame":
     return _typed(pd.DataFrame(list(rows), columns=columns(study)), study.varied)
 
 
+def read_cells(cells: Mapping[str, str]) -> dict[str, Any]:
+    """Return the cells of a row as numbers if they are numbers, None if empty."""
+    return {
+        name: text if name in TEXTS else None if text == "" else int(text) if name in COUNTS else _number(text)
+        for name, text in cells.items()
+    }
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:  # a varied key such as kinematics
+        return text
+
+
 def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     """Return a row on its own, as it stands in a table, with those columns on request that it has."""
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]

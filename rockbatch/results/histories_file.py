@@ -21,6 +21,7 @@ what follows: HDF5 may take the process with it on a damaged file.
 import hashlib
 import io
 import json
+import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -35,7 +36,19 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
-from rockbatch.pier import Base, ElasticBase, Part, Pier, RigidBase, YieldingBase, restraint_of
+from rockbatch.pier import (
+    Base,
+    ElasticBase,
+    Part,
+    Pier,
+    RigidBase,
+    YieldingBase,
+    places,
+    restraint_of,
+    vertical_frequency,
+)
+from rockbatch.quantities.demands import FORCES
+from rockbatch.results.columns import StudyRun
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
 from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
@@ -79,6 +92,15 @@ def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
     """Return the columns of a history that have numbers, of a pier on ``base`` whose shaft ``bends`` or not."""
     return [name for name in UNITS if (base.on_springs or name not in OF_SPRINGS) and (bends or name != "deflection")]
 
+
+LEDGER = "energy_input_J_kg"
+"""A column of every run with an energy ledger."""
+
+BYTES_OF_A_DATASET = 2500.0
+"""Bytes of a dataset in HDF5 beside its numbers, with its share of the groups."""
+
+BYTES_OF_AN_EVENT = 56.0
+"""In the table of events: three numbers and two words."""
 
 _EVENTS = {"t": "f", "kind": "S", "pivot": "S", "before": "i", "after": "i"}
 _IMPACTS = {"t": "f", "pivot": "S"} | dict.fromkeys(IMPACT_UNITS, "f")
@@ -330,3 +352,27 @@ def _run(group: "h5py.Group") -> dict[str, Any]:
         if not isinstance(value, float if name == "scale" else str):
             raise ValueError(f"the attribute {name} is missing, or of another kind")
     return names
+
+
+def history_bytes(run: StudyRun, row: "Mapping[str, Any] | pd.Series") -> float:
+    """Return the bytes that the history of a run takes on disk, up to a third too many: eight for each number of each sample
+    and side of an event.
+    """
+    pier, base = run.case.pier, run.case.base
+    columns = len(columns_of(base, base.bends))
+    columns += 2 * sum(len(places(pier, device)) for device in base.restraints)  # elongations and forces
+    if has_value(row, LEDGER):
+        columns += len(TERMS)
+    if has_value(row, FORCES):
+        columns += len(FORCE_UNITS)
+    # springs that yield in every cycle change their branch, both of them, twice a period of the vibration
+    reversals = 2.0 * vertical_frequency(pier, base) / math.pi if base.ratchets else 0.0  # a second
+    events = row["impacts"] + row["separations"] + reversals * row["t_end_s"]
+    rows = row["t_end_s"] / run.record.dt + 2.0 * events
+    return columns * (BYTES_OF_A_DATASET + 8.0 * rows) + BYTES_OF_AN_EVENT * events
+
+
+def has_value(row: "Mapping[str, Any] | pd.Series", column: str) -> bool:
+    """Return whether the row has a number there: it was requested, and the run is not very long."""
+    value = row.get(column)
+    return value is not None and value == value

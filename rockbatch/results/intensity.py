@@ -100,11 +100,6 @@ class Order(NamedTuple):
     dispersion: float
 
 
-def measures_of(table: "pd.DataFrame") -> list[str]:
-    """Return the columns of intensity.csv that are measures."""
-    return [str(name) for name in table if name in MEANING or str(name).startswith("sa_")]
-
-
 def order_of(measure: Array, theta: Array, status: Sequence[str]) -> Order:
     """Return how well ``measure`` orders ``theta``, shape (n,), of runs with that ``status``; failed ones do not count."""
     kinds = np.asarray(status, dtype=object)
@@ -155,6 +150,7 @@ def orders(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
             )._asdict(),
         }
         for key, group in table.groupby(keys, sort=False, dropna=False)
-        for name in measures_of(table)
+        for name in map(str, table)
+        if name in MEANING or name.startswith("sa_")
     ]
     return pd.DataFrame(rows, columns=[*keys, "measure", *Order._fields])

@@ -13,7 +13,7 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity
-from rockbatch.results.rows import simulated, with_case
+from rockbatch.results.rows import as_in_peaks, simulated, with_case
 from rockbatch.study import PIER_KEYS
 
 
@@ -159,7 +159,7 @@ def as_dicts(runs: "pd.DataFrame") -> list[dict[str, Any]]:
 
 def foundation(case: str, columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
     """Return the key that identifies a foundation; ``columns`` maps varied keys to values."""
-    return (case, *(_plain(columns.get(key)) for key in varied if _of_foundation(key)))
+    return (case, *(as_in_peaks(columns.get(key)) for key in varied if _of_foundation(key)))
 
 
 def _of_foundation(key: str) -> bool:
@@ -168,14 +168,7 @@ def _of_foundation(key: str) -> bool:
 
 def pier_of(columns: Mapping[str, Any], varied: Sequence[str]) -> Key:
     """Return the key that identifies a pier; ``columns`` maps varied keys to values."""
-    return tuple(_plain(columns.get(key)) for key in varied if key in PIER_KEYS)
-
-
-def _plain(value: object) -> object:
-    """Return a value as in peaks.csv: ten digits, and "" for a key that run.json omits."""
-    if value is None or value != value:
-        return ""
-    return float(f"{value:.10g}") if isinstance(value, float | int) else value
+    return tuple(as_in_peaks(columns.get(key)) for key in varied if key in PIER_KEYS)
 
 
 def _with_vertical(runs: "pd.DataFrame") -> "pd.Series[str] | str":

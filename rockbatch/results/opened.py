@@ -12,7 +12,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
-from rockbatch.common.showing import Shown, several
+from rockbatch.common.showing import Shown, several, shown
 from rockbatch.quantities.catalogue import in_words
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
@@ -22,7 +22,6 @@ from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.sections import SECTIONS, read_sections
 from rockbatch.results.shocks import SHOCKS, read_shocks
 from rockbatch.simulation.response import Response
-from rockbatch.toml.kinds import shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +42,7 @@ class Results(Shown, Saved):
     @cached_property
     def intensity(self) -> "pd.DataFrame":
         """``intensity.csv``: measures of each run's motion, where the study asks for them ([output] intensity = true)."""
-        return self._beside(INTENSITY, "intensity")
+        return read_table(self._beside(INTENSITY, "[output] intensity = true"))
 
     @cached_property
     def intensity_order(self) -> "pd.DataFrame":
@@ -54,22 +53,12 @@ class Results(Shown, Saved):
     @cached_property
     def shocks(self) -> "pd.DataFrame":
         """``shocks.csv``: what each shock does, where some motions are sequences ([[motions.sequence]])."""
-        path = self.directory / SHOCKS
-        if not path.exists():
-            raise InputError(
-                f"{path}: not there; write a [[motions.sequence]] in the study, and start `rockbatch run` again"
-            )
-        return read_shocks(path, self.info["varied"])
+        return read_shocks(self._beside(SHOCKS, "a [[motions.sequence]]"), self.info["varied"])
 
     @cached_property
     def sections(self) -> "pd.DataFrame":
         """``sections.csv``: forces in sections of the shaft, where the study asks for them ([output] sections = 5)."""
-        path = self.directory / SECTIONS
-        if not path.exists():
-            raise InputError(
-                f"{path}: not there; write [output] sections = 5 in the study, and start `rockbatch run` again"
-            )
-        return read_sections(path, self.info["varied"])
+        return read_sections(self._beside(SECTIONS, "[output] sections = 5"), self.info["varied"])
 
     def plot_cdf(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
         """Draw the distribution of θ_max/α over the records, a panel for each pier and scale, a curve for each case: a matplotlib
@@ -84,13 +73,11 @@ class Results(Shown, Saved):
 
         return drawn(distributions_of_all(self._labelled, str(self.info.get("count", "station"))), width_mm, ax)
 
-    def _beside(self, name: str, key: str) -> "pd.DataFrame":
+    def _beside(self, name: str, key: str) -> Path:
         path = self.directory / name
         if not path.exists():
-            raise InputError(
-                f"{path}: not there; write [output] {key} = true in the study, and start `rockbatch run` again"
-            )
-        return read_table(path)
+            raise InputError(f"{path}: not there; write {key} in the study, and start `rockbatch run` again")
+        return path
 
     def response(self, record: str | None = None, case: str | None = None, **more: float | str) -> Response:
         """Return the response of one run.

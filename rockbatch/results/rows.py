@@ -23,6 +23,13 @@ def simulated(runs: "pd.DataFrame") -> "pd.DataFrame":
     return runs[runs[MIRROR_OF] == ""] if MIRROR_OF in runs else runs
 
 
+def as_in_peaks(value: object) -> object:
+    """Return a value as in peaks.csv: ten digits, and "" for a key that run.json omits."""
+    if value is None or value != value:
+        return ""
+    return float(f"{value:.10g}") if isinstance(value, float | int) else value
+
+
 def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case, pd.DataFrame]]":
     """Yield every case with its rows of peaks.csv."""
     return ((case, runs.iloc[rows]) for case, rows in rows_of_cases(runs, list(cases)))

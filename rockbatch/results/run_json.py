@@ -3,12 +3,12 @@
 import hashlib
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.files import replacing
+from rockbatch.common.files import is_plain, read_text, replacing
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Motion
@@ -16,7 +16,7 @@ from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Damper, DeckSpring, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
-from rockbatch.results.columns import units
+from rockbatch.results.columns import PEAKS, units
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
 
@@ -123,14 +123,8 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
     with_pulses = target is not None or study.output.intensity
     labels = motions.labels
     return {
-        "study": {
-            "path": str(study.path),
-            "title": study.title,
-            "notes": study.notes,
-            "text": study.text,
-            "sha256": hashlib.sha256(study.text.encode()).hexdigest(),
-            "checks": [{"path": str(path), "text": text} for path, text in study.check_files],
-        },
+        "study": describe_study(study)
+        | {"checks": [{"path": str(path), "text": text} for path, text in study.check_files]},
         "numerics": asdict(study.numerics),
         "varied": list(study.varied),
         "count": study.count,
@@ -145,6 +139,24 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [asdict(reference) for reference in study.references],
     }
+
+
+def describe_study(study: Study) -> dict[str, str]:
+    """Return the name and the text of a study, with its digest, by which results are known as its own."""
+    sha256 = hashlib.sha256(study.text.encode()).hexdigest()
+    named = {"path": str(study.path), "title": study.title, "notes": study.notes}
+    return named | {"text": study.text, "sha256": sha256}
+
+
+def is_of(directory: Path, sha256: str, records: Sequence[str] | None = None) -> bool:
+    """Return whether a folder holds results of the study with this digest, and of these ``records`` if they are given."""
+    try:
+        info = json.loads(read_text(directory / INFO))
+        alike = records is None or [record["record"] for record in info["records"]] == records
+        is_same = bool(info["study"]["sha256"] == sha256 and alike)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return False
+    return is_same and is_plain(directory / PEAKS)
 
 
 def _is_pulse(motion: Motion, study: Study) -> bool:

@@ -4,10 +4,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.errors import InputError
-from rockbatch.common.files import read_table
 from rockbatch.common.lazy import pd
 from rockbatch.pier import Pier
+from rockbatch.results.beside_peaks import read_beside
 from rockbatch.simulation.outcome import Section
 
 SECTIONS = "sections.csv"
@@ -46,17 +45,7 @@ def as_table(rows: Iterable[dict[str, Any]]) -> "pd.DataFrame":
 
 def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
-    table = read_table(path)
-    names = ("record", "case", "polarity", "scale", *varied)
-    wrong = [f"column {name} is missing" for name in (*names, *MEANING) if name not in table]
-    wrong += [
-        f"column {name} has texts"
-        for name in MEANING
-        if name in table and not pd.api.types.is_numeric_dtype(table[name])
-    ]
-    if wrong:
-        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
-    return table.astype(dict.fromkeys(MEANING, "float64"))
+    return read_beside(path, varied, MEANING).astype(dict.fromkeys(MEANING, "float64"))
 
 
 def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
@@ -71,9 +60,3 @@ def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:
         heads[name] = f"{symbol}{'/M' if over_mass else ''} [{unit}]"
         columns[name] = f"section_{name}_{ending}"
     return heads, columns
-
-
-def as_markdown() -> str:
-    """Return the table of docs/columns.md."""
-    lines = ["| column | meaning |", "| --- | --- |"]
-    return "\n".join([*lines, *(f"| {name} | {meaning} |" for name, meaning in MEANING.items())]) + "\n"

@@ -4,11 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.errors import InputError
-from rockbatch.common.files import read_table
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
+from rockbatch.results.beside_peaks import read_beside
 from rockbatch.simulation.outcome import ShockOutcome
 
 SHOCKS = "shocks.csv"
@@ -54,11 +53,4 @@ def as_table(rows: Iterable[Mapping[str, Any]]) -> "pd.DataFrame":
 
 def read_shocks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
-    table = read_table(path)
-    names = ("record", "case", "polarity", "scale", *varied)
-    wrong = [f"column {name} is missing" for name in (*names, *MEANING) if name not in table]
-    numbers = [name for name in MEANING if name in table and name not in TEXTS]
-    wrong += [f"column {name} has texts" for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
-    if wrong:
-        raise InputError(f"{path}: {wrong[0]}; it was changed since: start `rockbatch run` again")
-    return table
+    return read_beside(path, varied, MEANING, TEXTS)

@@ -130,11 +130,8 @@ def distribution(
 ) -> tuple[Values, Values]:
     """Return the empirical distribution of the magnitudes of ``values``, shape (n,), over their :func:`records`.
 
-    Returns
-    -------
-    values, share : ndarray, shape (standing,)
-        The value of each record that stood, in order, and the share of all records with an outcome that do not exceed it:
-        those under which the pier overturned, or that were ended by flight, exceed all of them.
+    That is the value of each record that stood, in order, and the share of all records with an outcome that do not exceed it:
+    those under which the pier overturned, or that were ended by flight, exceed all of them.
     """
     data = records(values, status, counted_as)
     worst = np.sort(data.worst[data.known])

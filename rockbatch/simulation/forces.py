@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import WOULD_SLIDE
 from rockbatch.core import types
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
@@ -16,7 +17,7 @@ from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier, RigidBase, YieldingBase, shape_at
 from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
-from rockbatch.simulation.outcome import WOULD_SLIDE, PeakForces
+from rockbatch.simulation.outcome import PeakForces
 from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run

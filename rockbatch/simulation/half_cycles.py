@@ -49,15 +49,10 @@ class Path(NamedTuple):
 
 
 def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
-    """Return the half cycles of a run.
+    """Return the half cycles of a run, whose ``path`` has both sides of every event.
 
-    Parameters
-    ----------
-    path : Path
-        Rows of the run, with both sides of every event.
-    landed : ndarray of int, shape (k,), or None
-        Rows after impacts, those before being the ones before these. None on springs, where the pier lands before it is upright,
-        and each passage through θ = 0 counts instead.
+    ``landed``, shape (k,), are the rows after impacts, those before being the ones before these; None on springs, where the pier
+    lands before it is upright, and each passage through θ = 0 counts instead.
     """
     if landed is None:
         before, after, t, omega = _through_upright(path)

@@ -5,20 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-WOULD_SLIDE = "would slide"
-"""Words of a note on a run whose friction demand is greater than what the interface has."""
-
-RATCHETS = "the pier leans further and further"
-"""Words of the reason of a run that failed because its springs ratchet on vibration after the motion."""
-
-LINEARISED = "linearised kinematics"
-"""Words of a note on a run whose rotations are too large for them."""
-
 RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
 """A note on a run whose greatest rotation says nothing that was not given."""
-
-LEANS = "lean"
-"""Kind of a greatest rotation at which the pier hardly rocks, on a base that has yielded."""
 
 
 TERMS = (

@@ -137,14 +137,8 @@ def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states
     """Return the rotation [rad] at which the pier comes to rest on its supports after a run with this ``result``.
 
     Static, small, both pivots on their springs; devices give way elastically from their state at its end, and a friction
-    damper that does not move stays where it is.
-
-    Parameters
-    ----------
-    level : float
-        v of the pier at rest at the start [m].
-    states, sticks : ndarray, shape (devices,)
-        State of each device at the end, and whether it is a friction damper that does not move then.
+    damper that does not move stays where it is. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
+    shape (devices,), are the state of each device at the end, and whether it is a friction damper that does not move then.
     """
     m, v, theta = springs(pier, base), result.v_end, result.theta_end
     k, b, h = m.yield_force * m.stiffness, m.half_width, m.height

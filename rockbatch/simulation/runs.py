@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.notes import LINEARISED, RATCHETS
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.laws import STICKS, Element
@@ -41,7 +42,7 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import LINEARISED, RATCHETS, RELEASED, Outcome
+from rockbatch.simulation.outcome import RELEASED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 
@@ -358,16 +359,8 @@ def cause_of_flight(
 ) -> str:
     """Return why a pier flies at ``t_flight`` [s], and what to do, in words.
 
-    Parameters
-    ----------
-    omega_v : float or None
-        Circular frequency of the vertical vibration [rad/s]; ``None`` on a rigid base.
-    gravity : float
-        g [m/s²].
-    t_impact : float
-        Time of the last impact before [s]; NaN without one.
-    zeta : float
-        Damping of the vertical vibration, as a share of critical.
+    ``omega_v`` [rad/s] and ``zeta`` are of the vertical vibration, None on a rigid base and as a share of critical; the last
+    impact before was at ``t_impact`` [s], NaN without one.
     """
     opening = f"both pivots left the ground at {t_flight:.3f} s: "
     peak, down = 0.0, 0.0

@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.cases import CASE
 from rockbatch.study.load import Study
@@ -19,7 +20,7 @@ from rockbatch.study.restraint_inputs import (
 )
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import Kind, shown
+from rockbatch.toml.kinds import Kind
 from rockbatch.toml.section import Key
 
 OF_PIER = ("alpha", "p", "mu")

@@ -13,7 +13,7 @@ from typing import Any
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.showing import Shown, several
+from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
@@ -33,7 +33,7 @@ from rockbatch.study.rules import CHECK, Rule
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import Number, Whole, boolean, choice, count, not_negative, positive, shown, text, within
+from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
@@ -78,8 +78,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
         "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
     "rocking": Key(boolean, "true",
         "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more."),
-    "least_normal_share": Key(
-        Number("a number above 0 and below 1, a share of the weight", low=0.0, high=1.0, above=True, below=True), "0.1",
+    "least_normal_share": Key(share, "0.1",
         "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
         "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
     "both_laws": Key(boolean, "true",
@@ -294,9 +293,9 @@ def load_study(path: str | os.PathLike[str], *, motions: Motions = None) -> Stud
 
 
 def _checked(file: TomlFile, motions: Motions) -> Study:
-    top = Table(file, (), "", file.data).read(
-        TOP, other=dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *_tables_of_analyses()))
-    )
+    of_analyses = (name for door in doors().values() for name in door.tables)  # read by their own commands
+    others = dict.fromkeys((*(section.at[0] for section in SECTIONS[1:]), *of_analyses))
+    top = Table(file, (), "", file.data).read(TOP, other=others)
     motion_spec = read_motions_table(file, as_source(motions))
     numerics = _numerics(file)
     piers, varied_pier = read_piers(file)
@@ -339,12 +338,6 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         check_files=() if checks.file is None else ((checks.file.path, checks.file.text),),
         lined=bool(file.lines),
     )
-
-
-def _tables_of_analyses() -> Iterator[str]:
-    """Yield the names of tables that analyses read, by their own commands."""
-    for door in doors().values():
-        yield from door.tables
 
 
 def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) -> Study:

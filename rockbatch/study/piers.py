@@ -49,8 +49,8 @@ PIER = Section(("pier",), (
         "Height above the pivots at which drift is read; default: the highest known point.", many=True,
         usual=_HEIGHT),
     "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
-        "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period of rocking, to see "
-        "whether the pier is rigid; runs take it as rigid unless a case says `shaft = \"elastic\"`.", many=True,
+        "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period of rocking, to "
+        "see whether the pier is rigid; runs take it as rigid unless a case says `shaft = \"elastic\"`.", many=True,
         usual=Usual(10.0, "s: bridge piers have 0.1 to 3", 0.02)),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
         "Number of equal columns of a rocking frame under one deck that rests on their tops, on a rigid base only. A bent whose "

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from rockbatch.common.showing import shown
 from rockbatch.pier import Damper, Pier, Restraint, fields_of
 from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import shown
 
 IN_KILONEWTONS = {"stiffness_kN_m": "beta", "yield_kN": "eta"}
 """Inputs that a pier of known mass turns into ratios, and which."""

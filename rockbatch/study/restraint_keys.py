@@ -1,4 +1,4 @@
-"""Devices of a case: [[case.damper]], [case.tendon] or [[case.tendon]], and [[case.stop]]."""
+"""Devices of a case: [[case.damper]], [[case.tendon]], [[case.stop]] and [[case.deck_spring]]."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,14 +20,9 @@ _OR_DECK = Choice(
     ("left", "right", "deck"), '"left", "right", "deck" or an offset from the middle of the base in m', number, _MIDDLE
 )
 _ALSO_AT = names({"at": "location position place offset x eccentricity where"})
-_ALSO_SPRING = _ALSO_AT | names(
-    {
-        "stiffness_kN_m": "k",
-        "lambda": "lamda",
-        "gap_mm": "clearance distance",
-        "restitution": "cor e coefficientofrestitution",
-    }
-)
+_ALSO_SPRING = _ALSO_AT | names({
+    "stiffness_kN_m": "k", "lambda": "lamda", "gap_mm": "clearance distance", "restitution": "cor e coefficientofrestitution",
+})  # fmt: skip
 _ONE_EACH = names({"write a table for each": "number quantity count"})
 _KINDS = names({
     "viscous": "dashpot fluid fluidviscous fvd oil linearviscous nonlinearviscous", "friction": "coulomb sliding frictional",
@@ -35,6 +30,15 @@ _KINDS = names({
 })  # fmt: skip
 _FORCE, _VISCOUS = {"kind": ("friction", "hysteretic")}, {"kind": ("viscous",)}
 _ON_BRACE = {"kind": ("viscous", "hysteretic")}
+
+
+def _either(key: str, ratio: str) -> Clash:
+    return Clash((key, ratio), f"{key} and {ratio} are given, which fix the same; keep one", at=ratio)
+
+
+_OR_LAMBDA = _either("stiffness_kN_m", "lambda")
+_RESTITUTION = Key(within(BOUNDS["restitution"]), "0.6",
+    "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True)  # fmt: skip
 
 DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. Write one for each.", {
     "kind": Key(choice(*DAMPERS, called=_KINDS), '"friction"',
@@ -66,9 +70,7 @@ DAMPER = Section(("case", "damper"), "A damper between the pier and the ground. 
     "write coefficient_kN_s_m, or nu = C/(M p)": "zeta xi dampingratio",
     "write force_kN, friction times the normal force, or f, that force over the weight": "mu friction",
 }), clashes=(
-    Clash(("force_kN", "f"), "force_kN and f are given, which fix the same; keep one", at="f"),
-    Clash(("coefficient_kN_s_m", "nu"), "coefficient_kN_s_m and nu are given, which fix the same; keep one", at="nu"),
-    Clash(("brace_kN_m", "brace"), "brace_kN_m and brace are given, which fix the same; keep one", at="brace"),
+    _either("force_kN", "f"), _either("coefficient_kN_s_m", "nu"), _either("brace_kN_m", "brace"),
 ))  # fmt: skip
 TENDON = Section(
     ("case", "tendon"), "An unbonded tendon between the pier and the ground, which takes tension only.", {
@@ -89,22 +91,18 @@ TENDON = Section(
     "write stiffness_kN_m, E A over the length": "area modulus e length",
     "write prestress_kN, the stress times the area": "prestressmpa stressmpa stress",
 }), clashes=(
-    Clash(("prestress_kN", "psi"), "prestress_kN and psi are given, which fix the same; keep one", at="psi"),
-    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
+    _either("prestress_kN", "psi"), _OR_LAMBDA,
 ))  # fmt: skip
 STOP = Section(
     ("case", "stop"), "A stop that limits how far the base lifts: a spring that is met when its place has risen by a gap.", {
     "gap_mm": Key(not_negative, "100.0", "Uplift of its position at contact.", required=True, many=True),
     "stiffness_kN_m": Key(positive, "5.0e5", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
     "lambda": Key(not_negative, "20.0", "Stiffness as λ = k b²/(M g R0).", many=True),
-    "restitution": Key(within(BOUNDS["restitution"]), "0.6",
-        "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True),
+    "restitution": _RESTITUTION,
     "at": Key(_PLACE, '"left"',
         "Where it is: a pivot, or an offset [m] from the middle of the base; one at each pivot if it is not given."),
     **CONFIRM,
-}, many=True, single=True, homes=(Stop,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(
-    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
-))  # fmt: skip
+}, many=True, single=True, homes=(Stop,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(_OR_LAMBDA,))  # fmt: skip
 DECK_SPRING = Section(
     ("case", "deck_spring"),
     "A horizontal spring between the deck and an abutment or a neighbouring span, which go with the ground; a damper there is a "
@@ -112,14 +110,11 @@ DECK_SPRING = Section(
     "stiffness_kN_m": Key(positive, "5.0e4", "Its stiffness k, if the mass is given; or give `lambda`.", many=True),
     "lambda": Key(not_negative, "0.2", "Stiffness as λ = k b²/(M g R0).", many=True),
     "gap_mm": Key(not_negative, "50.0", "Displacement of the deck at contact.", many=True),
-    "restitution": Key(within(BOUNDS["restitution"]), "0.6",
-        "Restitution: speed of a mass after a blow over that before, by this device alone.", many=True),
+    "restitution": _RESTITUTION,
     "side": Key(choice("both", "left", "right"), '"right"', "To which side the deck moves when it is met."),
     "height_m": Key(positive, "31.5", "Height above the pivots at which it acts; that of the deck if it is not given."),
     **CONFIRM,
-}, many=True, single=True, homes=(DeckSpring,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(
-    Clash(("stiffness_kN_m", "lambda"), "stiffness_kN_m and lambda are given, which fix the same; keep one", at="lambda"),
-))  # fmt: skip
+}, many=True, single=True, homes=(DeckSpring,), also=_ALSO_SPRING, instead=_ONE_EACH, clashes=(_OR_LAMBDA,))  # fmt: skip
 DEVICES: dict[str, Section] = {"damper": DAMPER, "tendon": TENDON, "stop": STOP, "deck_spring": DECK_SPRING}
 """Tables of a case's devices, by their names."""
 

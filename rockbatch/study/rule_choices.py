@@ -6,10 +6,10 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.rules import Rule
-from rockbatch.toml.kinds import shown
 from rockbatch.toml.meant import in_another_unit
 
 FAR = 100.0

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.study.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, Rule
-from rockbatch.toml.kinds import choice, shown, text
+from rockbatch.toml.kinds import choice, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
@@ -64,13 +65,8 @@ def read_checks(
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 
-    Parameters
-    ----------
-    file : TomlFile
-    unmet : function, optional
-        Returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does.
-    opened : function, optional
-        Opens the file that [suite] names, or raises ``InputError``.
+    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does; ``opened``
+    opens the file that [suite] names, or raises ``InputError``.
     """
     suite = file.table("suite")
     read = {} if suite is None else suite.read(SUITE)

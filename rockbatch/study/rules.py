@@ -5,20 +5,10 @@ from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.toml.kinds import (
-    Choice,
-    KindError,
-    boolean,
-    choice,
-    count,
-    not_negative,
-    number,
-    positive,
-    shown,
-    text,
-)
+from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section
 

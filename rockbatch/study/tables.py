@@ -10,7 +10,7 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.toml.kinds import shown
+from rockbatch.common.showing import shown
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _DEEPEST = 32

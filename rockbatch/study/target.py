@@ -6,6 +6,7 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.motions.design_spectra import (
     EUROCODE,
     NZS_1170_5,
@@ -22,7 +23,7 @@ from rockbatch.motions.design_spectra import (
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
-from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, shown, text
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Key, Section, Usual

@@ -8,7 +8,8 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
-from rockbatch.toml.kinds import Kind, KindError, Text, shown
+from rockbatch.common.showing import shown
+from rockbatch.toml.kinds import Kind, KindError, Text
 from rockbatch.toml.reader import TomlFile
 
 MOST_ROWS = 100_000

@@ -1,13 +1,12 @@
 """Kinds of values: each returns a value as the program uses it, says what it expects, and gives its JSON schema."""
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import islice
 from typing import Any, Protocol
 
 from rockbatch.common.files import legible
+from rockbatch.common.showing import shown
 from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
 from rockbatch.toml.meant import plain, words_meant
 
@@ -224,24 +223,7 @@ number = Number()
 positive = Number("a number above 0", low=0.0, above=True)
 not_negative = Number("0 or a number above it", low=0.0)
 nonzero = Number("a number other than 0", but=0.0)
+share = Number("a number above 0 and below 1", low=0.0, high=1.0, above=True, below=True)
 count = Whole()
 boolean = Choice((True, False), "true or false (without quotes)")
 text = Text()
-
-
-def shown(value: Any, limit: int = 60) -> str:
-    """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
-    if isinstance(value, bool):
-        written = str(value).lower()
-    elif isinstance(value, str):
-        written = json.dumps(value[: limit + 1], ensure_ascii=False)  # TOML's basic strings are JSON's
-    elif isinstance(value, list):
-        written = "[" + ", ".join(map(shown, value[:limit])) + "]"
-    elif isinstance(value, dict):
-        written = "{ " + ", ".join(f"{key} = {shown(item)}" for key, item in islice(value.items(), limit)) + " }"
-    elif isinstance(value, int) and value.bit_length() > 64:
-        written = hex(value)  # Python refuses to write thousands of digits
-    else:
-        written = str(value)
-    written = legible(written)
-    return written if len(written) <= limit else written[: limit - 1] + "…"

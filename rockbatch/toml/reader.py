@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
-from rockbatch.toml.kinds import KindError, Number, Other, Whole, shown
+from rockbatch.common.showing import shown
+from rockbatch.toml.kinds import KindError, Number, Other, Whole
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.meant import Meant, number_meant, similar
 from rockbatch.toml.section import CONFIRM, Key, Section, elsewhere, home, options

@@ -4,7 +4,7 @@ import pandas as pd
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.batch.half_cycles import HALF_CYCLES
+from rockbatch.batch.repeated import HALF_CYCLES
 from rockbatch.common.files import read_table
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS
 from rockbatch.study.load import OUTPUT

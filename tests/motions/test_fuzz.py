@@ -17,7 +17,8 @@ from motion_files import wiggle, write_at2
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import FORMATS, ReadOptions, RecordFile, read_record
+from rockbatch.motions.formats import FORMATS, read_record
+from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.pairing import to_motions
 

@@ -14,7 +14,8 @@ from waveform_files import START, channel_xml, station_xml, trace, write_mseed
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats import ReadOptions, columns, miniseed, with_obspy
+from rockbatch.motions.formats import columns, miniseed, with_obspy
+from rockbatch.motions.formats.record_file import ReadOptions
 from rockbatch.motions.formats.with_obspy import CHECKS
 from rockbatch.motions.manifest_draft import write_manifest
 
@@ -221,7 +222,8 @@ def test_a_large_file_takes_a_few_times_its_size():
     """One with all its words as Python's objects takes 36 times as much."""
     from pathlib import Path
 
-    from rockbatch.motions.formats import RecordFile, read_record
+    from rockbatch.motions.formats import read_record
+    from rockbatch.motions.formats.record_file import RecordFile
 
     data = at2_text(wiggle(200_000), number="{:15.7E}".format).encode()
     tracemalloc.start()

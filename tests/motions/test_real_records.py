@@ -11,8 +11,8 @@ from motion_files import RECORDS, needs_records, real_components, real_motions, 
 from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component
-from rockbatch.motions.doubles import correlation
 from rockbatch.motions.formats import RecordFile, read_record
+from rockbatch.motions.likeness import correlation
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.plausible import FARTHEST_MEAN
 

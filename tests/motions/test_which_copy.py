@@ -9,7 +9,7 @@ from motion_files import wiggle, write_at2
 from national_files import unam_text
 from waveform_files import trace
 
-from rockbatch.motions import ReadOptions, doubles, read_motions
+from rockbatch.motions import ReadOptions, doubles, likeness, read_motions
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.orientation import Orientation
 
@@ -405,8 +405,8 @@ def test_a_turned_copy_at_another_station_of_the_network_is_another_recording(ot
 def test_other_recordings_are_hardly_compared_in_any_frame(monkeypatch):
     """Each comparison takes four Fourier transforms; their number may not grow with the square of that of the sets."""
     compared = []
-    plain = doubles._in_any_frame
-    monkeypatch.setattr(doubles, "_in_any_frame", lambda *sets: (compared.append(sets), plain(*sets))[1])
+    plain = likeness._in_any_frame
+    monkeypatch.setattr(likeness, "_in_any_frame", lambda *sets: (compared.append(sets), plain(*sets))[1])
     components = [
         Component(f"{n}.{k}", 0.01, values, Orientation("", azimuth=90.0 * k), source=f"{n}.{k}", station=str(n))
         for n in range(60) for k, values in enumerate(earthquake(n))
@@ -419,13 +419,13 @@ def test_other_recordings_are_hardly_compared_in_any_frame(monkeypatch):
 def correlations(monkeypatch):
     """The correlations that were computed, each of which takes a Fourier transform of the samples."""
     computed: list[float] = []
-    plain = doubles.correlation
+    plain = likeness.correlation
 
     def noted(one, two):
         computed.append(plain(one, two))
         return computed[-1]
 
-    monkeypatch.setattr(doubles, "correlation", noted)
+    monkeypatch.setattr(likeness, "correlation", noted)
     return computed
 
 
@@ -456,7 +456,7 @@ def test_spectra_rule_out_no_copy_that_the_samples_tell(change):
     }[change]
     north = Orientation("000", azimuth=0.0)
     one, two = Component("a", 0.01, a, north, source="a"), Component("b", dt, b, north, source="b")
-    assert list(doubles._Table([one, two]).alike()) == [(0, 1)]
+    assert list(likeness._Table([one, two]).alike()) == [(0, 1)]
 
 
 def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):

@@ -16,12 +16,12 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.journal import Journal
-from rockbatch.batch.kept_histories import history_bytes, keep_histories, to_keep, worst
+from rockbatch.batch.kept_histories import keep_histories, to_keep, worst
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
-from rockbatch.results.histories_file import FORMAT, UNITS, Responses, seal, write
+from rockbatch.results.histories_file import FORMAT, UNITS, Responses, history_bytes, seal, write
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance

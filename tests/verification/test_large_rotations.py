@@ -8,8 +8,8 @@ from studies import SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
+from rockbatch.common.notes import LINEARISED
 from rockbatch.pier import MOST_NEGLECTED, neglected
-from rockbatch.simulation.outcome import LINEARISED
 
 TENDON = (rb.Tendon(psi=0.5, lam=2.0),)
 

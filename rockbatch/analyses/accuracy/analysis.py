@@ -1,6 +1,5 @@
 """Error against time of a study on this machine: the analysis and its table."""
 
-import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,11 +12,10 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import is_plain, made_folder, read_text, write_whole
+from rockbatch.common.files import made_folder, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.reporting import write_report
-from rockbatch.results.columns import PEAKS
-from rockbatch.results.run_json import INFO
+from rockbatch.results.run_json import is_of
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
@@ -62,17 +60,8 @@ class Accuracy(Analysis):
         directory = made_folder(Path(folder))
         path = directory / "accuracy.csv"
         write_whole(path, self.accuracy.to_csv(index=False, float_format="%.6g", lineterminator="\n"))
-        return (path, write_report(directory)) if self._has_results(directory) else (path,)
-
-    def _has_results(self, directory: Path) -> bool:
-        """Return whether the folder holds results of this very study with these motions, whose report can show the table."""
-        try:
-            info = json.loads(read_text(directory / INFO))
-            records = tuple(record["record"] for record in info["records"])
-            is_same = info["study"]["sha256"] == self.accuracy["study"].iloc[0] and records == self.records
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
-            return False
-        return is_same and is_plain(directory / PEAKS)
+        shown = is_of(directory, self.accuracy["study"].iloc[0], list(self.records))
+        return (path, write_report(directory)) if shown else (path,)
 
 
 @checked

@@ -17,6 +17,7 @@ from rockbatch.batch.listening import Listener, count
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import StudyRun
@@ -62,13 +63,6 @@ class Reference:
     run: StudyRun
     outcome: Outcome
     change: float
-
-
-def spread(runs: Sequence[StudyRun], most: int) -> list[StudyRun]:
-    """Return at most ``most`` of ``runs``, evenly over the study, the first and the last among them."""
-    if len(runs) <= most:
-        return list(runs)
-    return [runs[i] for i in np.linspace(0, len(runs) - 1, most).round().astype(int)]
 
 
 def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
@@ -141,14 +135,10 @@ def measure(
     listener: Listener | None = None,
     clock: Clock | None = None,
 ) -> "pd.DataFrame":
-    """Measure time and error of fixed steps, with and without the location of events, and of the study's own setting.
+    """Return time and error of fixed steps, with and without the location of events, and of the study's own setting, a row each.
 
     Everything runs in one thread, and its processor time counts, whatever else the machine does: medians of
     :data:`REPEATS` passes over all runs, of fewer where ``clock`` says so.
-
-    Returns
-    -------
-    DataFrame with the columns :data:`COLUMNS`, one row per method and setting.
     """
     listener, clock = listener or Listener(), clock or Clock()
     table = pd.DataFrame(_of_steps(study, references, listener, clock), columns=list(COLUMNS))
@@ -186,7 +176,7 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
                 break
             started, share = time.monotonic(), (place + 1) / len(settings)
             deadline = clock.remaining(REFERENCES + share * (1.0 - REFERENCES))
-            rows.append(setting | _measured(references, simulate, REPEATS, deadline))
+            rows.append(setting | _measured(references, simulate, deadline))
             took = time.monotonic() - started
             advance(len(references))
     order = ("located", "not located", "study")
@@ -197,14 +187,12 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _measured(
-    references: Sequence[Reference], simulate: Simulate, repeats: int, seconds: float = math.inf
-) -> dict[str, Any]:
+def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, Any]:
     """Return errors and times of ``simulate`` over the references; once at least, repeated while ``seconds`` remain."""
     runs = [ref.run for ref in references]
     times: list[float] = []
     clock = Clock(seconds)
-    while not times or (len(times) < repeats and clock.remaining() > 0):
+    while not times or (len(times) < REPEATS and clock.remaining() > 0):
         start = time.thread_time()
         ends = simulate(runs)
         times.append(time.thread_time() - start)

@@ -9,7 +9,7 @@ DOOR = Door(
     "  fragility_capacities.csv, fragility_runs.csv, fragility.json, and a section of report.html",
     parts=(
         ReportPart("Fragility", "fragility", "section.section"),
-        ReportPart("Annual rates", "risk", "risk_section.section"),
+        ReportPart("Annual rates", "risk", "section.rates"),
     ),
     tables=("fragility",),
 )

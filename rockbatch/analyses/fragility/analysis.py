@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.fragility.cloud_tables import CLOUD, cloud_table
-from rockbatch.analyses.fragility.curves import Curve, assess, first_intensities, level_plan, output
+from rockbatch.analyses.fragility.curves import Curve, assess
 from rockbatch.analyses.fragility.hazard import YEARS, Dispersion, Hazard
 from rockbatch.analyses.fragility.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
+from rockbatch.analyses.fragility.runs import first_intensities, level_plan, output
 from rockbatch.analyses.fragility.scale_factors import SCALES, described_scales, scales
 from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
 from rockbatch.analyses.fragility.tables import CAPACITIES, POINTS, RUNS, capacities, described, points

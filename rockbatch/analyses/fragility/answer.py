@@ -1,13 +1,14 @@
 """The answer of a fragility in sentences: the weakest case, for overturning and for the limit that is exceeded first."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, level_of, percent, power
 from rockbatch.common.grouping import grouped
+from rockbatch.reporting.finished_analysis import answered, sentence
 from rockbatch.reporting.labels import counted
-from rockbatch.reporting.markup import Markup, join, tag
+from rockbatch.reporting.markup import Markup, join
 from rockbatch.results.labels import plain
 
 NOTABLE = 0.2
@@ -28,8 +29,8 @@ def of_curves(info: Info) -> Markup:
         words = f" ({weakest[0]['words']})" if weakest[0]["words"] else ""
         sentences.append(_of_limit(info, weakest, f"The limit exceeded first, {weakest[0]['limit_state']}{words},"))
     elif others:
-        sentences.append(_sentence("The other limits are not exceeded earlier"))
-    return _answer(sentences, _of_all(info))
+        sentences.append(sentence("The other limits are not exceeded earlier"))
+    return answered(join(*sentences, between=" "), remarks=_of_all(info))
 
 
 def of_rates(info: Info) -> Markup:
@@ -42,23 +43,11 @@ def of_rates(info: Info) -> Markup:
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
     sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
-    return _answer(sentences, [*_without_rates(info), *_narrow(info)])
-
-
-def _without_rates(info: Info) -> Iterator[str]:
-    if lost := sum(not curve["risk"] for curve in info["curves"]):
-        yield f"{lost} of {len(info['curves'])} curves could not be fitted: what has no rate here may be exceeded more often."
-
-
-def _answer(sentences: Sequence[str], remarks: Iterable[str]) -> Markup:
-    """Return the sentences as a paragraph, and a line below for each remark."""
-    lines = (tag("p", tag("span", remark, class_="undecided")) for remark in remarks)
-    return join(tag("p", join(*sentences, between=" "), class_="lead"), *lines)
-
-
-def _sentence(said: str, left_open: Iterable[str] = ()) -> Markup:
-    """Return a sentence with what leaves it open at its end, marked."""
-    return join(said, *(join("; ", tag("span", words, class_="undecided")) for words in left_open), ".")
+    curves, remarks = info["curves"], list(_narrow(info))
+    if lost := sum(not curve["risk"] for curve in curves):
+        words = f"{lost} of {len(curves)} curves could not be fitted"
+        remarks.insert(0, f"{words}: what has no rate here may be exceeded more often.")
+    return answered(join(*sentences, between=" "), remarks=remarks)
 
 
 def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
@@ -84,7 +73,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         said = f"is reached by every record from {_intensity(info, decided[0]['level'])} on{case}: its median is below that"
     else:
         said = f"has no median{case}: no curve could be fitted"
-    return _sentence(f"{subject} {said}", _left_open(info, curve, curves))
+    return sentence(f"{subject} {said}", _left_open(info, curve, curves))
 
 
 def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[str]:
@@ -134,7 +123,7 @@ def _narrow(info: Info) -> Iterator[str]:
 def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     """Return the sentence about a limit: the case that exceeds it most often."""
     if not curves:
-        return _sentence(f"{subject} has no rate, as no curve could be fitted")
+        return sentence(f"{subject} has no rate, as no curve could be fitted")
     curve = max(curves, key=_rate)
     risk, years = curve["risk"], min(info["hazard"]["years"])
     p, low, high = (percent(risk[f"p_in_{years:g}_years{end}"]) for end in ("", "_low", "_high"))
@@ -142,7 +131,7 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     said = (
         f"{subject} has a probability of {p}\u00a0% in {years:g} years ({level_of(info)}: {low} to {high}\u00a0%){case}"
     )
-    return _sentence(f"{said}, a mean rate of {power(_rate(curve))} a year", _rate_left_open(info, curve))
+    return sentence(f"{said}, a mean rate of {power(_rate(curve))} a year", _rate_left_open(info, curve))
 
 
 def _rate_left_open(info: Info, curve: Curve) -> Iterator[str]:

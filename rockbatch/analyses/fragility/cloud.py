@@ -87,9 +87,7 @@ class Cloud:
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""
-        line = None if self.line is None else np.array([[self.line.intercept, self.line.slope, self.line.sigma]])
-        share = None if self.overturning is None else np.array([[self.overturning.intercept, self.overturning.slope]])
-        return self._probabilities(line, share, np.log(x))[0]
+        return self._probabilities(*self._parameters(), np.log(x))[0]
 
     def band(self, x: Values) -> tuple[Values, Values]:
         """Return the pointwise interval of P(x), each shape (n,)."""
@@ -142,10 +140,19 @@ class Cloud:
     def _ends(self) -> tuple[float, float]:
         return 0.5 - 0.5 * self.confidence, 0.5 + 0.5 * self.confidence
 
+    def _parameters(self, *, drawn: bool = False) -> tuple[Values | None, Values | None]:
+        """Return the parameters of the line and of the share, of every draw or of the curve, shape (m, k) each."""
+        line, share = self.line, self.overturning
+        if drawn:
+            return None if line is None else line.draws, None if share is None else share.draws
+        return (
+            None if line is None else np.array([[line.intercept, line.slope, line.sigma]]),
+            None if share is None else np.array([[share.intercept, share.slope]]),
+        )
+
     def _of_draws(self, log_x: Values) -> Values:
         """Return P for each draw, shape (m, n)."""
-        line, share = (None if part is None else part.draws for part in (self.line, self.overturning))
-        return self._probabilities(line, share, log_x)
+        return self._probabilities(*self._parameters(drawn=True), log_x)
 
     def _probabilities(self, line: Values | None, share: Values | None, log_x: Values) -> Values:
         """Return P of m parameters at ``log_x``, shape (n,) or (m, n): shape (m, n)."""
@@ -165,14 +172,7 @@ class Cloud:
 
     def _quantiles(self, p: float, *, drawn: bool = False) -> Values:
         """Return x where P = ``p``, of every draw or of the curve, by bisection; 0 or infinite far from the data."""
-        parts = (self.line, self.overturning)
-        if drawn:
-            line, share = (None if part is None else part.draws for part in parts)
-        else:
-            line = None if self.line is None else np.array([[self.line.intercept, self.line.slope, self.line.sigma]])
-            share = (
-                None if self.overturning is None else np.array([[self.overturning.intercept, self.overturning.slope]])
-            )
+        line, share = self._parameters(drawn=drawn)
         m = next(len(part) for part in (line, share) if part is not None)
         low, high = np.full((m, 1), self.centre - _WIDEST), np.full((m, 1), self.centre + _WIDEST)
         below, above = (self._probabilities(line, share, end)[:, 0] for end in (low, high))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.showing import shown
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import Number, choice, positive, shown, text
+from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
 

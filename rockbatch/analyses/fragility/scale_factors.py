@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.analyses.fragility.curves import LevelPlan
+from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd

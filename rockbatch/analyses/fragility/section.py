@@ -1,12 +1,12 @@
-"""Results of ``rockbatch fragility``: the weakest case, for each limit points, curves and bands, and a table of medians."""
+"""Results of ``rockbatch fragility``: for each limit points, curves and bands; annual rates and what contributes to them."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rockbatch.analyses.fragility import answer
-from rockbatch.analyses.fragility.figures import clouds, curves, label
-from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves
-from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_files
+from rockbatch.analyses.fragility.figures import clouds, curves, label, risk
+from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves, of_rates, power
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed, table
@@ -15,11 +15,10 @@ from rockbatch.reporting.templates import render
 CAPACITIES = ("record", "case", "limit_state", "at_most", "scale_at_most", "widest_step")
 
 
-@of_files("fragility")
-def section(contents: Contents) -> Markup:
+@of_analysis("fragility")
+def section(analysis: FinishedAnalysis) -> Markup:
     """Draw the fragility curves; empty if there are none."""
-    analysis = contents.analysis("fragility")
-    if analysis is None or not analysis.info["curves"]:
+    if not analysis.info["curves"]:
         return Markup("")
     info = analysis.info
     entries, of_clouds = info["curves"], clouds(info)
@@ -104,3 +103,26 @@ def _factor(factor: float | None, used: bool) -> str:
 def _greatest(name: str) -> Callable[[Curve], object]:
     """Return a function to the largest number of records at a level; of a cloud to their sum."""
     return lambda entry: (sum if "cloud" in entry else max)([point[name] for point in entry["points"]])
+
+
+@of_analysis("fragility")
+def rates(analysis: FinishedAnalysis) -> Markup:
+    """Draw the hazard of the site and what the annual rates come from; empty if the study has no hazard."""
+    if not analysis.info.get("hazard"):
+        return Markup("")
+    info = analysis.info
+    curves = [entry for entry in info["curves"] if entry["risk"]]
+    if not curves:
+        return tag("p", "No curve could be fitted, so that there are no rates.")
+    heads = [Head("limit", value="limit_state"), Head("case", value=label), *of_rates(info, power)]
+    return render(
+        "analyses/fragility/risk_section.html", info=info, answer=answer.of_rates(info), hazard=info["hazard"],
+        share=level_of(info), panels=drawn(risk(info, curves)),
+        table=listed(heads, curves, prose=True, name="Annual rates and probabilities"), notes=_notes_on_rates(curves),
+    )  # fmt: skip
+
+
+def _notes_on_rates(curves: Sequence[Curve]) -> Markup:
+    """Return what the numbers do not say by themselves, a line for each curve."""
+    notes = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
+    return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))

@@ -8,8 +8,9 @@ from typing import Any
 from rockbatch.analyses.fragility.hazard import IN_G, IN_M_S
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import positive, shown, text
+from rockbatch.toml.kinds import positive, text
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 

@@ -22,12 +22,13 @@ from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_str
 from rockbatch.analyses.fragility.uncertain import SECTIONS as OF_UNCERTAIN
 from rockbatch.analyses.fragility.uncertain import Uncertain, read_uncertain
 from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
 from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
 from rockbatch.study.rules import Rule
 from rockbatch.study.target import PERIOD
-from rockbatch.toml.kinds import Number, choice, positive, shown, text
+from rockbatch.toml.kinds import Number, choice, positive, share, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import CONFIRM, Key, Section
@@ -142,7 +143,7 @@ FRAGILITY = Section(("fragility",), (
     "window": Key(Number("a number from 0.001 to 0.2", low=1e-3, high=0.2), "0.05",
         "Relative half-width of a window about each level, of which the share of the scales that exceed a limit gives a second "
         "curve, on every base; if it is not given, 0.02 on rigid ground and none elsewhere.", only=_IDA),
-    "censored_below": Key(Number("a number above 0 and below 1", low=0.0, high=1.0, above=True, below=True), "0.05",
+    "censored_below": Key(share, "0.05",
         "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have logarithms "
         "that say nothing about the limit.", only=_CLOUD),
     "checks": Key(text, '["no overturning", "uplift*"]',

@@ -40,7 +40,7 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
         x = np.array([stripe.level for stripe in curve.stripes])  # of a cloud, several runs may have the same
         p = _probabilities(curve, x)
         if spec.added:
-            p["p_total"] = _total(curve, spec, x)
+            p["p_total"] = p["p"] if isinstance(curve.fitted, str) else curve.fitted.widened(spec.added).probability(x)
         if spec.method == "ida":
             p |= _of_windows(curve.windows, spec)
         rows += [
@@ -55,12 +55,6 @@ def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
     p = np.full(len(x), np.nan) if isinstance(curve.fitted, str) else curve.fitted.probability(x)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
-
-
-def _total(curve: Curve, spec: FragilitySpec, x: Values) -> Values:
-    """Return P(x) with the added dispersion; NaN without a curve."""
-    fitted = curve.fitted
-    return np.full(len(x), np.nan) if isinstance(fitted, str) else fitted.widened(spec.added).probability(x)
 
 
 def _of_windows(windows: Windows | None, spec: FragilitySpec) -> dict[str, npt.NDArray[Any]]:

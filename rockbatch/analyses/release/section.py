@@ -6,7 +6,7 @@ from typing import Any
 from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
 from rockbatch.common.lazy import pd
-from rockbatch.reporting.finished_analysis import Contents, named, of_files
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, answered, named, of_analysis, sentence
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
@@ -19,16 +19,11 @@ CAPTION = "Line: computed with the fitted value. Markers: measured, amplitudes a
 METHOD = "The value that makes the measured times and amplitudes likeliest, and its interval. "
 
 
-@of_files("release")
-def section(contents: Contents) -> Markup:
-    """Say what was fitted in each case, and draw it; empty without a release test."""
-    analysis = contents.analysis("release")
-    if analysis is None:
-        return Markup("")
-    fits, impacts = analysis.table("release.csv", FIT), analysis.table("release_impacts.csv", IMPACTS)
-    history = analysis.table("release_history.csv", HISTORY)
-    if fits is None or impacts is None or history is None:
-        return Markup("")
+@of_analysis("release", release=FIT, release_impacts=IMPACTS, release_history=HISTORY)
+def section(
+    analysis: FinishedAnalysis, fits: "pd.DataFrame", impacts: "pd.DataFrame", history: "pd.DataFrame"
+) -> Markup:
+    """Say what was fitted in each case, and draw it."""
     varied = analysis.info["varied"]
     keys, rows = ["case", *varied], as_dicts(fits)
     heads = [Head("case", value=lambda fit: named(fit, keys)), *quantities.FIT]
@@ -45,8 +40,7 @@ def section(contents: Contents) -> Markup:
 def _answer(fit: Mapping[str, Any], keys: Sequence[str]) -> Markup:
     """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
     doubt = fit["remark"].rpartition("; ")[0]
-    words = join("; ", tag("span", doubt, class_="undecided")) if doubt else ""
-    return tag("p", f"{named(fit, keys)}: {quantities.in_words(fit)}", words, ".", class_="lead")
+    return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", [doubt] if doubt else ()))
 
 
 def _impacts(impacts: "pd.DataFrame", keys: list[str]) -> list[Markup]:

@@ -11,7 +11,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.study.load import Study
 from rockbatch.study.spec import Case
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import Number, choice, not_negative, positive, text
+from rockbatch.toml.kinds import choice, not_negative, positive, share, text
 from rockbatch.toml.reader import Table
 from rockbatch.toml.section import Clash, Key, Section
 
@@ -66,8 +66,7 @@ RELEASE = Section(("release",), (
         'Where times count from: the "release", or the "first impact", whose own time may be any then.'),
     "fit": Key(choice(*FITS), '"restitution"',
         "What is fitted; by default restitution on a rigid base, and of springs zeta, if the case has one, or epsilon."),
-    "confidence": Key(Number("a number between 0 and 1", low=0.0, high=1.0, above=True, below=True), "0.95",
-        "Level of the intervals."),
+    "confidence": Key(share, "0.95", "Level of the intervals."),
 }, homes=(ReleaseSpec,), clashes=(
     Clash(("measured", "impact_s"), "measured and impact_s are given; keep one"),
     Clash(("measured", "amplitude_rad"), "measured and amplitude_rad are given; keep one"),

@@ -7,7 +7,7 @@ from rockbatch.analyses.sensitivity.figures import symbol, written
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.reporting.finished_analysis import named
+from rockbatch.reporting.finished_analysis import answered, named, sentence
 from rockbatch.reporting.labels import counted, heading
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.results.labelled import as_dicts
@@ -39,8 +39,7 @@ def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
         lines = [
             join(f"{case}: the " if len(cases) > 1 else "The ", subject, _of_case(rows)) for case, rows in cases.items()
         ]
-    remarks = (tag("p", tag("span", words, class_="undecided")) for words in _of_runs(info))
-    return join(*(tag("p", line, class_="lead") for line in lines), *remarks)
+    return answered(*lines, remarks=_of_runs(info))
 
 
 def _of_case(rows: Rows) -> Markup:
@@ -62,24 +61,21 @@ def _of_case(rows: Rows) -> Markup:
     ends = [f"{plain(greatest[f'answer_{end}'], 3)} at {written(greatest[end])}" for end in ("low", "high")]
     study = f"{plain(greatest['answer_base'], 3)} in the study"
     moved = f" Alone {symbol(greatest['parameter'])} moves it from {ends[0]} to {ends[1]} ({study})."
-    return join(said, _doubt(first, shown), ".", moved if greatest["swing"] > 0 else "")
+    return join(sentence(said, _doubt(first, shown)), moved if greatest["swing"] > 0 else "")
 
 
 def _index(row: Mapping[str, Any]) -> str:
     return f"{row['total']:.2f}\u00a0±\u00a0{row['total_error']:.2f}"
 
 
-def _doubt(first: Mapping[str, Any], shown: Rows) -> Markup:
-    """Return that the order of the inputs is not known, marked; empty if it is."""
+def _doubt(first: Mapping[str, Any], shown: Rows) -> Iterator[str]:
+    """Yield what would tell the order of the inputs, if it is not known."""
     least = first["total"] - first["total_error"]
     alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
     if alike:
-        words = f"more samples would tell {symbol(first['parameter'])} and {', '.join(alike)} apart"
+        yield f"more samples would tell {symbol(first['parameter'])} and {', '.join(alike)} apart"
     elif first["total_error"] > 0.5 * first["total"]:
-        words = "more samples would narrow that interval"
-    else:
-        return Markup("")
-    return join("; ", tag("span", words, class_="undecided"))
+        yield "more samples would narrow that interval"
 
 
 def _in_most(cases: Sequence[Rows]) -> Markup:

@@ -143,23 +143,10 @@ def design(inputs: Sequence[Input], samples: int, seed: int) -> list[dict[str, V
 
 
 def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidence: float, seed: int) -> "pd.DataFrame":
-    """Return the first-order and total index of each input.
+    """Return the first-order and total index of each input, from the ``answers`` at the points of :func:`design`.
 
-    Parameters
-    ----------
-    inputs : sequence of Input
-    answers : ndarray, shape (samples × (inputs + 2),)
-        Answers at the points of :func:`design`.
-    confidence : float
-        Level of the intervals.
-    seed : int
-        Seed of the bootstrap.
-
-    Returns
-    -------
-    DataFrame
-        A row for each input: its name as ``parameter``, and ``first``, ``total`` with the half widths of their intervals,
-        ``first_error`` and ``total_error``; NaN if all answers are the same.
+    A row has the input as ``parameter``, ``first``, ``total`` and the half widths of their intervals by a bootstrap,
+    ``first_error`` and ``total_error``; NaN if all answers are the same.
     """
     from SALib.analyze import sobol
 

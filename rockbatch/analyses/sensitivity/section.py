@@ -4,8 +4,9 @@ from rockbatch.analyses.sensitivity.answer import answer
 from rockbatch.analyses.sensitivity.columns import SOBOL, TORNADO
 from rockbatch.analyses.sensitivity.figures import bars, symbol
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES
+from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.reporting.finished_analysis import Contents, named, of_files
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, named, of_analysis
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import Head, listed
@@ -13,16 +14,9 @@ from rockbatch.reporting.templates import render
 from rockbatch.results.labelled import as_dicts
 
 
-@of_files("sensitivity")
-def section(contents: Contents) -> Markup:
-    """Report the inputs one at a time, and all at once; empty if they were not studied."""
-    analysis = contents.analysis("sensitivity")
-    if analysis is None:
-        return Markup("")
-    swings = analysis.table("sensitivity.csv", ("case", *TORNADO))
-    shares = analysis.table("sobol.csv", ("case", *SOBOL))
-    if swings is None or shares is None:
-        return Markup("")
+@of_analysis("sensitivity", sensitivity=("case", *TORNADO), sobol=("case", *SOBOL))
+def section(analysis: FinishedAnalysis, swings: "pd.DataFrame", shares: "pd.DataFrame") -> Markup:
+    """Report the inputs one at a time, and all at once."""
     info = analysis.info
     keys, cases = ["case", *info["varied"]], swings.groupby(["case", *info["varied"]], dropna=False).ngroups
     heads = [Head("input", value=lambda row: symbol(row["parameter"])), *QUANTITIES]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+from rockbatch.common.showing import shown
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.cases import CASE
 from rockbatch.study.inputs import OF_PIER, impossible, outside, ranges, values_of, why_no_case
@@ -13,7 +14,7 @@ from rockbatch.study.motions import MOTIONS
 from rockbatch.study.restraint_inputs import IN_KILONEWTONS, TABLE, unclear
 from rockbatch.study.restraint_keys import RESTRAINTS
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import Choice, Number, boolean, choice, count, positive, shown
+from rockbatch.toml.kinds import Choice, boolean, choice, count, positive, share
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
@@ -66,8 +67,7 @@ SENSITIVITY = Section(("sensitivity",), (
     "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
     "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
         "Size N of the design: N (d + 2) points for d inputs, each under every record."),
-    "confidence": Key(Number("a number between 0 and 1", low=0.0, high=1.0, above=True, below=True), "0.95",
-        "Level of the intervals of the indices."),
+    "confidence": Key(share, "0.95", "Level of the intervals of the indices."),
     "seed": Key(count, "1", "Seed of the design and of the intervals."),
 }, homes=(SensitivitySpec,))  # fmt: skip
 
@@ -119,13 +119,7 @@ def own_values(study: Study, case: Case) -> dict[str, Any]:
 
 
 def read_sensitivity(study: Study) -> SensitivitySpec:
-    """Return what the study file asks for in [sensitivity].
-
-    Raises
-    ------
-    InputError
-        With every mistake, or because there is no such table.
-    """
+    """Return what the study file asks for in [sensitivity]; ``InputError`` with every mistake, or if there is no such table."""
     file = study.file()
     table = file.table("sensitivity", required="[sensitivity] and [sensitivity.uniform] with alpha = [0.12, 0.16]")
     read: dict[str, Any] = {}

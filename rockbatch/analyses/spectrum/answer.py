@@ -9,9 +9,9 @@ import numpy as np
 
 from rockbatch.analyses.spectrum.figures import ACROSS
 from rockbatch.common.lazy import pd
-from rockbatch.reporting.finished_analysis import named
+from rockbatch.reporting.finished_analysis import answered, named
 from rockbatch.reporting.labels import counted, symbol
-from rockbatch.reporting.markup import Markup, escape, join, tag
+from rockbatch.reporting.markup import Markup, escape
 from rockbatch.reporting.table import sub
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import plain, quantity
@@ -27,8 +27,7 @@ Info = Mapping[str, Any]
 
 def answer(sentences: Sequence[str], remarks: Sequence[str]) -> Markup:
     """Return the sentences as a paragraph, and a line below for each remark."""
-    lines = (tag("p", tag("span", _marked(remark), class_="undecided")) for remark in remarks)
-    return join(tag("p", _marked(" ".join(sentences)), class_="lead"), *lines)
+    return answered(_marked(" ".join(sentences)), remarks=map(_marked, remarks))
 
 
 def _marked(words: str) -> Markup:

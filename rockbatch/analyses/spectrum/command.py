@@ -11,6 +11,7 @@ from rockbatch.batch.listening import count
 from rockbatch.commands.analysis import analysis_arguments, print_files
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import named
+from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
 
@@ -39,7 +40,7 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
     axis = spectrum.axis
     keys = [name for name in groups(spectrum.varied) if name != axis]
     labels = [name for name in keys if name != "case" and (name != "scale" or suite[name].nunique() > 1)]
-    lines = spread(suite[axis].unique())
+    lines = spread(suite[axis].unique().tolist(), MOST_LINES)
     columns: dict[str, dict[str, str]] = {}
     for names, of_suite in suite[suite[axis].isin(lines)].groupby(keys, sort=False, dropna=False):
         values = dict(zip(keys, names, strict=True))
@@ -59,13 +60,6 @@ def shown(suite: "pd.DataFrame", spectrum: SpectrumSpec) -> str:
             f"\nA = PGA/(g tan alpha), omega_g = PGA/PGV of each record; piers with R0 = {sizes} m, factors {scales}"
         )
     return text
-
-
-def spread(values: np.ndarray) -> np.ndarray:
-    """Return at most :data:`MOST_LINES` of ``values``, evenly, the first and the last among them."""
-    if len(values) <= MOST_LINES:
-        return values
-    return values[np.linspace(0, len(values) - 1, MOST_LINES).round().astype(int)]
 
 
 def _evenly(values: np.ndarray) -> np.ndarray:

@@ -69,16 +69,8 @@ def _regions(points: Sequence[tuple[float, End]], whole: Sequence[tuple[float, E
 class Search:
     """Search for the regions of one map, or of several of the same ranges side by side.
 
-    Parameters
-    ----------
-    ends : function
-        See :data:`Ends`.
-    amplitudes : sequence of float
-        Amplitudes of the grid, run in every column.
-    tolerance : float
-        Tolerance on the amplitude, to which every boundary is found and straight lines follow it.
-    width : float
-        Width in frequency: columns nearer to each other get none between them.
+    ``amplitudes`` are those of the grid, run in every column; every boundary is found, and followed by straight lines, to a
+    ``tolerance`` on the amplitude. Columns nearer to each other than ``width``, in frequency, get none between them.
     """
 
     def __init__(self, ends: Ends, amplitudes: Sequence[float], tolerance: float, width: float) -> None:

@@ -99,22 +99,12 @@ def row_of(run: StudyRun) -> dict[str, Any]:
 
 
 def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
-    """Return the statistics of the suite at every point of the spectrum.
+    """Return the statistics of the suite at every point of the spectrum from the rows of spectrum.csv.
 
-    Parameters
-    ----------
-    table : DataFrame
-        The rows of spectrum.csv.
-    varied : tuple of str
-        As in :class:`SpectrumSpec`.
-
-    Returns
-    -------
-    DataFrame
-        A row for each case, scale and pier: 16, 50 and 84 % quantiles of θ_max/α over the motions
-        (``p16``, ``median``, ``p84``), and the greatest (``largest``). A run that overturned, or was ended by flight,
-        counts as infinite; a failed one is unknown and only counted. At a point of a self-similar spectrum every record has
-        its own pier and scale: of these it has the least and the greatest.
+    A row for each case, scale and pier has the 16, 50 and 84 % quantiles of θ_max/α over the motions (``p16``, ``median``,
+    ``p84``), and the greatest (``largest``). A run that overturned, or was ended by flight, counts as infinite; a failed one is
+    unknown and only counted. At a point of a self-similar spectrum every record has its own pier and scale: of these it has the
+    least and the greatest.
     """
     keys = groups(varied)
     rows: list[Mapping[str, Any]] = []

@@ -3,7 +3,7 @@
 from rockbatch.analyses.spectrum.answer import answer, of_maps, of_spectra
 from rockbatch.analyses.spectrum.figures import QUANTILES, maps, spectra
 from rockbatch.common.lazy import pd
-from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis, of_files
+from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, figure, join, paragraphs, tag
 from rockbatch.reporting.svg import drawn
@@ -12,12 +12,9 @@ from rockbatch.results.labels import plain
 COUNTS = ("overturned", "flight", "failed")
 
 
-@of_files("spectrum")
-def section(contents: Contents) -> Markup:
+@of_analysis("spectrum")
+def section(analysis: FinishedAnalysis) -> Markup:
     """Say what overturns, and draw rocking spectra and overturning maps; empty if there are none."""
-    analysis = contents.analysis("spectrum")
-    if analysis is None:
-        return Markup("")
     answers: list[tuple[list[str], list[str]]] = []
     figures: list[Markup] = []
     methods: list[str] = []

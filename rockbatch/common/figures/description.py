@@ -284,18 +284,9 @@ class Figure:
 
 
 def thin(x: Array, y: Array, buckets: int) -> tuple[Array, Array]:
-    """Return fewer points of a history that draw the same: of each bucket the first, least, largest and last.
+    """Return fewer points of a history that draw the same: of each bucket, one for a pixel, the first, least, largest and last.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-        Abscissae in order, and ordinates; NaN is allowed in ``y``.
-    buckets : int
-        One for each pixel across.
-
-    Returns
-    -------
-    x, y : ndarray, shape (≤ 4 buckets,)
+    ``x``, shape (n,), is in order; ``y`` may have NaN.
     """
     if len(x) <= 4 * buckets:
         return x, y

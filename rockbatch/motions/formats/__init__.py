@@ -32,25 +32,11 @@ from rockbatch.motions.formats import (
     volumes,
 )
 from rockbatch.motions.formats.obspy_plugin import HEAD
-from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions, RecordFile
+from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.texts import with_legible_texts
-
-__all__ = [
-    "FORMATS",
-    "HEAD",
-    "LAYOUTS",
-    "ROLES",
-    "Format",
-    "ReadOptions",
-    "RecordFile",
-    "format_of",
-    "is_usual",
-    "read_record",
-    "usable",
-]
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",

@@ -148,7 +148,7 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
         if len(labels) == width and all(orientation_in(column.label).known for column in labels):
             return labels
     for line in reversed(header):
-        if _VALUE.search(line) or states_a_step(line):
+        if _VALUE.search(line) or _STEP.search(line):
             continue
         for columns in _labels_of(line.replace('"', "").strip(" ,;")):
             if len(columns) == width and (
@@ -227,7 +227,8 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
 
     Raises ``InputError`` where a header states two, and for numbers that are no intervals.
     """
-    steps = [_step(match) for line in header for match in _STEP.finditer(line) if not _of_another(match)]
+    matches = (match for line in header for match in _STEP.finditer(line))
+    steps = [_step(match) for match in matches if not _OF_ANOTHER.search(match.string[: match.start()])]
     for step in steps[1:]:
         if abs(step.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
             raise InputError(
@@ -235,16 +236,6 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
                 "correct the one that is wrong"
             )
     return steps[0] if steps else None
-
-
-def states_a_step(line: str) -> bool:
-    """Return whether a line has a sampling interval or rate in it, of whatever data."""
-    return _STEP.search(line) is not None
-
-
-def _of_another(match: re.Match[str]) -> bool:
-    """Return whether a statement is about data that these were made of."""
-    return _OF_ANOTHER.search(match.string[: match.start()]) is not None
 
 
 def _step(match: re.Match[str]) -> StatedStep:

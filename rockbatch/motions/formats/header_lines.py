@@ -115,14 +115,6 @@ def number_of(header: Mapping[str, str], key: str) -> float:
         raise InputError(f'the header says {key}: "{header[key][:40]}"; expected a number') from None
 
 
-def number_if_any(header: Mapping[str, str], key: str) -> float | None:
-    """Return the number that a header states under ``key``; ``None`` where it has none."""
-    try:
-        return number_of(header, key)
-    except InputError:
-        return None
-
-
 def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
     """Return the number of samples and the sampling interval [s] under these keys; ``InputError`` for impossible ones."""
     npts, dt = number_of(header, count), number_of(header, step)

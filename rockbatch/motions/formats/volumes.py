@@ -127,7 +127,8 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     samples, begins, end = _samples(lines, first, volume, fields)
     place = fields["place"]
     notes = (*samples.pop("notes", ()), *([f"channel {fields['number']}: {place}"] if place else []))
-    event, date, name = (_left_half(line_at(lines, header + i)) for i in (1, 2, 5))
+    # the right half is about the recorder in some files
+    event, date, name = (re.split(r"   |\(", line_at(lines, header + i))[0].strip() for i in (1, 2, 5))
     date = "" if _NOT_SET.match(date) else date
     record = fields["record"] or " ".join(filter(None, [event, date]))
     number, location = fields["station"], fields["location"].strip("-")
@@ -153,11 +154,6 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     if fields["number"]:
         return (recording, begins), past_mark(lines, end, "the declared values")
     return (recording, begins), end + line_at(lines, end).startswith("/&")
-
-
-def _left_half(line: str) -> str:
-    """Return the left half of a line, whose right half is about the recorder in some files."""
-    return re.split(r"   |\(", line)[0].strip()
 
 
 def _start(fields: dict[str, str], begins: float | None) -> float | None:

@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
+from rockbatch.common.notes import LINEARISED
 from rockbatch.quantities.cases import creeps
 from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
 from rockbatch.reporting.finished import Finished, worst_first
@@ -12,7 +13,6 @@ from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, show
 from rockbatch.reporting.templates import render
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.labelled import as_dicts
-from rockbatch.simulation.outcome import LINEARISED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

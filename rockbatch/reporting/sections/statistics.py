@@ -65,16 +65,9 @@ def tables(
 ) -> Markup:
     """Return a table for each quantity that has values.
 
-    Parameters
-    ----------
-    sides : mapping
-        Runs of every side that is compared, by the words for it; one side needs no words.
-    keys : list of str
-        Columns of the runs that tell rows apart.
-    names : mapping
-        Texts of the first cells of each row, by its values of ``keys``, which stand under ``heads``. Other runs do not count.
-    count : str
-        What counts as one record, one of :data:`rockbatch.study.rules.COUNTS`.
+    ``sides`` are the runs of every side that is compared, by the words for it, empty of one alone. ``names`` has the texts of the
+    first cells of each row, under ``heads``, by its values of ``keys``; other runs do not count. ``count`` says what is one
+    record, one of :data:`rockbatch.study.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
     index = pd.MultiIndex.from_tuples(list(names), names=keys)

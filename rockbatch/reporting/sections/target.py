@@ -8,6 +8,7 @@ import numpy as np
 
 from rockbatch.checks.suite_target import NAMES, suite_verdicts
 from rockbatch.checks.verdicts import FAIL
+from rockbatch.common.grouping import spread
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join
 from rockbatch.reporting.sections.motions import Record, spectra
@@ -52,7 +53,7 @@ def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
     """Return the mean over the target at its periods, where it is the least and the largest, and a table of it."""
     periods = target["period_s"]
     ratio = np.array(target["mean_sa_g"], dtype=np.float64) / np.array(target["sa_g"], dtype=np.float64)
-    places = np.unique(np.linspace(0, len(periods) - 1, min(MOST_PERIODS, len(periods))).round().astype(int))
+    places = spread(range(len(periods)), MOST_PERIODS)
     rows = [[periods[i], target["sa_g"][i], target["mean_sa_g"][i], float(ratio[i])] for i in places]
     heads = [
         Head("T [s]", ".3g"),

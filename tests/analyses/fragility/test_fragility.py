@@ -12,11 +12,12 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
-from rockbatch.analyses.fragility.curves import ScaledRuns, assess, intensities, output
+from rockbatch.analyses.fragility.curves import assess
 from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analyses.fragility.lognormal import Capacities, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
+from rockbatch.analyses.fragility.runs import ScaledRuns, intensities, output
 from rockbatch.analyses.fragility.section import section
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import described, points

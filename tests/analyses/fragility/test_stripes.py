@@ -11,7 +11,7 @@ from scipy.stats import binom, norm
 from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.analyses.fragility.curves import level_plan
+from rockbatch.analyses.fragility.runs import level_plan
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study

@@ -227,7 +227,7 @@ WRONG = [
     ({"impact_s": [0.3, 0.8, 1.3], "measured": "a.csv"}, "keep one"),
     ({"measured": "nowhere.csv"}, "no such file"),
     ({"impact_s": [0.3, -0.8, 1.3]}, "impact_s = -0.8"),
-    ({"impact_s": [0.3, 0.8, 1.3], "confidence": 95}, "between 0 and 1"),
+    ({"impact_s": [0.3, 0.8, 1.3], "confidence": 95}, "above 0 and below 1"),
 ]
 
 

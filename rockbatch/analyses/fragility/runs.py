@@ -1,0 +1,198 @@
+"""The runs of a fragility: which intensities each record is run at, and what the runs come to with respect to limits."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.analyses.fragility.limit_states import LEFT_OUT, demands, states
+from rockbatch.analyses.fragility.stripes import members
+from rockbatch.analyses.fragility.study import FragilitySpec
+from rockbatch.analyses.fragility.uncertain import Drawn, Draws
+from rockbatch.analyses.fragility.windows import samples
+from rockbatch.batch.plan import Made
+from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.motions import Motion
+from rockbatch.motions.measures import pgv
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.results.columns import StudyRun
+from rockbatch.study import Case, Output, Study
+from rockbatch.study.rules import Rule
+
+
+class Point(NamedTuple):
+    """A run: numbers of the motion and the case, and the intensity that the motion is scaled to."""
+
+    motion: int
+    intensity: float
+    case: int
+
+
+class ScaledRuns(Made):
+    """The runs of some points in one polarity; ``unscaled`` are the intensities of the motions."""
+
+    def __init__(
+        self,
+        points: Sequence[Point],
+        motions: Sequence[Motion],
+        unscaled: Sequence[float],
+        case_at: Callable[[Point], Case],
+        polarity: str,
+    ) -> None:
+        self.points = points
+
+        def make(number: int) -> StudyRun:
+            point = points[number]
+            motion, intensity, _ = point
+            return StudyRun(motions[motion], polarity, intensity / unscaled[motion], case_at(point))
+
+        super().__init__(len(points), make)
+
+
+class LevelPlan(NamedTuple):
+    """Levels at which each motion is run.
+
+    ``unscaled`` are the intensities of the motions as they come, and ``earlier`` the factors by which the study has scaled them
+    to its target before. ``used`` has the intensity at each level at which a motion is run, by the level: the level itself, or
+    what a given factor comes to; ``not_used`` those at which its factor is beyond the limits of the study.
+    """
+
+    unscaled: list[float]
+    earlier: list[float]
+    used: list[dict[float, float]]
+    not_used: list[dict[float, float]]
+
+    def factor(self, motion: int, level: float) -> float:
+        """Return the factor at a level on a motion as it was recorded."""
+        intensity = (self.used[motion] | self.not_used[motion])[level]
+        return self.earlier[motion] * intensity / self.unscaled[motion]
+
+    def number(self, motion: int, intensity: float) -> int:
+        """Return the number of the level, among all of a motion, at which it is run with an intensity."""
+        levels = sorted(self.used[motion] | self.not_used[motion])
+        return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
+
+
+def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> LevelPlan:
+    """Return the levels of every motion; raises ``InputError`` if there is no run at all, or a stripe names no record."""
+    unscaled = intensities(motions, spec, study.cases[0].pier.gravity)
+    plan = LevelPlan(unscaled, [motion.factor for motion in motions], [{} for _ in motions], [{} for _ in motions])
+    if spec.method == "cloud":
+        for used, x in zip(plan.used, unscaled, strict=True):
+            used.update({x * scale: x * scale for scale in study.motions.scale})
+        return plan
+    scales_by_level = members(study.file(), spec.stripes, [motion.name for motion in motions])
+    for i, level in enumerate(spec.levels):
+        scales = scales_by_level[i] if scales_by_level else dict.fromkeys(range(len(motions)))
+        for m, scale in scales.items():
+            intensity = level if scale is None else scale * unscaled[m] / motions[m].factor
+            factor = motions[m].factor * intensity / unscaled[m]
+            (plan.used if spec.allows(factor) else plan.not_used)[m][level] = intensity
+    if not any(plan.used):
+        limits = f"least_scale = {spec.least_scale:g} and most_scale = {spec.most_scale:g}"
+        raise InputError(
+            f"{study.path}: [fragility]: {limits}: no record reaches a level with such a factor; widen them"
+        )
+    return plan
+
+
+def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
+    """Return the intensities of a motion's runs that depend on no others, by level; those in the windows by themselves."""
+    used, factor = plan.used[motion], plan.earlier[motion] / plan.unscaled[motion]
+    around = (x for level in used for x in samples(level, spec.window_on(case.base)))
+    return used | {x: x for x in around if spec.allows(factor * x)}
+
+
+Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
+"""From runs to their rows of peaks.csv, in their order."""
+
+
+def output(spec: FragilitySpec, of_study: Output) -> Output:
+    """Return the output that the limits need beyond peaks, by the settings ``of_study``."""
+    needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
+    return Output(
+        histories="none",
+        both_laws=of_study.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
+        forces="forces" in needs,
+        rocking="rocking" in needs,
+        least_normal_share=of_study.least_normal_share,
+        devices_work="devices_work" in needs,
+        least_stroke_mm=of_study.least_stroke_mm,
+    )
+
+
+def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
+    """Return the intensity measure of every motion as it is, in the unit of the levels; raises ``InputError`` if one has none."""
+    measures, wrong = [], []
+    for motion in motions:
+        if spec.measure == "PGA":
+            value = motion.pga / gravity
+        elif spec.measure == "PGV":
+            value = pgv(motion.horizontal, motion.dt, motion.initial)
+        else:
+            value = spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0] / gravity
+        if not value > 0:
+            wrong.append(
+                f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
+                "take it out of [motions]"
+            )
+        measures.append(float(value))
+    if wrong:
+        raise InputError(*wrong)
+    return measures
+
+
+class RecordRuns:
+    """All runs of an analysis, each once, with their rows."""
+
+    def __init__(
+        self, study: Study, spec: FragilitySpec, motions: Sequence[Motion], plan: LevelPlan, simulate: Simulate
+    ) -> None:
+        self.study, self.motions, self.plan, self.simulate = study, motions, plan, simulate
+        self.draws = Draws(spec.uncertain, study.cases, len(motions))
+        self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
+        self.status: dict[Point, str] = {}
+        self._last: tuple[dict[Point, int], pd.DataFrame]
+
+    def execute(self, requested: Iterable[Point]) -> None:
+        """Carry out one wave of runs."""
+        points = sorted({*requested})  # what shares a motion stands together
+        polarity = self.study.motions.simulated
+        runs = ScaledRuns(points, self.motions, self.plan.unscaled, lambda point: self.drawn(point).case, polarity)
+        table = self.simulate(runs)
+        self.status |= dict(zip(points, table["status"], strict=True))
+        self._last = {point: i for i, point in enumerate(points)}, table
+
+    def drawn(self, point: Point) -> Drawn:
+        """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
+        level = self.plan.number(point.motion, point.intensity) if self.draws_by_level else 0
+        return self.draws.at(point.case, point.motion, level)
+
+    def status_at(self, motion: int, level: float, case: int) -> str:
+        """Return the status of the run of a motion at a level, or at an intensity between the levels."""
+        return self.status[Point(motion, self.plan.used[motion].get(level, level), case)]
+
+    def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
+        """Return the demands of runs of the last wave of one case, shape (n,)."""
+        values = np.empty(len(points))
+        for drawn, numbers, rows in self._together(points):
+            values[numbers] = demands(rule, rows, drawn.described)
+        return values
+
+    def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
+        """Return the states of runs of the last wave with respect to limits."""
+        result = np.full(len(requested), LEFT_OUT)
+        for rule, numbers in grouped(range(len(requested)), lambda number: requested[number][0]).items():
+            for drawn, places, rows in self._together([requested[number][1] for number in numbers]):
+                result[np.array(numbers)[places]] = states(rule, rows, drawn.described)
+        return result.tolist()
+
+    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], "pd.DataFrame"]]:
+        """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and their rows."""
+        of_row, table = self._last
+        for drawn, places in grouped(range(len(points)), lambda place: self.drawn(points[place])).items():
+            yield drawn, places, table.iloc[[of_row[points[place]] for place in places]]
