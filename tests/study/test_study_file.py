@@ -317,9 +317,10 @@ theta_max_over_alpha = 0.1
     assert len(problems) == len(expected) + 5
 
 
-@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.toml")), ids=lambda path: path.stem)
-def test_a_hundred_mistakes_come_first_and_the_rest_is_not_read(tmp_path, path):
+@pytest.mark.parametrize("name", ["example", "pier_with_dampers", "pier_with_deck", "fragility"])
+def test_a_hundred_mistakes_come_first_and_the_rest_is_not_read(tmp_path, name):
     """No more than a hundred are noted: a pier without its keys is then no sound one."""
+    path = CONFIGS / f"{name}.toml"
     for number in (MOST_REPORTED - 1, MOST_REPORTED, MOST_REPORTED + 1):
         many = "".join(f"k{n} = 1\n" for n in range(number))
         *others, last = problems_of(tmp_path, many, path.read_text(encoding="utf-8"))
