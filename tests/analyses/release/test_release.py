@@ -59,8 +59,9 @@ def lists(measured: Passages) -> dict[str, list[float]]:
     return {"impact_s": measured.t.tolist(), "amplitude_rad": measured.amplitude.tolist()}
 
 
-@pytest.mark.parametrize("e", [0.75, 0.9, 0.98])
-@pytest.mark.parametrize("keys", [("impact_s",), ("amplitude_rad",), ("impact_s", "amplitude_rad")])
+@pytest.mark.parametrize(
+    ("e", "keys"), [(0.75, ("impact_s",)), (0.9, ("amplitude_rad",)), (0.98, ("impact_s", "amplitude_rad"))]
+)
 def test_exact_values_give_the_restitution_that_made_them(e, keys):
     """1e-6: the runs of a fit have some 1e-8 of θ0 left."""
     exact = lists(passages([e] * IMPACTS))
