@@ -254,12 +254,6 @@ def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):
     assert any(note.startswith("offset 0.03") for note in motion.notes)
 
 
-def test_components_that_differ_by_suffix_only_keep_it_in_their_names(tmp_path):
-    for direction, suffix in (("E-W", "EW"), ("N-S", "NS")):
-        (tmp_path / f"TST.{suffix}").write_text(knet_text(direction)[0])
-    assert [motion.name for motion in read_motions(tmp_path).motions] == ["TST.EW", "TST.NS"]
-
-
 def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
     for direction, suffix in ((2, "EW1"), (3, "UD1"), (5, "EW2"), (6, "UD2")):
         (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction))[0])

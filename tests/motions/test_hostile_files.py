@@ -134,7 +134,7 @@ def test_a_file_of_more_pieces_than_a_network_has_is_refused(tmp_path, monkeypat
     assert found.motions
 
 
-@pytest.mark.parametrize("dt", ["1e200", "1E6", "10.", "1E-7", "1e-300", "1E-30"])
+@pytest.mark.parametrize("dt", ["1e200", "10.", "1E-7"])
 def test_an_interval_that_no_recorder_has_costs_its_file_only(tmp_path, dt):
     write_at2(tmp_path, "bad000.AT2", wiggle(), dt=dt)
     write_at2(tmp_path, "badUP.AT2", wiggle(seed=3), dt=dt)

@@ -108,19 +108,6 @@ def test_another_name_of_a_code_is_reported_alone_without_its_keys(tmp_path, spe
     assert problem.endswith(f'did you mean "{meant}"?')
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "advice"),
-    [
-        ('"rigid"', "“rigid”", 'write name = "rigid"'),
-        ('"rigid"', "«rigid»", 'write name = "rigid"'),
-        ("alpha = 0.2", "alpha = −0.2", "write alpha = -0.2"),
-    ],
-)
-def test_marks_of_a_word_processor_are_reported(tmp_path, old, new, advice):
-    (problem,) = said(tmp_path, study_text().replace(old, new, 1))
-    assert advice in problem
-
-
 WHOLE = study_text(
     pier={"width_m": 4.0, "part": [{"mass_t": 900.0, "height_m": 12.0}, {"mass_t": 500.0, "height_m": 28.0}]},
     motions={"target": EN_1998 | {"spectrum": "EN 1998-1"}, "select": {"pga_g": [0.1, 1.0]}},
