@@ -184,7 +184,6 @@ def test_a_run_to_less_than_rounding_is_refused(tmp_path):
 
 TALL = rb.Pier.rectangle(8, 30, mass_t=3000)
 SHAKE = rb.pulse("sine", name="s", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
-MOTIONS = '[motions]\npath = "."\n'
 
 
 def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigid"\n', pulse=PULSE):
