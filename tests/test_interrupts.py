@@ -63,8 +63,7 @@ runpy.run_module("rockbatch", run_name="__main__")
 @pytest.mark.parametrize(
     "module",
     [
-        "gc", "rockbatch.common.garbage", "rockbatch.commands.cli", "argparse", "rockbatch.commands.interrupts",
-        "rockbatch.common.analyses", "rockbatch.study.load", "rockbatch.batch.running", "numpy", "pandas", "numba",
+        "gc", "rockbatch.commands.cli", "rockbatch.commands.interrupts", "rockbatch.study.load", "numpy",
         "rockbatch.simulation.runs",
     ],
 )  # fmt: skip

@@ -63,6 +63,13 @@ MAKE = {
 KINDS = pytest.mark.parametrize("kind", MAKE)
 
 
+def each_once(names, kinds=tuple(MAKE)):
+    """Return every name with one of the kinds, and the first with all of them: one function looks at the kind for all."""
+    names = [*names]
+    pairs = [(name, kinds[i % len(kinds)]) for i, name in enumerate(names)] + [(names[0], kind) for kind in kinds]
+    return [*dict.fromkeys(pairs)]
+
+
 def state(folder):
     """What is in a folder: names, kinds, and whether something has taken the place of something else."""
     found = {path: path.lstat() for path in folder.rglob("*")}
@@ -95,8 +102,7 @@ WRITING = {name: ["run"] for name in (*OUTPUTS, "peaks.csv.part", LOCK)} | {
 }  # fmt: skip
 
 
-@KINDS
-@pytest.mark.parametrize("name", WRITING)
+@pytest.mark.parametrize(("name", "kind"), each_once(WRITING))
 def test_nothing_but_a_regular_file_is_replaced_in_a_folder_of_results(study, tmp_path, capsys, name, kind):
     MAKE[kind](tmp_path / name)
     before = state(tmp_path)
@@ -107,16 +113,16 @@ def test_nothing_but_a_regular_file_is_replaced_in_a_folder_of_results(study, tm
         assert state(tmp_path) == before
 
 
-@KINDS
-@pytest.mark.parametrize(
-    ("name", "command"),
-    [
-        ("report.html", ["report"]),
-        ("compare-b.html", ["report", "b"]),
-        ("checks.csv", ["check", "--rules", "rules.toml"]),
-    ],
-)
-def test_nor_by_commands_on_finished_results(results, tmp_path, monkeypatch, capsys, name, command, kind):
+ON_RESULTS = {
+    "report.html": ["report"],
+    "compare-b.html": ["report", "b"],
+    "checks.csv": ["check", "--rules", "rules.toml"],
+}
+
+
+@pytest.mark.parametrize(("name", "kind"), each_once(ON_RESULTS))
+def test_nor_by_commands_on_finished_results(results, tmp_path, monkeypatch, capsys, name, kind):
+    command = ON_RESULTS[name]
     for folder in ("a", "b"):
         shutil.copytree(results, tmp_path / folder)
     (tmp_path / "rules.toml").write_text(toml(RULES))
@@ -129,8 +135,9 @@ def test_nor_by_commands_on_finished_results(results, tmp_path, monkeypatch, cap
     assert state(tmp_path) == before
 
 
-@KINDS
-@pytest.mark.parametrize("name", ["pier.toml", "checks.toml", "records", "motions.toml", "motions.csv"])
+@pytest.mark.parametrize(
+    ("name", "kind"), each_once(["pier.toml", "checks.toml", "records", "motions.toml", "motions.csv"])
+)
 def test_nor_where_something_new_is_begun(records, tmp_path, capsys, name, kind):
     folder = shutil.copytree(records, tmp_path / "records") if name.startswith("motions") else tmp_path
     MAKE[kind](folder / name)
@@ -200,8 +207,7 @@ def places(study, results, records):
     return {"study": study, "results": results, "records": records}
 
 
-@EACH_NAMED
-@pytest.mark.parametrize("kind", ["socket", "link", "folder", "link to nothing"])
+@pytest.mark.parametrize(("command", "kind"), each_once(NAMED, ("socket", "link", "folder", "link to nothing")))
 def test_a_name_of_what_is_no_file_and_takes_nothing_is_refused(places, tmp_path, capsys, command, kind):
     MAKE[kind](tmp_path / "out")
     before = state(tmp_path)
@@ -293,19 +299,7 @@ def test_a_terminal_is_written_into():
 @pytest.mark.parametrize("name", ["-", "/dev/stdout"])
 @pytest.mark.parametrize("to", ["pipe", "file"])
 def test_stdout_has_the_table_and_nothing_else(records, tmp_path, name, to):
-    command = [
-        sys.executable,
-        "-m",
-        "rockbatch",
-        "motions",
-        str(records),
-        "--unit",
-        "g",
-        "--role",
-        "horizontal",
-        "--csv",
-        name,
-    ]
+    command = [sys.executable, "-m", "rockbatch", *NAMED["motions"](name, {"records": records})]
     with (tmp_path / "taken").open("wb") as file:
         done = subprocess.run(
             command, stdout=subprocess.PIPE if to == "pipe" else file, stderr=subprocess.PIPE, check=False

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from rockbatch.common.grouping import closest
@@ -90,7 +91,12 @@ def names(listed: Mapping[Any, str]) -> dict[str, Any]:
 
 def plain(name: str) -> str:
     """Return the letters and digits of a name, in lower case."""
-    return "".join(filter(str.isalnum, ascii_marks(name[:_LONGEST]).lower()))
+    return _plain(name[:_LONGEST])
+
+
+@lru_cache(maxsize=4096)  # a name that is not known is held against every key of the file
+def _plain(name: str) -> str:
+    return "".join(filter(str.isalnum, ascii_marks(name).lower()))
 
 
 def quantity_of(name: str) -> tuple[str, str, float]:

@@ -31,7 +31,7 @@ for name, sections in FILES.items():
 
 @pytest.fixture
 def copied(tmp_path):
-    shutil.copytree(TOP, tmp_path / "rockbatch", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(TOP, tmp_path / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))  # compiled kernels
     return tmp_path
 
 
@@ -53,19 +53,23 @@ def write_tuple(place, names):
     path.write_text(text.replace(line, f"ANALYSES = {tuple(names)!r}"), encoding="utf-8")
 
 
+def test_every_analysis_is_seen():
+    seen = python(TOP.parent, "-c", LOOK)
+    assert all(f"\n  {name} " in seen and name in seen.splitlines()[-5].split() for name in ANALYSES)
+
+
 @pytest.mark.parametrize("name", ANALYSES)
 def test_an_analysis_is_deleted_with_its_folder_and_its_name(copied, name):
-    before = python(copied, "-c", LOOK)
-    assert name in before
     shutil.rmtree(copied / "rockbatch" / "analyses" / name)
     write_tuple(copied, [other for other in ANALYSES if other != name])
-    after = python(copied, "-c", LOOK)
+    study = write_study(copied, study_text(pier=PIER, pulses=[SINE], cases=[RIGID]))
+    run = f"\nfrom rockbatch.commands.cli import main\nassert main(['statics', {str(study)!r}]) == 0"
+    after, _, statics = python(copied, "-c", f"{LOOK}print('statics:'){run}").rpartition("statics:\n")
     assert f"\n  {name} " not in after
     assert f", by `rockbatch {name}`: " not in after
     assert name not in after.splitlines()[-5].split()
     assert all(other in after for other in ANALYSES if other != name)
-    study = write_study(copied, study_text(pier=PIER, pulses=[SINE], cases=[RIGID]))
-    assert "rigid" in python(copied, "-m", "rockbatch", "statics", str(study))
+    assert "rigid" in statics
 
 
 def test_an_analysis_is_added_with_a_folder_and_a_name(copied):

@@ -288,8 +288,7 @@ def by_hand(path: Path, statistic, count):
     return len(values), max(values)
 
 
-@pytest.mark.parametrize("stations", [FOUR, SEVEN], ids=["four", "seven"])
-@pytest.mark.parametrize("count", ["station", "component"])
+@pytest.mark.parametrize(("stations", "count"), [(FOUR, "component"), (SEVEN, "station")], ids=["four", "seven"])
 @pytest.mark.parametrize("statistic", ["max", "mean", "en1998-1", "en1998-2", "aashto", "nzs1170.5"])
 def test_a_verdict_is_what_plain_python_makes_of_peaks_csv(tmp_path, stations, count, statistic):
     table = pd.concat([pairs(*stations), pairs(*stations, polarity="-").assign(theta_max_over_alpha=0.15)])

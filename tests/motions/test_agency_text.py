@@ -116,9 +116,8 @@ every_format = pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.n
 
 
 @every_format
-@pytest.mark.parametrize("newline", ["\n", "\r\n"])
-def test_every_component_comes_out_in_m_s2_with_step_direction_and_time(case, newline):
-    found = read(case.text.replace("\n", newline), f"STA{case.suffix}")
+def test_every_component_comes_out_in_m_s2_with_step_direction_and_time(case):
+    found = read(case.text.replace("\n", "\r\n"), f"STA{case.suffix}")
     assert [component.orientation.label for component in found] == list(case.labels)
     for component, label, values in zip(found, case.labels, case.values, strict=True):
         assert component.name == (f"STA.{label}" if len(found) > 1 else "STA")
@@ -314,22 +313,6 @@ def test_the_reference_database_of_europe_is_read_in_its_own_layout():
     assert (up.orientation.vertical, up.station) == (True, north.station)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (resorce_text(**{"Number of Data": "44"}), "line 19: found .*expected 4 values"),
-        (resorce_text(**{"Number of Data": "40"}), "line 19: found .* after the 40 declared values"),
-        (resorce_text(**{"Number of Data": "many"}), 'Number of Data: "many"; expected a number'),
-        (resorce_text(**{"Time Increment (s)": "0"}), "expected a whole number and an interval"),
-        (resorce_text().rstrip()[:-3], "line 19: found .*expected 3 values of 14 characters"),
-        (resorce_text().replace("Accelaration time", "Velocity time"), 'no line "Acceleration time series'),
-    ],
-)
-def test_a_file_of_that_database_that_is_not_whole_is_refused(text, message):
-    with pytest.raises(InputError, match=message):
-        read(text, "x.cor.acc")
-
-
 def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_velocity_of_its_series():
     east, up, north = read(usc_corrected_text(), "x.s0a")
     assert [c.orientation.label for c in (east, up, north)] == ["N90E", "UP", "N00E"]
@@ -347,13 +330,6 @@ def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_
 def sensor_and_event(text: str):
     component = read(text, "x.s0a")[0]
     return component.sensor, component.event
-
-
-def test_a_second_volume_of_usc_with_another_peak_is_not_used():
-    text = usc_corrected_text()
-    peak = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
-    east = read(text.replace(peak, peak.replace("-", "-1", 1)), "x.s0a")[0]
-    assert [finding.gross for finding in east.findings] == [True]
 
 
 @pytest.mark.parametrize("declared", [True, False])
@@ -379,15 +355,9 @@ def test_caltechs_undeclared_series_in_another_unit_than_their_peak_are_not_used
     assert [finding.gross for finding in in_mm.findings] == [True]
 
 
-@pytest.mark.parametrize("count", [NPTS - 8, NPTS + 8])
-def test_caltechs_undeclared_series_have_the_count_of_their_header(count):
-    text = caltech_text(declared=False).replace(f"{NPTS:6d}  INSTRUMENT", f"{count:6d}  INSTRUMENT")
-    with pytest.raises(InputError, match=r"line \d+: found"):
-        read(text, "x.V2")
-
-
-@pytest.mark.parametrize("case", CASES[-6:-1], ids=lambda case: case.name)
-@pytest.mark.parametrize("name", ["x.txt", "x.dat", "STATION", "x.V1", "x.191"])
+@pytest.mark.parametrize(
+    ("case", "name"), list(zip(CASES[-6:-1], ["x.dat", "x.191", "STATION", "x.txt", "x.V1"], strict=True))
+)
 def test_national_files_are_recognised_by_their_content_in_a_file_of_any_name(case, name):
     assert [component.orientation.label for component in read(case.text, name)] == list(case.labels)
 
@@ -435,14 +405,14 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         (dyna_text(NDATA=None, UNITS=None), "x.ASC", "the header lacks NDATA, UNITS"),
         (dyna_text(DATA_TYPE="VELOCITY"), "x.ASC", "DATA_TYPE: VELOCITY; expected ACCELERATION"),
         (dyna_text(np.tile(A, 3)).rstrip()[:-1], "x.ASC", "line 148: .*the file is cut"),
-        (dyna_text().replace("\n0.000000", "\nnan", 1) + "nan", "x.ASC", r'line \d+: found "nan"|there are 44'),
-        (renadic_text().replace("POINTS =     43", "POINTS = 999999999", 1), "x.v1", "take 200000000 lines"),
-        (renadic_text().replace("/&", "//", 1), "x.v1", 'line 37: found "// .*expected "/&" after the declared values'),
         (renadic_text().replace("  0.055", "  0.050", 1), "x.v1", "channel L from line 1 on: time does not grow"),
-        (csmnc_text(count=44), "x.dat", "line 22: found 3 numbers; expected 4"),
         (csmnc_text(kind="UNCORRECTED VELOCITY"), "x.dat", 'found "VELOCITY"; expected accelerations'),
         (afad_text(**{"RAW PGA VALUES (gal)": None}), "x.txt", "which tells the unit"),
-        (afad_text(**{"NUMBER OF DATA": "many"}), "x.txt", 'NUMBER OF DATA: "many"; expected a number'),
+        (resorce_text(**{"Number of Data": "40"}), "x.cor.acc", "line 19: found .* after the 40 declared values"),
+        (emod3d_text(count=NPTS - 6), "HALS.090", f"the header says {NPTS - 6} values"),
+        (caltech_text(declared=False).replace(f"{NPTS:6d}  INS", f"{NPTS - 8:6d}  INS"), "x.V2", r"line \d+: found"),
+        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/&" after 43 values'),
+        (resorce_text(**{"Number of Data": "many"}), "x.cor.acc", 'Number of Data: "many"; expected a number'),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/43/43/42"}), "x.191", "42, 43; expected the same for all"),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/44/44/44"}), "x.191", "44 samples from line .*it is cut"),
         (unam_text(**{"NUM. TOTAL DE MUESTRAS, C1-C6": "/40/40/40"}), "x.191", "after the 40 declared samples"),
@@ -455,16 +425,14 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
         ),
         (bhrc_text(volume=2), "x.V1", "Volume 2, whose layout is not known; take the .V1 file"),
         (bhrc_text(rate=0.0), "x.V1", "43 points, line 22 0 samples per second"),
-        (bhrc_text().replace("/&", "//", 1), "x.V1", 'line 33: found "//"; expected "/&" after 43 values'),
         (usc_text().replace("\n   0.000", "\n0.000  ", 1), "x.s0a", "line 28: .*expected a blank and ten columns"),
-        (
-            usc_corrected_text().replace(f"{NPTS:6d} POINTS OF ACC", f"{NPTS + 8:6d} POINTS OF ACC", 1),
-            "x.s0a",
-            "line 52: ",
-        ),
         (usc_corrected_text().replace("POINTS OF ACC", "POINTS OF VEL", 1), "x.s0a", "line 46: .*unit of accel"),
-        (usc_corrected_text().replace("PEAK ACCELERATION", "PEAK", 1), "x.s0a", "line 18: .*PEAK ACCELERATION"),
-        (usc_text().replace("DURATION", "LENGTH", 1), "x.s0a", "line 11: .*DURATION"),
+        (resorce_text(**{"Time Increment (s)": "0"}), "x.cor.acc", "expected a whole number and an interval"),
+        (
+            resorce_text().replace("Accelaration time", "Velocity time"),
+            "x.cor.acc",
+            'no line "Acceleration time series',
+        ),
         (cwa_text(DataSequence="Time U(+); N(+)"), "x.txt", "found 4 columns; the header says time and U, N"),
         (cwa_text(DataSequence="Time U(-); N(+); E(+)"), "x.txt", 'DataSequence: "Time U'),
     ],
@@ -545,13 +513,6 @@ def test_emod3d_files_are_one_station_whose_unit_is_stated(tmp_path):
         assert (motion.dt, motion.azimuth) == (0.005, float(motion.name[-3:]))
         np.testing.assert_allclose(motion.horizontal, values / 100, rtol=1e-5)
         np.testing.assert_allclose(motion.vertical, C / 100, rtol=1e-5)
-
-
-@pytest.mark.parametrize("count", [NPTS - 6, NPTS + 6])
-def test_an_emod3d_file_of_another_count_is_refused(tmp_path, count):
-    (tmp_path / "HALS.090").write_text(emod3d_text(count=count))
-    (refused,) = read_motions(tmp_path, options=ReadOptions(unit="g")).unusable
-    assert f"the header says {count} values" in refused.reason
 
 
 def test_a_dyna_file_of_two_components_is_refused_where_the_second_begins():

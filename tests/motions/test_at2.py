@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions.formats.at2 import is_at2, read_at2
+from rockbatch.motions.formats.at2 import read_at2
 
 VALUES = wiggle(12)
 
@@ -90,12 +90,6 @@ def test_fortran_double_precision_exponents_are_numbers():
     )
 
 
-@pytest.mark.parametrize("said", [11, 13])
-def test_a_count_that_is_off_by_one_is_an_error_with_both_counts(said):
-    with pytest.raises(InputError, match=rf"NPTS = {said}.*holds 12 values"):
-        read(at2_text(VALUES, count=f"NPTS= {said}, DT= .01 SEC"))
-
-
 def test_a_file_cut_within_its_last_number_is_an_error_though_the_count_is_right():
     text = at2_text(wiggle(200)).rstrip()
     for cut in range(1, 10):
@@ -123,36 +117,19 @@ def test_what_cannot_be_used_is_refused_with_place_and_finding(text, message):
 
 def test_the_error_names_the_file(tmp_path):
     path = tmp_path / "short.AT2"
-    path.write_text(at2_text(VALUES, count="NPTS= 99, DT= .01 SEC"))
-    with pytest.raises(InputError, match=r"short\.AT2: the header says NPTS = 99"):
+    path.write_text(at2_text(VALUES, count="NPTS= 11, DT= .01 SEC"))
+    with pytest.raises(InputError, match=r"short\.AT2: the header says NPTS = 11.*holds 12 values"):
         read_at2(str(path))
 
 
-def test_a_header_alone_can_be_read():
-    trace = read_at2(io.BytesIO(at2_text(VALUES).encode()), headonly=True)[0]
-    assert (trace.stats.npts, len(trace.data)) == (12, 0)
-
-
-def test_the_check_of_an_at2_file_leaves_it_where_it_was(tmp_path):
-    path = tmp_path / "x.AT2"
-    path.write_text(at2_text(VALUES))
-    assert is_at2(str(path))
-    assert is_at2(path)
-    buffer = io.BytesIO(path.read_bytes())
-    buffer.seek(3)
-    is_at2(buffer)
-    assert buffer.tell() == 3  # other formats look at the file next
-
-
-@pytest.mark.parametrize("format", [None, "AT2"])
-def test_obspy_reads_at2_with_and_without_the_format_named(tmp_path, format):
+def test_obspy_reads_at2_without_being_told_the_format(tmp_path):
     obspy = pytest.importorskip("obspy")
     path = tmp_path / "x.AT2"
     path.write_text(at2_text(VALUES))
-    stream = obspy.read(str(path), format=format)
+    stream = obspy.read(str(path))
     assert stream[0].stats._format == "AT2"
     assert stream[0].stats.channel == "228"
-    np.testing.assert_allclose(obspy.read(io.BytesIO(path.read_bytes()), format=format)[0].data, VALUES, rtol=1e-6)
+    np.testing.assert_allclose(obspy.read(io.BytesIO(path.read_bytes()))[0].data, VALUES, rtol=1e-6)
 
 
 numbers = st.floats(-10, 10, allow_subnormal=False).map(lambda v: 0.0 if abs(v) < 1e-30 else v)
@@ -164,13 +141,3 @@ def test_what_is_written_is_read_back(values, dt):
     trace = read(at2_text(values, dt=dt))
     assert trace.stats.npts == len(values)
     np.testing.assert_allclose(trace.data, values, rtol=1e-6, atol=0)  # E15.7 has seven digits
-
-
-GOOD = at2_text(wiggle(150)).encode()
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, len(GOOD.rstrip()) - 1))
-def test_a_truncated_file_is_never_taken_for_a_whole_one(length):
-    with pytest.raises(InputError):
-        read_at2(io.BytesIO(GOOD[:length]))

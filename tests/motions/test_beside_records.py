@@ -16,8 +16,6 @@ from rockbatch.commands.cli import main
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import draft, write_manifest
 
-TITLE = "Somewhere, 1/17/1994, STA, 000"
-
 
 def only_reason(found) -> str:
     (refused,) = found.unusable

@@ -132,12 +132,11 @@ def test_the_times_of_a_sac_header_count_from_1970_in_some_files():
     assert "its header states a duration of 29.99 s, and its samples have 7.5 s" in reasons[0]
 
 
-@pytest.mark.parametrize("block", range(10))
+@pytest.mark.parametrize("block", [0, 4, 9])
 @pytest.mark.parametrize(("byte", "mask"), [(21, 1), (26, 1), (23, 2), (24, 2), (25, 32), (25, 4)])
 def test_a_bit_of_the_time_of_a_block_of_miniseed_makes_no_two_motions(block, byte, mask):
     whole = OF["MiniSEED"]
     assert len(whole.data) == 10 * 512
-    assert len(read_as(whole, whole.data).motions) == 1
     found = read_as(whole, bit(512 * block + byte, mask)(whole.data))
     assert not found.motions
     reasons = ("by its number, but not by its time", "gaps or overlaps")

@@ -147,13 +147,16 @@ def test_a_csmip_file_and_miniseed_of_the_same_recording_are_one(tmp_path):
     assert len(found.left_out) == 3
 
 
-def test_an_smc_file_and_a_cosmos_file_of_the_same_recording_are_one(tmp_path):
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_smc_file_and_a_cosmos_file_of_the_same_recording_are_one(tmp_path, sign):
     values = shaking(4)
     (tmp_path / "a.smc").write_text(smc_text(values, clock=(-32768,) * 6), encoding="latin-1")
-    text = cosmos_text(values, "135 Deg", series={"seconds": 2}, stage="Corrected", scnl="")
-    (tmp_path / "b.v2c").write_text(text.replace("NP-8040", "NP-1675"), encoding="latin-1")
+    text = cosmos_text(sign * values, "135 Deg", series={"seconds": 2}, stage="Corrected", scnl="")
+    (tmp_path / "b.v2c").write_text(text.replace("NP-8040", "NP-1675") if sign > 0 else text, encoding="latin-1")
     found = read_motions(tmp_path)
-    assert (len(found.motions), len(found.left_out)) == (1, 1)
+    assert len(found.motions) == 1
+    (reason,) = left_out(found).values()
+    assert ("-1 times as large" in reason) == (sign < 0)
 
 
 def test_records_that_only_look_alike_stay_two(tmp_path):
@@ -166,14 +169,14 @@ def test_records_that_only_look_alike_stay_two(tmp_path):
 
 @pytest.mark.parametrize("seconds", [4, 40])
 def test_waves_of_a_few_long_periods_are_no_copies_of_each_other(tmp_path, seconds):
-    """Random walks have four independent values, whatever their length: of 300, several correlate by 0.95 and more."""
+    """Random walks have four independent values, whatever their length: of 120, several correlate by 0.95 and more."""
     rng, t = np.random.default_rng(5), np.linspace(0.0, seconds, 401)[:-1]
-    walks = np.cumsum(rng.standard_normal((300, len(t))), axis=1)
+    walks = np.cumsum(rng.standard_normal((120, len(t))), axis=1)
     walks -= walks.mean(axis=1, keepdims=True)
     for i, walk in enumerate(walks):
         rows = "".join(f"{x:.2f} {a:.6f}\n" for x, a in zip(t, walk / np.abs(walk).max(), strict=True))
         (tmp_path / f"r{i}_NS.txt").write_text("time(s) a(m/s2)\n" + rows)
-    assert len(read_motions(tmp_path, confirmed=["*"]).motions) == 300
+    assert len(read_motions(tmp_path, confirmed=["*"]).motions) == 120
 
 
 def test_a_copy_of_a_record_of_one_period_is_found_without_a_header(tmp_path):
@@ -248,10 +251,9 @@ FRAMES = {
 
 
 @pytest.mark.parametrize("frame", FRAMES)
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_copy_in_another_frame_is_left_out_whole(tmp_path, frame, seed):
+def test_a_copy_in_another_frame_is_left_out_whole(tmp_path, frame):
     change, labels = FRAMES[frame]
-    first, second, upright = shaken(10 * seed)
+    first, second, upright = shaken(10)
     write_set(tmp_path / "a", first, second, upright)
     write_set(tmp_path / "longer", *change(first, second), upright, labels)
     found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(role="horizontal"))
@@ -324,9 +326,8 @@ def write_pair(folder, pair, labels=("000", "090"), **header):
 
 
 @pytest.mark.parametrize("change", CHANGES)
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_copy_without_a_vertical_of_which_no_component_is_alike_is_left_out_whole(tmp_path, change, seed):
-    first = earthquake(seed)
+def test_a_copy_without_a_vertical_of_which_no_component_is_alike_is_left_out_whole(tmp_path, change):
+    first = earthquake(1)
     write_pair(tmp_path / "a", first)
     write_pair(tmp_path / "longer", CHANGES[change](first), ("037", "127") if "turned" in change else ("000", "090"))
     found = read_motions(tmp_path, confirmed=["*"])
@@ -467,13 +468,3 @@ def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
     assert len(found.motions) == 2
     assert len({motion.station for motion in found.motions}) == 1
     assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["factor"], ["factor"]]
-
-
-def test_a_reversed_copy_in_another_format_is_the_same_recording(tmp_path):
-    values = shaking(4)
-    (tmp_path / "a.smc").write_text(smc_text(values, clock=(-32768,) * 6), encoding="latin-1")
-    text = cosmos_text(-values, "135 Deg", series={"seconds": 2}, stage="Corrected", scnl="")
-    (tmp_path / "b.v2c").write_text(text, encoding="latin-1")
-    found = read_motions(tmp_path)
-    assert len(found.motions) == 1
-    assert "-1 times as large" in next(iter(left_out(found).values()))

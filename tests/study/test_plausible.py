@@ -27,16 +27,11 @@ PARTS = {
 }
 THETA = ('demand = "heel_uplift_m"\nat_most = 0.1', 'demand = "theta_max_over_alpha"\nat_most = 50')
 FOUND = [  # part, what stands there, what shall, its key, and what is said
-    ("pier", "width_m = 4", "width_m = 4000", "width_m", "[pier]: width_m = 4000: more than 400 m: the highest bridge piers"),
-    ("pier", "height_m = 30", "height_m = 30e3", "height_m", "[pier]: height_m = 30000: more than 400 m"),
-    ("pier", "mass_t = 3000", "mass_t = 3e6", "mass_t", "[pier]: mass_t = 3e+06: more than 1e+06 t: the heaviest"),
     ("pier", "mass_t = 3000", "mass_t = 3000\ntop_m = 31500", "top_m", "[pier]: top_m = 31500: more than 400 m"),
     ("pier", "mass_t = 3000", "mass_t = 2e3\ndeck_mass_t = 2e6", "deck_mass_t", "[pier]: deck_mass_t = 2e+06: more than"),
     ("pier", "mass_t = 3000", "[[pier.part]]\nmass_t = 3000\nheight_m = 1500\ninertia_t_m2 = 2e5", "height_m",
      "[[pier.part]] no. 1: height_m = 1500: more than 400 m"),
     ("numerics", "1e-4", "100", "tolerance", "[numerics]: tolerance = 100: more than 0.1 of theta_max/alpha"),
-    ("case", "2e6", "2e9", "stiffness_kN_m",
-     '[[case]] "pads": stiffness_kN_m = 2e+09: the pier\'s weight presses the supports in by 0.0074 mm only, where sound rock'),
     ("case", "4e4", "[4e4, 37e6]", "yield_kN",
      '[[case]] "pads": yield_kN = 3.7e+07: 2.51e+03 times what the support carries at rest, where 2 to 20'),
     ("check", "at_most = 0.1", "at_most = 100", "at_most",
@@ -189,73 +184,12 @@ def test_a_run_to_less_than_rounding_is_refused(tmp_path):
 
 TALL = rb.Pier.rectangle(8, 30, mass_t=3000)
 SHAKE = rb.pulse("sine", name="s", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
-MOTIONS = '[motions]\npath = "."\n'
 
 
 def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigid"\n', pulse=PULSE):
     path = folder / "study.toml"
     path.write_text("[pier]\nwidth_m = 8\nheight_m = 30\nmass_t = 3000\n" + motions + pulse + case, encoding="utf-8")
     return path
-
-
-@pytest.mark.parametrize(
-    ("device", "key", "said"),
-    [
-        ('damper]]\nkind = "viscous"\ncoefficient_kN_s_m = 5e6', "coefficient_kN_s_m",
-         "damper 1: coefficient_kN_s_m = 5e+06: at 5.9 mm/s one damper has the force of the pier's weight"),
-        ('damper]]\nkind = "viscous"\nnu = 4000', "nu", "damper 1: nu = 4000: at "),
-        ('damper]]\nkind = "hysteretic"\nforce_kN = 450\nyield_mm = 0.005', "yield_mm",
-         "damper 1: yield_mm = 0.005: the damper yields at 0.005 mm, where steel ones do at 1 to 20 mm"),
-        ('damper]]\nkind = "viscous"\nnu = 0.5\nbrace_kN_m = 5e9', "brace_kN_m",
-         "damper 1: brace_kN_m = 5e+09: the brace gives by 0.0059 mm under the pier's weight; leave out one that is rigid"),
-        ("tendon]]\nstiffness_kN_m = 5e7", "stiffness_kN_m",
-         "tendon 1: stiffness_kN_m = 5e+07: it adds 17.7 times the pier's weight at a rotation of 0.01 α"),
-        ("tendon]]\npsi = 0.0", "psi", "tendon 1: psi = 0: with no prestress and no stiffness the tendon is not there"),
-    ],
-)  # fmt: skip
-def test_devices_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, device, key, said):
-    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.{device}\n'
-    (problem,) = problems_of(written_with(tmp_path, case=case))
-    assert f': [[case]] "a", {said}' in problem
-    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.{device[:6]}]]')
-    assert key in (tmp_path / "study.toml").read_text().splitlines()[int(problem.split(":")[1]) - 1]
-    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
-
-
-@pytest.mark.parametrize(
-    ("keys", "key", "said"),
-    [
-        ("gap_mm = 0.1\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 0.1: it is met after 0.1 mm already"),
-        ("gap_mm = 1e5\nstiffness_kN_m = 5e5", "gap_mm", "gap_mm = 100000: it is met at a rise of 100 m, more than"),
-        ("gap_mm = 100\nstiffness_kN_m = 5e9", "stiffness_kN_m", "it bears the pier's weight at a deflection of 0.0059 mm"),
-        ("gap_mm = 100\nlambda = 0.0", "lambda", "lambda = 0: with no stiffness the stop is not there"),
-    ],
-)  # fmt: skip
-def test_stops_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, keys, key, said):
-    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.stop]]\n{keys}\n'
-    (problem,) = problems_of(written_with(tmp_path, case=case))
-    assert '[[case]] "a", stop 1: ' in problem
-    assert said in problem
-    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.stop]]')
-    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
-
-
-@pytest.mark.parametrize(
-    ("keys", "key", "said"),
-    [
-        ("gap_mm = 9000\nstiffness_kN_m = 5e4", "gap_mm", "gap_mm = 9000: the deck is only there"),
-        ("height_m = 3150\nstiffness_kN_m = 5e4", "height_m", "height_m = 3150: 105 times the height of the pier, 30 m"),
-        ("stiffness_kN_m = 5e9", "stiffness_kN_m", "it bears the pier's weight at a deflection of 0.0059 mm"),
-        ("lambda = 0.0", "lambda", "lambda = 0: with no stiffness the spring is not there"),
-    ],
-)  # fmt: skip
-def test_deck_springs_that_a_wrong_unit_explains_are_refused_until_they_are_confirmed(tmp_path, keys, key, said):
-    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.deck_spring]]\n{keys}\n'
-    (problem,) = problems_of(written_with(tmp_path, case=case))
-    assert '[[case]] "a", deck_spring 1: ' in problem
-    assert said in problem
-    assert problem.endswith(f'if it is right, write confirm = ["{key}"] in [[case.deck_spring]]')
-    assert problems_of(written_with(tmp_path, case=f'{case}confirm = ["{key}"]\n')) == ()
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ TABLES = {  # by the table that is varied: all that is usual
     "size": {"alpha": 0.2, "size_m": 20.0}, "p": {"alpha": 0.2, "p": 0.4},
     "springs": SPRINGS | {"area_m2": 6.0, "flight_limit_mm": 20.0}, "ratios": RATIOS,
     "friction": {"kind": "friction", "force_kN": 450.0}, "hysteretic": STEEL, "viscous": OIL, "tendon": TENDON, "stop": STOP,
-    "deck_spring": DECK_SPRING,
+    "deck_spring": DECK_SPRING, "damper nu": {"kind": "viscous", "nu": 0.5}, "tendon psi": {"psi": 0.2},
+    "stop lambda": {"gap_mm": 100.0, "lambda": 20.0}, "deck_spring lambda": {"lambda": 1.0},
 }  # fmt: skip
 PIERS = ("pier", "deck", "held", "size", "p")
 NOTHING = "as good as nothing"
@@ -50,16 +51,19 @@ SMALL = [  # table, key, value as written, what is said of it, and what to write
     ("deck_spring", "gap_mm", 0.05, "it is met after 0.05 mm already", "0.05 m are gap_mm = 50"),
     ("deck_spring", "stiffness_kN_m", 50.0, NOTHING, "50 MN/m are stiffness_kN_m = 50000"),
     ("deck_spring", "height_m", 0.0315, "0.00105 times the height", "0.0315 km are height_m = 31.5"),
+    ("tendon psi", "psi", 0.0, "with no prestress and no stiffness the tendon is not there", ""),
+    ("stop lambda", "lambda", 0.0, "with no stiffness the stop is not there", ""),
+    ("deck_spring lambda", "lambda", 0.0, "with no stiffness the spring is not there", ""),
 ]  # fmt: skip
 LARGE = [
-    ("pier", "width_m", 8000.0, "more than 400 m", "8000 mm are width_m = 8"),
+    ("pier", "width_m", 8000.0, "more than 400 m: the highest bridge piers", "8000 mm are width_m = 8"),
     ("pier", "height_m", 30e3, "more than 400 m", "30000 mm are height_m = 30"),
-    ("pier", "mass_t", 3e6, "more than 1e+06 t", "3e+06 kg are mass_t = 3000"),
+    ("pier", "mass_t", 3e6, "more than 1e+06 t: the heaviest", "3e+06 kg are mass_t = 3000"),
     ("pier", "flexural_period_s", 600.0, "more than 10 s", "600 ms are flexural_period_s = 0.6"),
     ("deck", "deck_inertia_t_m2", 12e6 * 30, "at 6e+02 m from its axis", ""),
     ("size", "size_m", 20e3, "more than 400 m", "20000 mm are size_m = 20"),
     ("p", "p", 400.0, "more than 30 rad/s", ""),
-    ("springs", "stiffness_kN_m", 2e9, "in by 0.0074 mm only", "2e+09 N/m are stiffness_kN_m = 2e+06"),
+    ("springs", "stiffness_kN_m", 2e9, "in by 0.0074 mm only, where sound rock", "2e+09 N/m are stiffness_kN_m = 2e+06"),
     ("springs", "yield_kN", 4e7, "2.72e+03 times what the support carries", "4e+07 N are yield_kN = 40000"),
     ("springs", "area_m2", 6000.0, "presses 2.5 kPa", "6000 cm² are area_m2 = 0.6"),
     ("springs", "flight_limit_mm", 20e3, "more than 10000 mm", ""),
@@ -69,6 +73,7 @@ LARGE = [
     ("hysteretic", "yield_mm", 5e3, "the damper yields at 5e+03 mm", ""),
     ("viscous", "coefficient_kN_s_m", 9e5, "has the force of the pier's weight", "900000 N s/m are coefficient_kN_s_m = 900"),
     ("viscous", "brace_kN_m", 2e8, "leave out one that is rigid", "2e+08 N/m are brace_kN_m = 200000"),
+    ("damper nu", "nu", 4000.0, "one damper has the force of the pier's weight", ""),
     ("tendon", "stiffness_kN_m", 4e7, "adds 14.2 times the pier's weight", "4e+07 N/m are stiffness_kN_m = 40000"),
     ("tendon", "yield_kN", 15e6, "it yields at 510 times", "1.5e+07 N are yield_kN = 15000"),
     ("stop", "gap_mm", 1e5, "more than the pier is wide", ""),
@@ -77,6 +82,13 @@ LARGE = [
     ("deck_spring", "stiffness_kN_m", 5e7, "at a deflection of 0.59 mm", "5e+07 N/m are stiffness_kN_m = 50000"),
     ("deck_spring", "height_m", 31.5e3, "times the height of the pier", "31500 mm are height_m = 31.5"),
 ]  # fmt: skip
+
+
+def device_of(table):
+    """The name of a device's table in a case; empty for a pier or its supports."""
+    name = table.partition(" ")[0]
+    known = ("tendon", "stop", "deck_spring")
+    return name if name in known else "" if table in (*PIERS, "springs", "ratios") else "damper"
 
 
 def problems_with(folder, table, **keys):
@@ -88,8 +100,7 @@ def problems_with(folder, table, **keys):
     elif table in ("springs", "ratios"):
         case = written
     else:
-        name = table if table in ("tendon", "stop", "deck_spring") else "damper"
-        case = case | {name: [written]}
+        case = case | {device_of(table): [written]}
     try:
         load_study(write_study(folder, study_text(pier=pier, cases=[case])))
     except InputError as error:
@@ -107,7 +118,8 @@ def test_a_unit_off_by_a_thousand_is_refused_until_it_is_confirmed(tmp_path, tab
     named = [problem for problem in problems_with(tmp_path, table, **{key: value}) if f"{key} = {value:g}: " in problem]
     (problem,) = [problem for problem in named if said in problem]
     assert instead in problem
-    assert f'check the unit; if it is right, write confirm = ["{key}"] in ' in problem
+    place = f"[[case.{device_of(table)}]]" if device_of(table) else "this table"
+    assert problem.endswith(f'check the unit; if it is right, write confirm = ["{key}"] in {place}')
     lines = (tmp_path / "study.toml").read_text(encoding="utf-8").splitlines()
     assert key in lines[int(problem.removeprefix(f"{tmp_path / 'study.toml'}:").partition(":")[0]) - 1]
     confirmed = problems_with(tmp_path, table, **{key: value, "confirm": [key]})

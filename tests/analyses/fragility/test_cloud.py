@@ -22,7 +22,6 @@ from rockbatch.study import load_study
 
 LN_A, B, SIGMA, ALPHA = math.log(0.6), 1.2, 0.5, (-1.5, 3.0)
 LIMIT = 0.3
-RNG = np.random.default_rng(11)
 
 
 def made_up(rng, records=40, sigma=SIGMA):

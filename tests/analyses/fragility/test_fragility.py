@@ -1,8 +1,11 @@
 """From records at rising intensities to fragility curves: scaling, limits, bisection, resuming, files and messages."""
 
+import contextlib
 import csv
+import io
 import json
 import math
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -68,6 +71,15 @@ def written(tmp_path, fragility):
         ],
     )
     return write_study(tmp_path, f"{text}\n[fragility]\n{fragility}\n")
+
+
+@pytest.fixture(scope="module")
+def ida(tmp_path_factory):
+    """The folder that the command leaves after an incremental dynamic analysis, and what it prints."""
+    folder, printed = tmp_path_factory.mktemp("ida"), io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        assert main(["fragility", str(written(folder, IDA)), "--out", str(folder / "out"), "--jobs", "2"]) == 0
+    return folder / "out", printed.getvalue()
 
 
 def read(path):
@@ -243,10 +255,8 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_pa
         assert (one.stripes, one.capacities) == (other.stripes, other.capacities)
 
 
-def test_the_command_writes_points_curves_capacities_and_all_runs(tmp_path, capsys):
-    out = tmp_path / "results"
-    assert main(["fragility", str(written(tmp_path, IDA)), "--out", str(out), "--jobs", "2"]) == 0
-    printed = capsys.readouterr().out
+def test_the_command_writes_points_curves_capacities_and_all_runs(ida):
+    out, printed = ida
     points, capacities, runs = (read(out / f"fragility{name}.csv") for name in ("", "_capacities", "_runs"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     of_file = {
@@ -519,15 +529,17 @@ def test_for_a_study_without_the_table_the_message_says_what_to_write(tmp_path, 
 # The report
 
 
-def page_of(tmp_path, fragility):
-    """The page that the command leaves, and its folder."""
-    out = tmp_path / "results"
-    assert main(["fragility", str(written(tmp_path, fragility)), "--out", str(out), "--jobs", "2"]) == 0
-    return Page((out / "analyses.html").read_text(encoding="utf-8")), out
+@pytest.fixture(scope="module")
+def stripes(tmp_path_factory):
+    """The folder that the command leaves after stripes."""
+    folder = tmp_path_factory.mktemp("stripes")
+    assert main(["fragility", str(written(folder, STRIPES)), "--out", str(folder / "out"), "--jobs", "2"]) == 0
+    return folder / "out"
 
 
-def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_path):
-    page, out = page_of(tmp_path, IDA)
+def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(ida):
+    out, _ = ida
+    page = Page((out / "analyses.html").read_text(encoding="utf-8"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     assert page.mismatched == []
     assert page.headings == ["Fragility", "The study file"]
@@ -547,9 +559,8 @@ def test_the_report_has_a_panel_for_each_limit_and_every_curve_in_its_table(tmp_
     assert sum(value == "whole" for value in classes) == 1
 
 
-def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_path):
-    _, out = page_of(tmp_path, STRIPES)
-    for one in json.loads((out / "fragility.json").read_text(encoding="utf-8"))["curves"]:
+def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(stripes):
+    for one in json.loads((stripes / "fragility.json").read_text(encoding="utf-8"))["curves"]:
         if "curve" in one:
             low, p, high = (np.array(one["curve"][name]) for name in ("low", "p", "high"))
             assert (low <= p).all()
@@ -557,12 +568,13 @@ def test_bands_of_the_report_hold_their_curves_and_rise_with_the_intensity(tmp_p
             assert (np.diff(p) >= 0).all()
 
 
-def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(tmp_path, capsys):
+def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(ida):
     """On rigid ground in steps of 0.25 % up to the greatest capacity, a single dash; on pads at the four levels, a dash each."""
-    page, out = page_of(tmp_path, IDA)
+    out, printed = ida
+    page = Page((out / "analyses.html").read_text(encoding="utf-8"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     words = "in steps of 0.25 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
-    for text in (page.text, capsys.readouterr().out):
+    for text in (page.text, printed):
         assert [text.count(each) for each in words] == [1, 1]
     by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}
     assert by_case["pads"] == [[x, x] for x in (0.2, 0.4, 0.6, 0.8)]
@@ -582,9 +594,9 @@ def test_hunt_step_looks_between_the_levels_on_every_base(tmp_path):
     assert [spec.step_on(base) for base in (RigidBase(), ElasticBase(30.0))] == [0.0025, None]
 
 
-def test_an_edited_or_damaged_analysis_is_reported(tmp_path):
+def test_an_edited_or_damaged_analysis_is_reported(tmp_path, stripes):
     """Medians stand in fragility.json only: a digit that flipped would be a wrong curve."""
-    _, out = page_of(tmp_path, STRIPES)
+    out = shutil.copytree(stripes, tmp_path / "out")
     path, points_csv = out / "fragility.json", out / "fragility.csv"
     whole = path.read_text(encoding="utf-8")
     study = json.loads(whole)["study"]

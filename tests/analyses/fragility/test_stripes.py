@@ -19,6 +19,7 @@ from rockbatch.study.suite import ground_motions
 
 PGA = 0.4
 LEVELS = {"levels_g": [0.2, 0.4, 0.6, 1.2]}
+COARSE = {"method": "ida", "hunt_step": 0.1, "window": 0.01}
 
 
 def study(tmp_path, fragility, motions=None):
@@ -40,9 +41,9 @@ def stripes(*own):
 # Limits on factors
 
 
-@pytest.mark.parametrize("method", ["stripes", "ida"])
+@pytest.mark.parametrize("method", [{"method": "stripes"}, COARSE])
 def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
-    limits = {"least_scale": 0.8, "most_scale": 1.6, "method": method}
+    limits = {"least_scale": 0.8, "most_scale": 1.6} | method
     found = rb.fragility(study(tmp_path, LEVELS | limits))
     assert found.fragility_runs["scale"].between(0.8, 1.6).all()
     assert found.fragility["n"].to_list() == [0, 7, 7, 0]
@@ -55,15 +56,15 @@ def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
 
 
 def test_without_limits_and_with_wide_ones_the_curves_are_the_same(tmp_path):
-    plain = rb.fragility(study(tmp_path, LEVELS | {"method": "ida"}))
-    wide = rb.fragility(study(tmp_path, LEVELS | {"method": "ida", "least_scale": 0.01, "most_scale": 100.0}))
+    plain = rb.fragility(study(tmp_path, LEVELS | COARSE))
+    wide = rb.fragility(study(tmp_path, LEVELS | COARSE | {"least_scale": 0.01, "most_scale": 100.0}))
     pd.testing.assert_frame_equal(plain.fragility, wide.fragility)
     pd.testing.assert_frame_equal(plain.fragility_capacities, wide.fragility_capacities)
 
 
 def test_a_record_that_is_stopped_by_its_factor_is_censored_there(tmp_path):
     """Capacities up to the greatest level that the factor allows; above it nothing is known of the record."""
-    found = rb.fragility(study(tmp_path, LEVELS | {"method": "ida", "most_scale": 1.6}))
+    found = rb.fragility(study(tmp_path, LEVELS | COARSE | {"most_scale": 1.6}))
     rows = found.fragility_capacities
     assert (rows["above"] <= 0.6).all()
     assert rows[rows["at_most"].isna()]["above"].to_list() == [0.6] * rows["at_most"].isna().sum() != []

@@ -59,8 +59,9 @@ def lists(measured: Passages) -> dict[str, list[float]]:
     return {"impact_s": measured.t.tolist(), "amplitude_rad": measured.amplitude.tolist()}
 
 
-@pytest.mark.parametrize("e", [0.75, 0.9, 0.98])
-@pytest.mark.parametrize("keys", [("impact_s",), ("amplitude_rad",), ("impact_s", "amplitude_rad")])
+@pytest.mark.parametrize(
+    ("e", "keys"), [(0.75, ("impact_s",)), (0.9, ("amplitude_rad",)), (0.98, ("impact_s", "amplitude_rad"))]
+)
 def test_exact_values_give_the_restitution_that_made_them(e, keys):
     """1e-6: the runs of a fit have some 1e-8 of θ0 left."""
     exact = lists(passages([e] * IMPACTS))
@@ -247,8 +248,7 @@ def test_a_pier_that_was_not_pulled_is_refused():
     ("time,amplitude_rad\n0.3,0.1\n", 'a.csv:1: "time": unknown column; write one of impact_s'),
     ("impact_s,impact_ms\n0.3,300\n", "are given by two columns"),
     ("impact_s,amplitude_rad\n0.3,soft\n", "a.csv:2: amplitude_rad = \"soft\""),
-    ("impact_s,amplitude_rad\n0.3\n", "a.csv:2: 1 cells below 2 column names"),
-    ("impact_s\n-0.3\n", "a.csv:2: impact_s"), ("", "expected a line of column names"), ("impact_s\nnan\ninf\n", "a.csv:3"),
+    ("impact_s\n-0.3\n", "a.csv:2: impact_s"), ("impact_s\nnan\ninf\n", "a.csv:3"),
 ])  # fmt: skip
 def test_a_file_of_measured_values_is_refused_with_its_line(tmp_path, content, words):
     (tmp_path / "a.csv").write_text(content, encoding="utf-8")

@@ -444,18 +444,6 @@ def test_a_case_that_has_none_of_the_inputs_is_left_out(tmp_path):
         assert table[["case", "parameter"]].to_numpy().tolist() == [["pads", "eta"]]
 
 
-def test_the_report_shows_both_pictures_and_says_how_overturned_runs_count(folder):
-    report = (folder / "analyses.html").read_text(encoding="utf-8")
-    for words in (
-        "What the answer depends on",
-        "maximum of the suite",
-        "counts as 1,",
-        "one input at a time",
-        "all inputs at once",
-    ):
-        assert words in report
-
-
 def test_another_statistic_of_finished_runs_takes_no_run(folder, tmp_path, monkeypatch, capsys):
     out = tmp_path / "out"
     shutil.copytree(folder, out)
