@@ -56,7 +56,7 @@ def test_every_error_leaves_a_program_and_another_one():
 @pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
 def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
     from places import mutants
-    from run import Place, survives
+    from run import Chosen, Place, noticed_by
 
     source = f"def small(x):\n    return x < {limit}\n"
     (tmp_path / PRODUCT).mkdir()
@@ -67,5 +67,6 @@ def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
         (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
     place = Place(f"{PRODUCT}/few.py", mutant)
-    assert survives(place, [["test_few.py"], ["."]], tmp_path) is survived
+    found = noticed_by(place, [Chosen(["test_few.py"], 60.0), Chosen(["."], 60.0)], tmp_path)
+    assert found == ("" if survived else "FAILED test_limit.py::test_limit")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source

@@ -1,7 +1,10 @@
-"""A pytest plugin: which test executes which line of the product, as coverage's contexts.
+"""A pytest plugin: which test executes which line of the product, as coverage's contexts, and which tests fail as it is.
 
 What is made once for several tests (fixtures of a module, caches) counts for the test that made it.
 """
+
+import os
+from pathlib import Path
 
 import coverage
 import pytest
@@ -14,3 +17,10 @@ def pytest_runtest_protocol(item):
     if measured is not None:
         measured.switch_context(item.nodeid)
     return (yield)
+
+
+def pytest_runtest_logreport(report):
+    """Keep the names of tests that fail without an error."""
+    if report.failed:
+        with Path(os.environ["FAILED_TESTS"]).open("a", encoding="utf-8") as file:
+            file.write(report.nodeid + "\n")
