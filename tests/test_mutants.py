@@ -54,19 +54,22 @@ def test_every_error_leaves_a_program_and_another_one():
 
 
 @pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
-def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
+def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, survived):
+    import run
     from places import mutants
-    from run import Chosen, Place, noticed_by
+    from run import Place, noticed_by
 
     source = f"def small(x):\n    return x < {limit}\n"
     (tmp_path / PRODUCT).mkdir()
     (tmp_path / PRODUCT / "few.py").write_text(source)
     (tmp_path / "conftest.py").write_text("import sys; sys.path.insert(0, 'rockbatch')\n")
-    (tmp_path / "test_few.py").write_text("from few import small\ndef test_small(): assert small(1) and not small(9)\n")
+    (tmp_path / "test_few.py").write_text(
+        "from few import small\ndef test_small(): assert small(1) and not small(9)\ndef test_unsound(): assert False\n"
+    )
     if not survived:
         (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
     place = Place(f"{PRODUCT}/few.py", mutant)
-    found = noticed_by(place, [Chosen(["test_few.py"], 60.0), Chosen(["."], 60.0)], tmp_path)
-    assert found == ("" if survived else "FAILED test_limit.py::test_limit")
+    monkeypatch.setattr(run, "tests_of", lambda place: [["test_few.py"], ["."]])
+    assert noticed_by(place, tmp_path, set()) == ("" if survived else "test_limit.py::test_limit")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source
