@@ -36,8 +36,8 @@ from places import Mutant, mutants
 TOP = Path(__file__).parents[2]
 BUILD = TOP / "build" / "mutants"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-LONGEST = 600
-"""Seconds of computing after which tests count as failed."""
+LONGEST = 200
+"""Seconds of computing for each file of tests, its kernels included, after which they count as failed."""
 TOO_SLOW = "no end"
 """What ends a name of tests that took longer, or were killed."""
 NEAREST = 6
@@ -86,7 +86,8 @@ def drawn(seed: int, count: int, only: str = "") -> list[Place]:
 
 def _digest(*folders: str) -> str:
     paths = (path for folder in folders for path in sorted((TOP / folder).rglob("*.py")))
-    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:12]
+    read = (path.read_bytes() for path in paths if path.parent != Path(__file__).parent)
+    return hashlib.sha256(b"".join(read)).hexdigest()[:12]
 
 
 def copied(number: int) -> Path:
@@ -159,14 +160,14 @@ def _error_in(copy: Path, place: Place) -> Iterator[None]:
 
 def _failure(chosen: list[str], copy: Path) -> str:
     """Return the test, of those ``chosen``, that fails in a copy of the project; "" if none does."""
-    limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(LONGEST)]
+    limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(limit := LONGEST * len(chosen))]
     with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
         process = subprocess.Popen(
             [*limited, sys.executable, "-m", "pytest", *PYTEST, *chosen], cwd=copy, stdout=output, stderr=output,
             env=os.environ | {"PYTHONPATH": str(copy)}, start_new_session=True,
         )  # fmt: skip
         try:
-            code = process.wait(10 * LONGEST)
+            code = process.wait(10 * limit)
         except subprocess.TimeoutExpired:
             code = -signal.SIGXCPU
         with contextlib.suppress(ProcessLookupError):
