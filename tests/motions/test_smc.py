@@ -104,6 +104,7 @@ def test_what_the_header_flags_or_contradicts_is_said():
         ),
         (film_text(times=np.r_[0:0.2:42j, 9.0]), "film: time does not grow evenly: .*a gap is not filled"),
         (smc_text(title="3 VELOCITY"), "3 VELOCITY.*expected accelerations"),
+        (smc_text(title="3 VELOCITY").replace("station =", "nowhere ="), "3 VELOCITY.*expected accelerations"),
         (smc_text(vertical=45), "line 13: inclined, 45° from the vertical"),
         (smc_text(count=40), r"line 35: found .*after the 40 values that line 14 declares"),
         (smc_text(count=999999999), "take 125000000 lines, but the file ends with line 35: it is cut"),

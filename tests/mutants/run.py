@@ -51,9 +51,9 @@ TESTS = {
     "quantities": ("results", "checks", "analyses/test_quantities.py", "report"),
     "toml": ("test_toml.py", "study"),
     "commands": ("test_cli.py", "test_arguments.py", "test_doors.py", "test_outputs.py", "test_hostile_calls.py"),
-    "common": ("test_*.py", "results", "batch"),
+    "common": ("test_f*.py", "test_outputs.py", "test_interrupts.py", "test_pier_figures.py", "results", "batch"),
 }
-"""Tests of a package where they are not in a folder of its name."""
+"""Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
 PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-m", "not slow", "-p", "no:cacheprovider"
 
@@ -100,18 +100,20 @@ def copied(number: int) -> Path:
 
 
 def tests_of(place: Place) -> list[list[str]]:
-    """Return test files: those first that name most of what the module of the error defines, then all of its package."""
+    """Return test files: those first that name most of what the module of the error defines, then the others of its package."""
     folders = TESTS.get(place.package, (place.package,))
-    found = (path for name in folders for path in (TOP / "tests").glob(name))
-    of_package = {file for path in found for file in (path.rglob("test_*.py") if path.is_dir() else [path])}
-    path = TOP / place.file
+    path, order = TOP / place.file, dict[Path, int]()
+    for i, name in enumerate(folders):
+        for found in (TOP / "tests").glob(name):
+            for test in found.rglob("test_*.py") if found.is_dir() else [found]:
+                order.setdefault(test, i)
     names = {path.stem} | {name for name in _defined(path) if not name.startswith("_")}
 
-    def nearness(test: Path) -> tuple[int, str]:
+    def nearness(test: Path) -> tuple[int, int, str]:
         words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
-        return -len(names & words) - 3 * (path.stem in test.stem), str(test)
+        return order[test], -len(names & words) - 3 * (path.stem in test.stem), str(test)
 
-    tests = [test.relative_to(TOP).as_posix() for test in sorted(of_package, key=nearness)]
+    tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
     return [chosen for chosen in (tests[:NEAREST], tests[NEAREST:]) if chosen]
 
 
