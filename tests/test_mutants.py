@@ -2,6 +2,7 @@
 
 import ast
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -73,3 +74,10 @@ def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limi
     monkeypatch.setattr(run, "tests_of", lambda place: [["test_few.py"], ["."]])
     assert noticed_by(place, tmp_path, set()) == ("" if survived else "test_limit.py::test_limit")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source
+
+
+def test_what_is_listed_as_equivalent_can_still_be_put_in():
+    from run import EQUIVALENT, drawn
+
+    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    assert set(listed) <= {place.name for place in drawn(seed=1, count=sys.maxsize)}

@@ -111,7 +111,8 @@ def tests_of(place: Place) -> list[list[str]]:
 
     def nearness(test: Path) -> tuple[int, int, str]:
         words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
-        return order[test], -len(names & words) - 3 * (path.stem in test.stem), str(test)
+        shared = len({*path.parts} & {*test.parts}) + (path.stem in test.stem)  # of folders, and the name itself
+        return order[test], -len(names & words) - 3 * shared, str(test)
 
     tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
     return [chosen for chosen in (tests[:NEAREST], tests[NEAREST:]) if chosen]
