@@ -12,6 +12,7 @@ answer is listed, with the reason, in equivalent.toml.
 import argparse
 import ast
 import contextlib
+import functools
 import hashlib
 import json
 import os
@@ -44,7 +45,7 @@ NEAREST = 6
 """Test files that meet an error first."""
 TESTS = {
     "core": ("core", "simulation", "verification"),
-    "simulation": ("simulation", "core", "verification"),
+    "simulation": ("simulation", "batch", "core", "verification"),
     "pier": ("test_pier*.py", "test_statics.py", "verification", "study"),
     "motions/formats": ("motions",),
     "reporting": ("report", "docs"),
@@ -72,8 +73,13 @@ class Place(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Return file and error as equivalent.toml has them: they stay the same when lines move."""
-        return f"{self.file}: {self.mutant}"
+        """Return file, error and line as equivalent.toml has them: they stay the same when lines move."""
+        return f"{self.file}: {self.mutant} in {_lines(self.file)[self.mutant.line - 1].strip()}"
+
+
+@functools.cache
+def _lines(file: str) -> list[str]:
+    return (TOP / file).read_text(encoding="utf-8").splitlines()
 
 
 def drawn(seed: int, count: int, only: str = "") -> list[Place]:
