@@ -30,7 +30,6 @@ thorough: $(VENV)/.test
 
 # Small errors put into the product at random places: do the fast tests notice? Hours; see tests/mutants/run.py.
 mutants: $(VENV)/.test
-	$(BIN)/python -m pip install --quiet "coverage>=7.10"
 	$(BIN)/python tests/mutants/run.py --seed $(or $(SEED),1) --count $(or $(COUNT),200)
 
 # The fast tests with every supported Python that is installed, each in an environment of its own.

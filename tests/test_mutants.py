@@ -2,6 +2,7 @@
 
 import ast
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -45,7 +46,7 @@ def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wordin
 def test_every_error_leaves_a_program_and_another_one():
     from run import TOP, drawn
 
-    places = drawn(seed=3, count=300)
+    places = drawn(seed=3, count=100)
     assert len({place.package for place in places}) > 10
     for place in places:
         source = (TOP / place.file).read_text(encoding="utf-8")
@@ -54,18 +55,29 @@ def test_every_error_leaves_a_program_and_another_one():
 
 
 @pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
-def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, limit, survived):
+def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, survived):
+    import run
     from places import mutants
-    from run import Place, survives
+    from run import Place, noticed_by
 
     source = f"def small(x):\n    return x < {limit}\n"
     (tmp_path / PRODUCT).mkdir()
     (tmp_path / PRODUCT / "few.py").write_text(source)
     (tmp_path / "conftest.py").write_text("import sys; sys.path.insert(0, 'rockbatch')\n")
-    (tmp_path / "test_few.py").write_text("from few import small\ndef test_small(): assert small(1) and not small(9)\n")
+    (tmp_path / "test_few.py").write_text(
+        "from few import small\ndef test_small(): assert small(1) and not small(9)\ndef test_unsound(): assert False\n"
+    )
     if not survived:
         (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
     place = Place(f"{PRODUCT}/few.py", mutant)
-    assert survives(place, [["test_few.py"], ["."]], tmp_path) is survived
+    monkeypatch.setattr(run, "tests_of", lambda place: [["test_few.py"], ["."]])
+    assert noticed_by(place, tmp_path, set()) == ("" if survived else "test_limit.py::test_limit")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source
+
+
+def test_what_is_listed_as_equivalent_can_still_be_put_in():
+    from run import EQUIVALENT, drawn
+
+    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    assert set(listed) <= {place.name for place in drawn(seed=1, count=sys.maxsize)}

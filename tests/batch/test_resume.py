@@ -15,6 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.groups
 import rockbatch.batch.threads
+from rockbatch.batch.running import _ranges as ranges
 from rockbatch.commands.cli import main
 from rockbatch.common.files import only_writer
 
@@ -460,3 +461,12 @@ def test_an_impossible_share_is_refused(study, text, capsys):
         main(["run", str(study), "--shard", text])
     assert ended.value.code == 2
     assert "must be such as 2/4" in capsys.readouterr().err or text.startswith("-")
+
+
+@pytest.mark.parametrize(
+    ("numbers", "text"),
+    [([4], "5"), ([0, 1], "1 to 2"), ([0, 2, 3, 9], "1, 3 to 4, 10"), ([0, 2, 4, 6, 8], "1, 3, 5, 7, 9")],
+)
+def test_missing_rows_are_counted_from_one_in_ranges(numbers, text):
+    assert ranges(numbers) == text
+    assert ranges([*numbers[:-1], *range(20, 32, 2)]).endswith(", …")

@@ -13,6 +13,7 @@ from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.commands.scorecard import of_checks
 
 
 def name_of(one):
@@ -126,3 +127,14 @@ def test_sentence_and_scorecard_count_the_same_on_random_verdicts():
                 said[DOES_NOT_APPLY] += number
         assert said == {kind: sum(row.verdict == kind for row in rows) for kind in said}
     assert wording.percent(1.0).startswith("100")
+
+
+def test_the_text_counts_the_columns_it_leaves_out_and_says_which_cases_no_check_applies_to():
+    found = [verdict("a", PASS, check=f"p{i}") for i in range(8)]
+    found += [verdict("b", DOES_NOT_APPLY, check=f"p{i}") for i in range(8)]
+    a, b = scorecard(found, name_of).rows
+    lines = of_checks(found, name_of, (), ()).splitlines()
+    assert [line.split()[0] for line in lines[-2:]] == ["a", "b"]
+    assert "3 more" in lines[-2]
+    assert lines[-2].endswith(a.in_words)
+    assert lines[-1].endswith(b.in_words)

@@ -519,3 +519,12 @@ def test_a_dyna_file_of_two_components_is_refused_where_the_second_begins():
     lines = dyna_text().splitlines()
     with pytest.raises(InputError, match='line 3: "EVENT_NAME" a second time'):
         read("\n".join([*lines[:2], lines[0], *lines[2:]]), "x.ASC")
+
+
+@pytest.mark.parametrize(("sign", "down"), [("+", False), ("-", True)])
+def test_a_vertical_of_unam_points_down_where_its_sign_says_so(sign, down):
+    ways = {"ORIENTACION C1-C6 (rumbo;orientacion)": f"/N00E;+/N90E;+/V;{sign}"}
+    *level, vertical = read(unam_text(**ways), "CANA1709.191")
+    assert [part.orientation.azimuth for part in level] == [0.0, 90.0]
+    assert (vertical.orientation.vertical, vertical.orientation.down) == (True, down)
+    np.testing.assert_allclose(vertical.upward, (-1.0 if down else 1.0) * C / 100, rtol=1e-3, atol=1e-6)

@@ -4,7 +4,7 @@ import contextlib
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
@@ -299,6 +299,7 @@ ROWS = st.lists(st.lists(WORDS | st.sampled_from(("0.25", "-1.75")), min_size=0,
 @settings(max_examples=200, deadline=None)
 @given(ROWS | st.lists(st.lists(st.sampled_from(("0.25", "-1.75", "3.00")), min_size=2, max_size=2), min_size=4),
        st.sampled_from((" ", "\t", ";", ",", ", ", "\xa0")), st.booleans())  # fmt: skip
+@example([["0.25", "1_0"]] * 4, " ", False)  # no number, whatever Python makes of it
 def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, wrapped):
     """To the bit, and with the same words about the same line."""
     text = "time NS\n" + "\n".join(map(separator.join, rows))

@@ -311,3 +311,11 @@ def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, 
     stationxml._channels.cache_clear()
     (told,) = read_motions(tmp_path).unusable
     assert "stations.xml: larger than 1 MiB" in told.reason
+
+
+@pytest.mark.parametrize("digits", [b"xx", b"99", b"1.", b"  "])
+def test_a_seed_volume_whose_records_have_no_length_is_refused_by_what_it_says(digits):
+    volume = b"000001V 0100023 2.4" + digits + b"0" * 500
+    with pytest.raises(InputError, match="bytes; expected 07 to 20") as refused:
+        CHECKS["MSEED"](volume)
+    assert f'2^"{digits.decode()}"' in str(refused.value)

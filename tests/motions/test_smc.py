@@ -8,7 +8,7 @@ from fixed_column_files import NPTS, A, B, C, film_text, read, smc_text
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
-from rockbatch.motions.formats.smc import is_smc_file, read_smc_stream
+from rockbatch.motions.formats.smc import is_smc_file, parse, read_smc_stream
 
 START = datetime(1989, 10, 18, 0, 4, 15, tzinfo=UTC).timestamp() + 0.25
 
@@ -104,6 +104,7 @@ def test_what_the_header_flags_or_contradicts_is_said():
         ),
         (film_text(times=np.r_[0:0.2:42j, 9.0]), "film: time does not grow evenly: .*a gap is not filled"),
         (smc_text(title="3 VELOCITY"), "3 VELOCITY.*expected accelerations"),
+        (smc_text(title="3 VELOCITY").replace("station =", "nowhere ="), "3 VELOCITY.*expected accelerations"),
         (smc_text(vertical=45), "line 13: inclined, 45° from the vertical"),
         (smc_text(count=40), r"line 35: found .*after the 40 values that line 14 declares"),
         (smc_text(count=999999999), "take 125000000 lines, but the file ends with line 35: it is cut"),
@@ -139,3 +140,12 @@ def test_obspy_gets_cm_s2_with_what_the_header_says(tmp_path):
     path.write_bytes(smc_text(title="3 VELOCITY").encode("latin-1"))
     with pytest.raises(InputError, match=r"x\.smc: line 1: found"):
         read_smc_stream(path)
+
+
+@pytest.mark.parametrize(("rate", "dt"), [(0.1, 10.0), (0.099, None), (1e5, 1e-5), (1.01e5, None)])
+def test_rates_are_those_that_the_refusal_names(rate, dt):
+    if dt is None:
+        with pytest.raises(InputError, match=f"found a sampling rate of {rate:g} Hz; expected 0.1 to 100000"):
+            parse(smc_text(rate=rate))
+    else:
+        assert parse(smc_text(rate=rate))[0].dt == dt

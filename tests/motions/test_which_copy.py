@@ -468,3 +468,18 @@ def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
     assert len(found.motions) == 2
     assert len({motion.station for motion in found.motions}) == 1
     assert [[finding.what for finding in motion.findings] for motion in found.motions] == [["factor"], ["factor"]]
+
+
+def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():
+    """After 40 s they are 0.2 s apart: sample by sample, one recording would look like two."""
+    t, fine = np.arange(0.0, 40.0, 0.01), np.arange(0.0, 40.0, 0.01005)
+    north, noise = Orientation("000", azimuth=0.0), np.random.default_rng(5).normal(size=400)
+
+    def shaken(times):
+        return np.interp(times, np.linspace(0.0, 40.0, 400), noise)
+
+    one, two = (
+        Component("a", 0.01, shaken(t), north, source="a"),
+        Component("b", 0.01005, shaken(fine), north, source="b"),
+    )
+    assert likeness._correlate(one, two)

@@ -39,13 +39,13 @@ class Mutant(NamedTuple):
 
 def mutants(source: str) -> Iterator[Mutant]:
     """Yield every error that can be put into a source, in its order; each still compiles."""
-    starts = [0]
-    for line in source.encode().splitlines(keepends=True):
+    data, starts = source.encode(), [0]
+    for line in data.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
     for node in _of_programs(ast.parse(source)):
         for wrong in _wrong(node):
             start, end = (starts[row - 1] + column for row, column in _span(node))
-            before = source.encode()[start:end].decode()
+            before = data[start:end].decode()
             after = ast.unparse(wrong)
             yield Mutant(node.lineno, start, end, before, f"({after})" if isinstance(node, ast.expr) else after)
 

@@ -3,19 +3,23 @@
     make mutants [SEED=1] [COUNT=200]
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
-Places are drawn at random from all lines that compute (places.py). An error meets the tests that execute its line, which coverage
-records once for a state of the product and its tests (a quarter of an hour); then their whole files, for what they share; in
-the compiled core, whose lines coverage does not see, the tests of the physics. It is noticed where one of them fails, or takes
-ten minutes. What is finished is kept in build/mutants and not done again. An error that changes no answer is listed, with the
-reason, in equivalent.toml.
+Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
+module defines, then all fast tests of its package; those of other packages may notice more. It is noticed where a test fails that
+passes without it, or computes far longer. What is finished is kept in build/mutants and not done again. An error that changes no
+answer is listed, with the reason, in equivalent.toml.
 """
 
 import argparse
+import ast
+import contextlib
+import functools
 import hashlib
 import json
 import os
 import random
+import re
 import shutil
+import signal
 import subprocess
 import sys
 import tomllib
@@ -24,20 +28,35 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import Queue
+from tempfile import TemporaryFile
 from typing import NamedTuple
 
+import pytest
 from places import Mutant, mutants
 
 TOP = Path(__file__).parents[2]
 BUILD = TOP / "build" / "mutants"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-LONGEST = 600.0
-"""Seconds after which tests that an error makes slow count as failed."""
-MOST_TESTS = 300
-"""Tests of a line that are run one by one: a line of all tests is as well known by these."""
-OF_CORE = ["tests/core", "tests/simulation", "tests/verification"]
+LONGEST = 200
+"""Seconds of computing for each file of tests, its kernels included, after which they count as failed."""
+TOO_SLOW = "no end"
+"""What ends a name of tests that took longer, or were killed."""
+NEAREST = 6
+"""Test files that meet an error first."""
+TESTS = {
+    "core": ("core", "simulation", "verification"),
+    "simulation": ("simulation", "batch", "core", "verification"),
+    "pier": ("test_pier*.py", "test_statics.py", "verification", "study"),
+    "motions/formats": ("motions",),
+    "reporting": ("report", "docs"),
+    "quantities": ("results", "checks", "analyses/test_quantities.py", "report"),
+    "toml": ("test_toml.py", "study"),
+    "commands": ("test_cli.py", "test_arguments.py", "test_doors.py", "test_outputs.py", "test_hostile_calls.py"),
+    "common": ("test_f*.py", "test_outputs.py", "test_interrupts.py", "test_pier_figures.py", "results", "batch"),
+}
+"""Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
-PYTEST = "-q", "-x", "-n", "0", "-m", "not slow", "-p", "no:cacheprovider"
+PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-m", "not slow", "-p", "no:cacheprovider"
 
 
 class Place(NamedTuple):
@@ -54,8 +73,13 @@ class Place(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Return file and error as equivalent.toml has them: they stay the same when lines move."""
-        return f"{self.file}: {self.mutant}"
+        """Return file, error and line as equivalent.toml has them: they stay the same when lines move."""
+        return f"{self.file}: {self.mutant} in {_lines(self.file)[self.mutant.line - 1].strip()}"
+
+
+@functools.cache
+def _lines(file: str) -> list[str]:
+    return (TOP / file).read_text(encoding="utf-8").splitlines()
 
 
 def drawn(seed: int, count: int, only: str = "") -> list[Place]:
@@ -66,113 +90,139 @@ def drawn(seed: int, count: int, only: str = "") -> list[Place]:
     return random.Random(seed).sample(chosen, min(count, len(chosen)))
 
 
-def state() -> str:
-    """Return the digest of the product and its tests."""
-    digest = hashlib.sha256()
-    for folder in ("rockbatch", "tests"):
-        for path in sorted((TOP / folder).rglob("*.py")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
+def _digest(*folders: str) -> str:
+    paths = (path for folder in folders for path in sorted((TOP / folder).rglob("*.py")))
+    read = (path.read_bytes() for path in paths if path.parent != Path(__file__).parent)
+    return hashlib.sha256(b"".join(read)).hexdigest()[:12]
 
 
-def recorded(jobs: int) -> Path:
-    """Return coverage's data of the fast tests of this state, which are run if there is none yet."""
-    data = BUILD / f"executed-{state()}"
-    if not data.exists():
-        print("running the fast tests once, to see which of them execute which line", flush=True)
-        settings = BUILD / "coverage.ini"
-        settings.write_text(
-            f"[run]\nsource = {TOP / 'rockbatch'}\nparallel = true\npatch = subprocess\ndata_file = {data}\n"
-        )
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (TOP, Path(__file__).parent)))}
-        command = [
-            "coverage",
-            "run",
-            f"--rcfile={settings}",
-            "-m",
-            "pytest",
-            "-q",
-            "-n",
-            str(jobs),
-            "--dist",
-            "loadfile",
-        ]
-        subprocess.run(
-            [sys.executable, "-m", *command, "-p", "executed", "-m", "not slow"], cwd=TOP, env=environment, check=False
-        )
-        subprocess.run([sys.executable, "-m", "coverage", "combine", f"--rcfile={settings}"], cwd=TOP, check=True)
-    return data
+def copied(number: int) -> Path:
+    """Return a copy of the project in which errors may be made; kernels that an earlier one compiled stay in it."""
+    copy = BUILD / f"copy-{number}"
+    for path in copy.rglob("*.py"):
+        path.unlink()
+    shutil.copytree(TOP, copy, dirs_exist_ok=True, ignore=shutil.ignore_patterns(*NOT_COPIED))
+    return copy
 
 
-class Executed:
-    """The tests that execute a line."""
+def tests_of(place: Place) -> list[list[str]]:
+    """Return test files: those first that name most of what the module of the error defines, then the others of its package."""
+    folders = TESTS.get(place.package, (place.package,))
+    path, order = TOP / place.file, dict[Path, int]()
+    for i, name in enumerate(folders):
+        for found in (TOP / "tests").glob(name):
+            for test in found.rglob("test_*.py") if found.is_dir() else [found]:
+                order.setdefault(test, i)
+    names = {path.stem} | {name for name in _defined(path) if not name.startswith("_")}
 
-    def __init__(self, path: Path) -> None:
-        import coverage
+    def nearness(test: Path) -> tuple[int, int, str]:
+        words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
+        shared = len({*path.parts} & {*test.parts}) + (path.stem in test.stem)  # of folders, and the name itself
+        return order[test], -len(names & words) - 3 * shared, str(test)
 
-        self.data = coverage.CoverageData(str(path))
-        self.data.read()
-
-    def tests(self, place: Place) -> list[list[str]]:
-        """Return the arguments for pytest, the nearest tests first; then others that may notice."""
-        if place.file.startswith("rockbatch/core/"):
-            return [[folder] for folder in OF_CORE]
-        contexts = self.data.contexts_by_lineno(str(TOP / place.file)).get(place.mutant.line, [])
-        tests = sorted({test for test in contexts if test}, key=lambda test: (place.package not in test, test))
-        if not tests:
-            return [[folder] for folder in (f"tests/{place.package.split('/')[0]}",) if (TOP / folder).is_dir()]
-        files = list(dict.fromkeys(test.partition("::")[0] for test in tests))
-        return [tests[:MOST_TESTS], files[:12]]
+    tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
+    return [chosen for chosen in (tests[:NEAREST], tests[NEAREST:]) if chosen]
 
 
-def survives(place: Place, tests: list[list[str]], copy: Path) -> bool:
-    """Return whether the tests pass with the error in a copy of the project."""
-    path = copy / place.file
-    source, times = path.read_text(encoding="utf-8"), path.stat()
+def _defined(path: Path) -> Iterator[str]:
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        match node:
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                yield name
+            case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
+                yield name
+
+
+def noticed_by(place: Place, copy: Path, sound: set[str]) -> str:
+    """Return the test that fails with the error in a copy of the project, and passes without it; "" if none does.
+
+    ``sound`` are tests that are known to pass without an error; this adds to them.
+    """
+    for tests in tests_of(place):
+        unsound: list[str] = []
+        while True:
+            with _error_in(copy, place):
+                failed = _failure([*tests, *(f"--deselect={test}" for test in unsound)], copy)
+            if not failed or failed in unsound:
+                break
+            if failed in sound or failed.endswith(TOO_SLOW) or not _failure([failed], copy):
+                sound.add(failed)
+                return failed
+            unsound.append(failed)
+    return ""
+
+
+@contextlib.contextmanager
+def _error_in(copy: Path, place: Place) -> Iterator[None]:
+    path, compiled = copy / place.file, copy / "rockbatch/core/__pycache__"
+    source, times, kernels = path.read_text(encoding="utf-8"), path.stat(), set(compiled.glob("kernels-*"))
     path.write_text(place.mutant.put_into(source), encoding="utf-8")
     try:
-        for chosen in tests:
-            try:
-                done = subprocess.run(
-                    [sys.executable, "-m", "pytest", *PYTEST, *chosen], cwd=copy, timeout=LONGEST, check=False,
-                    env=os.environ | {"PYTHONPATH": str(copy)}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                )  # fmt: skip
-            except subprocess.TimeoutExpired:
-                return False
-            if done.returncode:
-                return False
-        return True
+        yield
     finally:
         path.write_text(source, encoding="utf-8")
         os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+        for wrong in set(compiled.glob("kernels-*")) - kernels:
+            if place.file.startswith("rockbatch/core/"):
+                shutil.rmtree(wrong)
 
 
-def judged(places: list[Place], executed: Executed, jobs: int) -> Iterator[tuple[Place, bool]]:
-    """Yield each place, and whether its error survives; what earlier calls found of this state is kept."""
-    journal = BUILD / f"judged-{state()}.jsonl"
-    entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines() if journal.exists() else [])
-    known = {(entry["place"], entry["line"]): entry["survives"] for entry in entries}
-    copies: Queue[Path] = Queue()
-    for number in range(jobs):
-        copy = BUILD / f"copy-{number}"
-        shutil.rmtree(copy, ignore_errors=True)
-        shutil.copytree(TOP, copy, symlinks=True, ignore=shutil.ignore_patterns(*NOT_COPIED))
-        copies.put(copy)
-
-    def judge(place: Place) -> bool:
-        if (place.name, place.mutant.line) in known:
-            return bool(known[place.name, place.mutant.line])
-        copy = copies.get()
+def _failure(chosen: list[str], copy: Path) -> str:
+    """Return the test, of those ``chosen``, that fails in a copy of the project; "" if none does."""
+    limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(limit := LONGEST * len(chosen))]
+    with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
+        process = subprocess.Popen(
+            [*limited, sys.executable, "-m", "pytest", *PYTEST, *chosen], cwd=copy, stdout=output, stderr=output,
+            env=os.environ | {"PYTHONPATH": str(copy)}, start_new_session=True,
+        )  # fmt: skip
         try:
-            found = survives(place, executed.tests(place), copy)
+            code = process.wait(10 * limit)
+        except subprocess.TimeoutExpired:
+            code = -signal.SIGXCPU
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        output.seek(0)
+        failed = [line.split(" ", 1)[1].split(" - ")[0] for line in output if line.startswith(("FAILED", "ERROR "))]
+    if code in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
+        return ""
+    if code == pytest.ExitCode.USAGE_ERROR and "::" in chosen[0]:  # a test has another name with the error
+        return ""
+    return failed[0].strip() if failed else f"{chosen[0]}: {TOO_SLOW}"
+
+
+def judged(places: list[Place], copies: list[Path]) -> Iterator[tuple[Place, str]]:
+    """Yield each place, and what notices its error; what earlier calls found with this product is kept.
+
+    What survived meets the tests again if there are others.
+    """
+    journal, tests = BUILD / f"judged-{_digest('rockbatch')}.jsonl", _digest("tests")
+    entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines() if journal.exists() else [])
+    known = {
+        (entry["place"], entry["line"]): entry["noticed_by"]
+        for entry in entries
+        if entry["noticed_by"] or entry["tests"] == tests
+    }
+    sound = set(filter(None, known.values()))
+    free: Queue[Path] = Queue()
+    for copy in copies:
+        free.put(copy)
+
+    def judge(place: Place) -> str:
+        key = place.name, place.mutant.line
+        if key in known:
+            return str(known[key])
+        copy = free.get()
+        try:
+            found = noticed_by(place, copy, sound)
         finally:
-            copies.put(copy)
-        entry = {"place": place.name, "line": place.mutant.line, "survives": found}
+            free.put(copy)
+        entry = {"place": place.name, "line": place.mutant.line, "noticed_by": found, "tests": tests}
         with journal.open("a", encoding="utf-8") as file:
             file.write(json.dumps(entry, ensure_ascii=False) + "\n")
         return found
 
-    with ThreadPoolExecutor(jobs) as pool:
+    with ThreadPoolExecutor(len(copies)) as pool:
         yield from zip(places, pool.map(judge, places), strict=True)
 
 
@@ -188,12 +238,11 @@ def main() -> int:
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
     places = drawn(chosen.seed, chosen.count, chosen.only)
-    executed = Executed(recorded(chosen.jobs))
-    for place, survived in judged(places, executed, chosen.jobs):
-        kind = "noticed"
-        if survived:
-            kind = "equivalent" if place.name in equivalent else "survived"
-            print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant}", flush=True)
+    copies = [copied(number) for number in range(chosen.jobs)]
+    for place, found in judged(places, copies):
+        kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
+        if not found or found.endswith(TOO_SLOW):
+            print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
         for package in (place.package, "all"):
             counts.setdefault(package, Counter())[kind] += 1
     print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate")

@@ -175,3 +175,12 @@ def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds
     cut, whole = (next(row for name, row in by_case.items() if name.startswith(case)) for case in ("1", "2"))
     assert (cut[1], cut[place]) == ("5 of 6", "≥ 2.500")
     assert (whole[1], whole[place]) == ("6 of 6", "2.500")
+
+
+def test_components_of_one_station_count_as_one_and_those_without_a_station_each_by_itself(asked, tmp_path):
+    info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
+    for record, station, pulse in zip(info["records"], ("S", "S", None, None, None, "T"), "yynnnn", strict=True):
+        record |= {"station": station, "pulse": {"y": "yes", "n": "no"}[pulse]}
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
+    assert "pulse-like, at 1 of 5 stations" in " ".join(page_of(tmp_path, target).text.split())

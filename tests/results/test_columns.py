@@ -319,3 +319,9 @@ def test_a_demand_without_bound_comes_back_from_disk(tmp_path):
     assert np.isinf(opened.responses[0].forces["friction"]).any()
     assert np.isfinite(flown["base_shear_m_s2"]).all()
     assert (tmp_path / "out" / "report.html").exists()
+
+
+def test_runs_that_never_flew_have_no_duration_and_no_height_of_flights(table):
+    grounded = table[table["flights"] == 0]
+    assert len(grounded)
+    assert grounded[["flight_duration_s", "flight_height_m"]].isna().all(axis=None)

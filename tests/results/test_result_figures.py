@@ -172,3 +172,12 @@ def test_results_tell_of_themselves_in_a_few_lines(results):
 def _counts(runs):
     counts = runs["status"].value_counts()
     return [", ".join(f"{n} {status}" for status, n in counts.items())]
+
+
+def test_a_case_without_runs_is_named_by_its_own_values(results):
+    known = own(results).named_case("pads", {"p": 1.0, "beta": 30}, ["p", "beta"])
+    gone = own(results).named_case("gone", {"p": 1.0, "beta": 30}, ["p", "beta"])
+    assert "pads" in known
+    assert gone.startswith("gone, ")
+    assert "30" in gone
+    assert "9" in own(results).named_case("rock", {"p": 9.0}, ["p", "beta"])

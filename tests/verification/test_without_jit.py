@@ -13,8 +13,12 @@ import pytest
 from core_samples import FIG5, broadband, pulse
 
 from rockbatch.core.clock import include_height
+from rockbatch.core.springs.ending import FORESEEN
+from rockbatch.core.springs.ending import _foresee as foresee
 from rockbatch.core.springs.equations import clearances
+from rockbatch.core.springs.free_vibration import rocking_stiffness
 from rockbatch.core.springs.lanes import LANE, static_state
+from rockbatch.core.springs.laws import number
 from rockbatch.core.springs.model import State, Supports
 from rockbatch.core.table import table
 from rockbatch.core.types import (
@@ -71,6 +75,17 @@ def results() -> dict[str, Any]:
         still = clearances(model(FIG5, ElasticBase(50.0)), y, Supports(0.0, 0.0, -1.0, -1.0))
         include_height(lanes, 0, still, still, 0.0)
         found["height without time"] = float(lanes.tally.flight_height[0])
+        m, sunk = model(FIG5, YieldingBase(50.0, 0.1, eta=2.2)), 1e-4
+        shared = m.gravity * m.height / rocking_stiffness(m)
+        exponent = number(m.exponent) * m.height * (1.0 + shared) * sunk / m.half_width**2
+        found["exponent of a lean that grows"] = float(exponent)
+        waiting, growths = lanes.waiting, []
+        waiting.patience[0], lanes.clock.dt[0] = 2.0 / FORESEEN, 1.0  # a second ahead
+        for speed in (-sunk, sunk):
+            waiting.last_drift_left[0] = waiting.last_drift_right[0] = 0.5 * speed
+            foresee(lanes, 0, m)
+            growths.append(float(waiting.growth[0]))
+        found["growth of a lean, its base sinking or rising"] = growths
     return found
 
 
@@ -107,3 +122,10 @@ def test_a_run_without_the_compiler_gives_the_same_results(name, interpreted, us
 
 def test_a_part_of_a_flight_that_takes_no_time_adds_no_height(interpreted):
     assert interpreted["height without time"] == 0.0
+
+
+def test_a_lean_grows_by_itself_while_its_base_sinks_and_not_while_it_rises(interpreted):
+    """exp(n h A s/b²) − 1 for supports that both sink by s, where a lean is A times the tilt of its base, and none for −s."""
+    growth = math.expm1(interpreted["exponent of a lean that grows"])
+    assert growth > 0.0
+    assert interpreted["growth of a lean, its base sinking or rising"] == [pytest.approx(growth, rel=1e-12), 0.0]

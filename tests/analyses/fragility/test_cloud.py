@@ -316,3 +316,12 @@ def test_keys_of_other_methods_are_named(tmp_path, fragility, message):
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, fragility)))
     assert message in "\n".join(caught.value.problems)
+
+
+@pytest.mark.parametrize("intercept", [1.0, -1.0])
+def test_a_share_that_is_never_small_or_never_large_has_no_bounded_dispersion(intercept):
+    """P is between 0.48 and 0.88, or between 0.12 and 0.52, however weak or strong the motion: x16 is 0, or x84 infinite."""
+    share = Logistic(intercept, 1.0 / cloud._WIDEST, np.array([[intercept, 1.0 / cloud._WIDEST]]))
+    curve = Cloud(1.0, None, share, 0.95, 0.0)
+    assert curve.dispersion == math.inf
+    assert curve.dispersion_interval == (math.inf, math.inf)

@@ -224,3 +224,18 @@ def test_intervals_that_the_data_leave_open_are_infinite():
     found = fitted(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array([0, 1, 1])))
     assert found.median_interval[1] == found.dispersion_interval[1] == math.inf
     assert 0 < found.median_interval[0] < found.median
+
+
+@pytest.mark.parametrize(("slope", "rises"), [(3e-3, True), (3e-4, False)])
+def test_a_share_that_hardly_grows_has_a_median_up_to_a_thousand_times_what_was_sampled(slope, rises):
+    """Two levels are fitted exactly: z = ±slope at one deviation of ln x to either side of its mean."""
+    levels, records = np.array([0.5, 2.0]), np.full(2, 1e9)
+    found = fit(fresh_records(levels, records, np.round(records * norm.cdf([-slope, slope]))))
+    if rises:
+        assert isinstance(found, Lognormal)
+        assert (found.median, found.dispersion) == (
+            pytest.approx(1.0, rel=1e-3),
+            pytest.approx(math.log(2) / slope, rel=1e-3),
+        )
+    else:
+        assert "does not grow" in found
