@@ -46,7 +46,9 @@ OTHER_DOORS = {
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("alpha", value) for value in NO_NUMBERS] + [(name, "0.2") for name in NUMBER_DOORS], ids=str
+    ("name", "value"),
+    [("alpha", value) for value in NO_NUMBERS] + [(name, "0.2") for name in NUMBER_DOORS],
+    ids=lambda value: value if isinstance(value, str) else type(value).__name__,
 )
 def test_what_is_no_number_is_refused_by_name(name, value):
     with pytest.raises(rb.InputError, match=rf"^{name} = .*(must be a number|NUL character)"):
@@ -57,7 +59,7 @@ def test_what_is_no_number_is_refused_by_name(name, value):
     ("name", "value"),
     [("paths", value) for value in (None, True, 0.2, 1j, object(), b"x", {}, np.array([0.2]), "a\0b", [0.2])]
     + [(name, value) for name in OTHER_DOORS for value in (0.2, "a\0b")],
-    ids=str,
+    ids=lambda value: value if isinstance(value, str) else type(value).__name__,
 )
 def test_an_object_of_another_type_is_refused_by_name(name, value):
     with pytest.raises(rb.InputError, match=rf"^{name} = "):

@@ -18,6 +18,9 @@ from rockbatch.core.block.model import Block, Rocker, Rocking, Stance, Tilt
 from rockbatch.core.devices import elongation, pull
 from rockbatch.core.devices import laws as device_laws
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
+from rockbatch.core.flexure import equations as flexure
+from rockbatch.core.flexure import events as flexure_events
+from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.observe import forces
 from rockbatch.core.springs import equations, events, impact, laws, recovery
 from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, Geometry, Springs, State, Supports
@@ -34,6 +37,29 @@ UNITS = {  # of the fields, by the tuples' own comments
     Geometry: (M,) * 12,
     Block: (M, M, M**2, ACCELERATION, RAD, 1 / S, ONE, ONE, ONE, 1 / M**2, SPEED, ONE),
     Rocking: (M, RAD, SPEED, RAD / S),
+    FlexibleBlock: (
+        M,
+        M,
+        M**2,
+        ACCELERATION,
+        RAD,
+        1 / S,
+        ONE,
+        ONE,
+        SPEED,
+        ONE,
+        ONE,
+        ONE,
+        M,
+        1 / S,
+        1 / S,
+        M,
+        ONE,
+        RAD,
+        S,
+        ONE,
+    ),
+    Flexing: (M, RAD, SPEED, RAD / S, M, SPEED),
     Rocker: (M, M, ACCELERATION, 1 / M**2),
     Tilt: (RAD, RAD / S),
     Pull: (ACCELERATION, M * ACCELERATION),
@@ -64,6 +90,8 @@ PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1, 1.9)
 MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
 BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138, 1e-12, 0.3)
+FLEXIBLE = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 1.0, 1e-12, 0.0, 0.6, 0.5, 5.0, 9.0, 0.9, 12.0, 1.0, 0.19, 0.001, 1.0)
+FLEXES = (0.07, 0.05, -0.15, -0.1, 0.03, -0.2)
 ROCKS = (0.07, 0.05, -0.15, -0.1)
 DEVICE = (2.0, 3.0, 40.0, 1.0, 0.5, 0.5, 0.01, 400.0, 0.3, 0.01, 0.5, 9.0, 0.0, 1.5, 1.0)  # an Element after its kind
 
@@ -108,6 +136,7 @@ def plain_python(monkeypatch):
     """
     modules: tuple[ModuleType, ...] = (
         laws, recovery, equations, impact, events, trigonometry, block, block_events, forces, device_laws, elongation, pull, rk4,
+        flexure, flexure_events,
     )  # fmt: skip
     compiled_geometry = equations.geometry
 
@@ -125,8 +154,9 @@ def plain_python(monkeypatch):
                 monkeypatch.setattr(module, name, getattr(table, f"_interpreted_{name}"))
     for module in (block_events, device_laws, elongation):
         monkeypatch.setattr(module, "math", MATH)
-    without = block._pull_down
-    monkeypatch.setattr(block, "_pull_down", lambda pull: without(pull or Pull(*quantities(Pull, (0.0, 0.0)))))
+    without = block.pull_down
+    for module in (block, flexure):
+        monkeypatch.setattr(module, "pull_down", lambda pull: without(pull or Pull(*quantities(Pull, (0.0, 0.0)))))
     monkeypatch.setattr(block_events, "Rocking", rocking)
     monkeypatch.setattr(block_events, "NEAR_FLIGHT", 10.0)  # so that the rate of the normal force is looked at
 
@@ -247,7 +277,8 @@ def test_a_block_has_rates_event_functions_and_a_step(under, stance):
     assert_units([values.left, values.right], units)
     assert_units([slopes.left, slopes.right], [unit / S for unit in units])
     assert_units(block.clearances(m, y, stance.top), (M, M, SPEED, SPEED))
-    assert_units([system.lever(m, y, stance)], [M])
+    assert_units([block.lever(m, y, stance)], [M])
+    assert_units([system.ground_power(m, y, stance, shaking)], [ACCELERATION * SPEED])
 
 
 def test_a_rocker_steps_as_a_block_does():
@@ -263,8 +294,11 @@ def test_a_rocker_steps_as_a_block_does():
 
 def test_what_lifts_a_block_off_and_the_bounces_that_are_left():
     at_rest = Rocking(*quantities(Rocking, (0.0,) * 4))
-    assert_units(block_events._lift(rigid(), None, at_rest, 1.0, CALM), (RAD / S**2, RAD / S**3))
-    assert_units(block_events._bounces(rigid(), None, -0.1 * RAD / S, CALM), (RAD, S))
+    assert_units([block_events._lift(rigid(), None, at_rest, 1.0, CALM)], [RAD / S**2])
+    assert_units(
+        [block_events.lift_rate(rigid(), None, Instant(at_rest, at_rest, ON_RIGHT, None, CALM), 1.0)], [RAD / S**3]
+    )
+    assert_units(block_events.bounces(rigid(), None, at_rest, -0.1 * RAD / S, CALM), (RAD, S))
 
 
 @KINEMATICS
@@ -319,7 +353,7 @@ def test_forces_gaps_and_speeds_have_their_units_on_springs(finite, contact):
 
 @pytest.mark.parametrize("stance", [Stance(1.0, 0.0, -1.0, -1.0), Stance(1.0, 1.0, 0.0, 0.0), ON_RIGHT, IN_AIR])
 def test_forces_gaps_and_speeds_have_their_units_on_a_rigid_base(stance):
-    m, outline = rigid(True), forces.Outline(7.4 * M, 3.0 * M, 1.0, 24.0 * M)
+    m, outline = rigid(True), forces.Outline(7.4 * M, 3.0 * M, 1.0, 24.0 * M, 0.0)
     hold = forces.Hold(0.3 * ACCELERATION, 0.1 * RAD / S**2, 0.3 * ACCELERATION, 0.1 * RAD / S**2)
     rests = stance.left == stance.right == 1.0
     y = block.constrained(m, Rocking(*quantities(Rocking, (0.0,) * 4 if rests else ROCKS)), stance)
@@ -347,7 +381,8 @@ def rock(m, shaking):
     start = Instant(y, k, ON_RIGHT, None, shaking)
     rk4.rk4(m, None, start, 0.01 * S)
     system.event_functions(m, None, start)
-    height, remaining = block_events._bounces(m, None, -0.1 * RAD / S, CALM)
+    still = Rocking(*quantities(Rocking, (0.0,) * 4))
+    height, remaining = block_events.bounces(m, None, still, -0.1 * RAD / S, CALM)
     assert_units([height, remaining], [RAD, S])
     landed, _, _ = block_events._landing(m, Rocking(*quantities(Rocking, ROCKS)), IN_AIR, 1.0)
     assert_units(landed, UNITS[Rocking])
@@ -393,3 +428,29 @@ def test_a_step_in_metres_is_refused(finite):
 def test_a_block_with_one_wrong_unit_is_refused(field):
     with pytest.raises(pint.DimensionalityError):
         rock(rigid(wrong=field), ground())
+
+
+def flex(m, shaking, stance):
+    """A step of a pier whose shaft bends, its normal force, and the blow of a foot."""
+    y = block.constrained(m, Flexing(*quantities(Flexing, FLEXES)), stance)
+    k = system.rates(m, y, stance, shaking)
+    assert_units(k, (SPEED, RAD / S, ACCELERATION, RAD / S**2, SPEED, ACCELERATION))
+    rk4.rk4(m, None, Instant(y, k, stance, None, shaking), 0.001 * S)
+    assert_units([block.normal_force(m, y, k, shaking.vertical)], [ACCELERATION])
+    assert_units([system.ground_power(m, y, stance, shaking)], [ACCELERATION * SPEED])
+    assert_units([flexure_events.lift_rate(m, None, Instant(y, k, stance, None, shaking), 1.0)], [RAD / S**3])
+    assert_units(flexure_events._after_blow(m, y, 1.0, 0.1 * SPEED, -1.0, m.restitution), (RAD / S, SPEED))
+
+
+@pytest.mark.parametrize("momentum", [0.0, 1.0], ids=["rate", "momentum"])
+@pytest.mark.parametrize("stance", [ON_RIGHT, Stance(0.0, 0.0, 1.0, 1.0)], ids=["rocks", "flies"])
+def test_a_shaft_that_bends_has_rates_and_blows_of_the_right_units(stance, momentum):
+    flex(FlexibleBlock(*quantities(FlexibleBlock, FLEXIBLE))._replace(momentum=momentum * ONE), ground(), stance)
+
+
+@pytest.mark.parametrize(
+    "field", ["half_width", "height", "inertia", "gravity", "first", "second", "coupling", "frequency", "damping"]
+)
+def test_a_shaft_with_one_wrong_unit_is_refused(field):
+    with pytest.raises(pint.DimensionalityError):
+        flex(FlexibleBlock(*quantities(FlexibleBlock, FLEXIBLE, field)), ground(), ON_RIGHT)

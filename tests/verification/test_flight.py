@@ -12,9 +12,9 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
-from rockbatch.core.block.equations import clearances, on_pivot
+from rockbatch.core.block.equations import clearances, lever, on_pivot
 from rockbatch.core.block.model import Rocking, Stance
-from rockbatch.core.system import lever, transition
+from rockbatch.core.system import transition
 from rockbatch.core.types import (
     CONTACT_LEFT,
     CONTACT_RIGHT,
