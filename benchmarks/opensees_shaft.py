@@ -1,0 +1,139 @@
+"""Piers whose shaft bends in OpenSees: a column of finite elements that shares nothing with rockbatch.
+
+    pip install openseespy
+    python benchmarks/opensees_shaft.py > benchmarks/opensees_shaft.csv
+
+Twenty corotational beams with masses at their nodes, a mass at the top, a stiff base whose middle cannot move sideways, and under
+both its corners a spring of 10⁹ kN/m without tension beside a dashpot. Not damped otherwise: damping by the first stiffness
+would resist rotation, too. HHT with α = 0.9 and steps of 0.5 ms, halved where they do not converge. The ground makes one sine.
+Rows: case, and the greatest θ [rad] of the first two half cycles, with their times. All modes bend, so that what parts the two
+after an impact is the impact and the modes above the first; tests/verification/test_elastic_shaft.py holds rockbatch against them.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+G, B, HEIGHT, ELEMENTS = 9.81, 4.0, 40.0, 20
+CONTACT, STEP, END = 1e9, 5e-4, 8.5
+AMPLITUDE, PERIOD = 4.0, 2.0
+"""Of the ground's sine [m/s², s]."""
+
+
+class Case(NamedTuple):
+    """Masses of shaft and top [t], and the first period of the column fixed at its foot [s]."""
+
+    shaft: float
+    top: float
+    period: float
+
+
+CASES = {
+    "tower": Case(3000.0, 1500.0, 0.9),
+    "stiff tower": Case(3000.0, 1500.0, 0.4),
+    "heavy top": Case(500.0, 4000.0, 1.2),
+}
+COLUMNS = ("case", "first_rad", "t_first_s", "second_rad", "t_second_s")
+
+
+def build(case: Case, bending: float, *, fixed: bool) -> list[float]:
+    """Build the column with a stiffness in bending [kN m²], fixed at its foot or on its corners; return its nodes' masses [t]."""
+    import openseespy.opensees as ops
+
+    ops.wipe()
+    ops.model("basic", "-ndm", 2, "-ndf", 3)
+    ops.geomTransf("Corotational", 1)
+    masses = []
+    axial = 1e5 * bending / HEIGHT**2
+    for i in range(ELEMENTS + 1):
+        ops.node(100 + i, 0.0, HEIGHT * i / ELEMENTS)
+        ends = i in (0, ELEMENTS)
+        masses.append(case.shaft / ELEMENTS * (0.5 if ends else 1.0) + (case.top if i == ELEMENTS else 0.0))
+        ops.mass(100 + i, masses[-1], masses[-1], 1e-4 * masses[-1])
+        if i > 0:
+            ops.element("elasticBeamColumn", 300 + i, 99 + i, 100 + i, axial, 1.0, bending, 1)
+    if fixed:
+        ops.fix(100, 1, 1, 1)
+        return masses
+    ops.fix(100, 1, 0, 0)
+    ops.uniaxialMaterial("ENT", 2, CONTACT)
+    ops.uniaxialMaterial("Elastic", 3, 1e-9 * CONTACT)  # without it the first tangent is singular
+    ops.uniaxialMaterial("Parallel", 1, 2, 3)
+    for j, x in enumerate((-B, B)):
+        ops.node(1 + j, x, 0.0)
+        ops.node(11 + j, x, 0.0)
+        ops.fix(11 + j, 1, 1, 1)
+        ops.element("elasticBeamColumn", 400 + j, 100, 1 + j, 100.0 * axial, 1.0, 1e4 * bending, 1)
+        ops.element("zeroLength", 21 + j, 11 + j, 1 + j, "-mat", 1, "-dir", 2, "-doRayleigh", 1)
+    critical = 2.0 / math.sqrt(2.0 * CONTACT / (case.shaft + case.top))
+    ops.region(1, "-ele", 21, 22, "-rayleigh", 0.0, critical, 0.0, 0.0)
+    return masses
+
+
+def solve(integrator: str, *parameters: float) -> None:
+    """Choose how OpenSees solves each step."""
+    import openseespy.opensees as ops
+
+    ops.constraints("Plain")
+    ops.numberer("RCM")
+    ops.system("BandGeneral")
+    ops.test("NormDispIncr", 1e-9, 30)
+    ops.algorithm("Newton")
+    ops.integrator(integrator, *parameters)
+
+
+def advance(step: float, halvings: int = 0) -> None:
+    """Take a step [s], in halves where it does not converge."""
+    import openseespy.opensees as ops
+
+    for algorithm in ("Newton", "KrylovNewton"):
+        ops.algorithm(algorithm)
+        if ops.analyze(1, step) == 0:
+            return
+    assert halvings < 10
+    advance(0.5 * step, halvings + 1)
+    advance(0.5 * step, halvings + 1)
+
+
+def rotations(case: Case) -> np.ndarray:
+    """Return t [s] and θ [rad] after each step, shape (n, 2)."""
+    import openseespy.opensees as ops
+
+    build(case, 1e6, fixed=True)
+    frequency = math.sqrt(ops.eigen("-fullGenLapack", 1)[0])
+    masses = build(case, 1e6 * (2.0 * math.pi / case.period / frequency) ** 2, fixed=False)
+    ops.timeSeries("Linear", 1)
+    ops.pattern("Plain", 1, 1)
+    for i, mass in enumerate(masses):
+        ops.load(100 + i, 0.0, -mass * G, 0.0)
+    solve("LoadControl", 0.1)
+    ops.analysis("Static")
+    assert ops.analyze(10) == 0
+    ops.loadConst("-time", 0.0)
+    ops.wipeAnalysis()
+    t = np.arange(0.0, END, 0.005)
+    ground = AMPLITUDE * np.sin(2.0 * math.pi * t / PERIOD) * (t < PERIOD)
+    ops.timeSeries("Path", 2, "-dt", 0.005, "-values", *ground.tolist())
+    ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
+    solve("HHT", 0.9)
+    ops.analysis("Transient")
+    rows = np.zeros((round(END / STEP), 2))
+    for k in range(len(rows)):
+        advance(STEP)
+        rows[k] = (k + 1) * STEP, -ops.nodeDisp(100, 3)
+    return rows
+
+
+def extremes(rows: np.ndarray) -> list[float]:
+    """Return the greatest |θ| to the left, and then to the right, with their times: the ground goes to the right first."""
+    t, theta = rows.T
+    second = int(theta.argmax())
+    first = int(theta[:second].argmin())
+    return [abs(theta[first]), t[first], theta[second], t[second]]
+
+
+if __name__ == "__main__":
+    print(",".join(COLUMNS))
+    for name, case in CASES.items():
+        print(",".join([name, *(f"{value:.5g}" for value in extremes(rotations(case)))]))
