@@ -7,7 +7,7 @@ Twenty corotational beams with masses at their nodes, a mass at the top, a stiff
 both its corners a spring of 10⁹ kN/m without tension beside a dashpot. Not damped otherwise: damping by the first stiffness
 would resist rotation, too. HHT with α = 0.9 and steps of 0.5 ms, halved where they do not converge. The ground makes one sine.
 Rows: case, and the greatest θ [rad] of the first two half cycles, with their times. All modes bend, so that what parts the two
-after an impact is the impact and the modes above the first; tests/verification/test_elastic_shaft.py holds rockbatch against them.
+after an impact is the impact and higher modes; tests/verification/test_elastic_shaft.py holds rockbatch against them.
 """
 
 import math
