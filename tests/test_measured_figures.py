@@ -39,12 +39,12 @@ def test_pages_state_what_the_file_has(figures):
         ("{1} of {2}", None, "nothing", ["not printed any more"]),
     ],
 )
-def test_a_number_that_is_stated_otherwise_is_told(figures, says, factor, printed, told):
+def test_a_number_that_is_stated_otherwise_is_found(figures, says, factor, printed, told):
     figure = {"page": "README.md", "says": says, "prints": r"^(.+) of (.+)$"} | ({"factor": factor} if factor else {})
     assert [line.split(": ")[-1] for line in figures.differing({"figure": [figure]}, printed)] == told
 
 
-def test_a_row_of_a_table_that_is_not_printed_is_told(figures, tmp_path, monkeypatch):
+def test_a_row_of_a_table_that_is_not_printed_is_found(figures, tmp_path, monkeypatch):
     (tmp_path / "page.md").write_text("| a | b |\n| --- | --- |\n| 1 | 2 |\n| 3 |  |\n\n| 5 | 6 |\n", encoding="utf-8")
     monkeypatch.setattr(figures, "ROOT", tmp_path)
     table = {"page": "page.md", "head": "| a |"}

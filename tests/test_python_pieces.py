@@ -84,7 +84,7 @@ def test_piers_bases_and_devices_show_what_was_given_as_a_table_in_notebooks():
     assert shown[rb.RigidBase()] == "<p><strong>RigidBase</strong></p>"
 
 
-def test_a_study_without_motions_is_told_of_the_argument():
+def test_a_study_without_motions_names_the_argument():
     tables = {"pier": {"alpha": 0.13, "p": 0.38}, "case": [{"base": "rigid"}]}
     with pytest.raises(rb.InputError, match="no ground motions; give them as motions=…, or write path"):
         rb.Study.from_dict(tables)

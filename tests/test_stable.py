@@ -38,14 +38,14 @@ def test_nothing_that_the_last_release_promised_is_gone():
         ("keys", "study.case.beta", ["40", "80"], ["only 40", "only 80"]),
     ],
 )
-def test_what_breaks_a_script_is_told_from_an_addition(group, name, parts, lost):
+def test_what_breaks_a_script_differs_from_an_addition(group, name, parts, lost):
     changed = copy.deepcopy(PRESENT)
     changed[group][name] = parts
     assert taken_away(PRESENT, changed) == [f"{group}: {name}: {part}" for part in lost]
 
 
 @pytest.mark.parametrize("group", PRESENT)
-def test_a_name_that_goes_is_told(group):
+def test_a_name_that_goes_is_reported(group):
     changed = copy.deepcopy(PRESENT)
     name = next(iter(changed[group]))
     del changed[group][name]

@@ -782,6 +782,7 @@ def listed() -> dict[str, list[str]]:
             else "in the section at the height at_m, with [output] sections" if demand.needs == "sections"
             else f"with [output] {demand.needs} = true" if demand.needs
             else f"of a {demand.device}" if demand.device
+            else "of a shaft that bends" if demand.bases == BENDING
             else "of every run"
         )  # fmt: skip
 

@@ -334,6 +334,8 @@ ROW = {
     "ductility_right": 2.5,
     "impacts": 12,
     "separations": 13,
+    "deflection_max_m": 0.07,
+    "deflection_error_m": 0.0002,
 }
 FORCES = {
     "base_shear_m_s2": 3.0,
@@ -428,13 +430,16 @@ BY_HAND = {  # value and error for θ_max/α = 0.3, α = 0.2
     "section_moment_kNm": (40000.0, 0.0),
     "section_axial_kN": (30000.0, 0.0),
     "section_tension_kN": (200.0, 0.0),
+    "deflection_max_m": (0.07, 0.0002),
+    "deflection_max_mm": (70.0, 0.2),
 }
 
 
 @pytest.mark.parametrize("demand", DEMANDS)
 def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
     value, error = BY_HAND[demand]
-    found = judged(runs([0.3], **ROW), one=TIED, demand=demand, at_most=1000.0)
+    one = case(base=RigidBase(shaft="elastic")) if demand.startswith("deflection_max") else TIED
+    found = judged(runs([0.3], **ROW), one=one, demand=demand, at_most=1000.0)
     assert (found.low, found.value, found.high) == tuple(map(pytest.approx, (value - error, value, value + error)))
 
 
@@ -498,11 +503,22 @@ def test_a_demand_that_a_base_does_not_have_does_not_apply():
     found = judge(rules, table, [RIGID, ELASTIC, case()], sections=sections)
     springs = {"theta_res_over_alpha", "theta_res_rad", "base_tilt_rad", "differential_settlement_m", "settlement_m",
                "toe_settlement_m", "static_deflection_m", "stiffness_kN_m"}  # fmt: skip
-    yielding = {"eta", "ductility", "yield_kN"}
+    yielding, bending = {"eta", "ductility", "yield_kN"}, {"deflection_max_m", "deflection_max_mm"}
     assert len(found) == 3 * len(demands)
     for each in found:
         missing = yielding | springs if each.case == "rigid" else yielding if each.case == "elastic" else set()
-        assert (each.verdict == "does not apply") == (each.demand in missing), each.demand
+        assert (each.verdict == "does not apply") == (each.demand in missing | bending), each.demand
+
+
+def test_a_check_of_drift_takes_that_of_a_shaft_that_bends_and_not_its_rotation():
+    """Its rotation is within the limit, 2h θ = 0.87 m; its drift, by bending too, is not."""
+    bent = case(base=RigidBase(shaft="elastic"))
+    table = runs([0.3], theta_max_error=0.001, top_drift_m=1.2, top_drift_error_m=0.003)
+    for demand, factor in (("top_drift_m", 1.0), ("top_drift_mm", 1000.0)):
+        found = judged(table, one=bent, demand=demand, at_most=factor)
+        assert (found.verdict, found.value) == ("fail", pytest.approx(1.2 * factor))
+        assert found.high - found.value == pytest.approx(0.003 * factor)
+        assert judged(table, demand=demand, at_most=factor).verdict == "pass"
 
 
 @pytest.mark.parametrize(("kind", "applies"), [("friction", True), ("hysteretic", True), ("viscous", False)])

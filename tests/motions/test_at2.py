@@ -122,7 +122,7 @@ def test_the_error_names_the_file(tmp_path):
         read_at2(str(path))
 
 
-def test_obspy_reads_at2_without_being_told_the_format(tmp_path):
+def test_obspy_reads_at2_without_a_format(tmp_path):
     obspy = pytest.importorskip("obspy")
     path = tmp_path / "x.AT2"
     path.write_text(at2_text(VALUES))

@@ -378,7 +378,7 @@ def test_numbers_that_programs_leave_in_a_file_of_records_are_read_as_text_colum
 
 
 @pytest.mark.parametrize("suffix", ["smc", "V2", "xyz"])
-def test_columns_under_another_suffix_are_told_to_be_called_text(tmp_path, suffix):
+def test_columns_under_another_suffix_are_asked_to_be_called_text(tmp_path, suffix):
     rows = "".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN))
     (tmp_path / f"x_000.{suffix}").write_text(rows)
     assert "but a table: read it as text columns: call it .txt, and state unit" in reason(tmp_path)
@@ -386,6 +386,6 @@ def test_columns_under_another_suffix_are_told_to_be_called_text(tmp_path, suffi
     assert one(tmp_path, unit="g").npts == len(SHAKEN)
 
 
-def test_what_is_no_table_is_not_told_to_be_called_text(tmp_path):
+def test_what_is_no_table_is_not_asked_to_be_called_text(tmp_path):
     (tmp_path / "x_000.smc").write_text("1 2 3\nnot a table\n4 5\n" * 40)
     assert reason(tmp_path).endswith("its header is another one")

@@ -250,7 +250,7 @@ def test_the_verdict_comes_before_the_figure_and_the_table_of_checks_after_it(tm
     assert len(Page(text).tables["answer"]) == 1 + len(FOUNDATIONS)
 
 
-def test_cases_at_several_scales_are_told_apart_by_these(tmp_path):
+def test_cases_at_several_scales_are_distinguished_by_these(tmp_path):
     at_scales = [verdict("1", "pass" if scale < 2.0 else "fail", ratio=scale, scale=scale) for scale in (1.0, 2.0)]
     shown = page(tmp_path, *at_scales, scales=(1.0, 2.0))
     names = [row[0].split("motions scaled by ")[1][:1] for row in shown.tables["answer"][1:]]

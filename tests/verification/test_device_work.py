@@ -171,7 +171,7 @@ def test_a_study_asks_for_the_work_checks_it_and_shows_it(tmp_path):
     assert "damper travel" in rb.report(out).path.read_text(encoding="utf-8")
 
 
-def test_who_does_not_ask_for_the_work_has_no_column_of_it_and_is_told_how_to(tmp_path):
+def test_who_does_not_ask_for_the_work_has_no_column_of_it_and_reads_how_to(tmp_path):
     with pytest.raises(InputError, match="write devices_work = true under"):
         rb.load_study(_study(tmp_path))
     with pytest.raises(InputError, match=r"least_stroke_mm = 2.*: is for devices_work = true"):
