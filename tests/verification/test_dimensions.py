@@ -294,7 +294,7 @@ def test_a_rocker_steps_as_a_block_does():
 
 def test_what_lifts_a_block_off_and_the_bounces_that_are_left():
     at_rest = Rocking(*quantities(Rocking, (0.0,) * 4))
-    assert_units([block_events._lift(rigid(), None, at_rest, 1.0, CALM)], [RAD / S**2])
+    assert_units([block_events.lifting(rigid(), None, at_rest, 1.0, CALM)], [RAD / S**2])
     assert_units(
         [block_events.lift_rate(rigid(), None, Instant(at_rest, at_rest, ON_RIGHT, None, CALM), 1.0)], [RAD / S**3]
     )

@@ -310,3 +310,13 @@ def test_a_column_of_finite_elements_rotates_as_far_and_behind_an_impact_most_li
         assert -run.theta[:second].min() == pytest.approx(others.first_rad, rel=0.005)
         behind[impact] = abs(run.theta[second] / others.second_rad - 1.0)
     assert behind["momentum"] < min(0.05, behind["rate"])
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_a_pier_that_only_vibrates_is_not_waited_for_nor_said_to_have_energy_for_a_rotation(damping):
+    """Its run ends with the quiet time; one that may still lift off goes on."""
+    base, pier = rb.RigidBase(shaft="elastic", flexural_damping=damping), pier_of(*TOWER)
+    run = rb.simulate(pier, base, shaken(0.2, 0.9))
+    assert run.row.theta_max_over_alpha == 0.0 < run.row.deflection_max_m
+    assert run.row.note == ""
+    assert run.t[-1] == pytest.approx(shaken(0.2, 0.9).duration + 2.0, abs=2 * DT)

@@ -60,7 +60,7 @@ RESTING = Stance(1.0, 1.0, 0.0, 0.0)
 
 
 @inlined
-def _lift(m, devices, y, side, ground):
+def lifting(m, devices, y, side, ground):
     """Return the tilt's acceleration [rad/s²] towards ``side`` of a block at rest that began to rock."""
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     return side * rates(under, y, on_side(side), ground).omega
@@ -134,8 +134,12 @@ def event_functions_of(m, devices, now):
         return Signals(normal, side * y.theta, 1.0, 1.0), Signals(normal_rate, omega, 0.0, 0.0)
     if contact.left != 0.0:
         rounding = WEIGHTLESS * m.p * m.p if _weightless(m, ground) else 0.0
-        left, left_slope = _at_once(-_lift(m, devices, y, RIGHT, ground), -lift_rate(m, devices, now, RIGHT), rounding)
-        right, right_slope = _at_once(-_lift(m, devices, y, LEFT, ground), -lift_rate(m, devices, now, LEFT), rounding)
+        left, left_slope = _at_once(
+            -lifting(m, devices, y, RIGHT, ground), -lift_rate(m, devices, now, RIGHT), rounding
+        )
+        right, right_slope = _at_once(
+            -lifting(m, devices, y, LEFT, ground), -lift_rate(m, devices, now, LEFT), rounding
+        )
         return Signals(left, right, 1.0, 1.0), Signals(left_slope, right_slope, 0.0, 0.0)
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     arm_left, arm_right = arms(m, y.theta, contact.top)
@@ -209,7 +213,7 @@ def transition(m, devices, now, which, ground, dt):
 @kernel
 def lift_off(m, devices, y, side, ground):
     """Return state, stance and kind as the block leaves rest: about the pivot on ``side``, or with both (THEORY.md, eq. 15)."""
-    other = _lift(m, devices, y, -side, ground)
+    other = lifting(m, devices, y, -side, ground)
     under = about_to_turn(devices, m, y, on_side(side), OPENS)
     k = rates(under, y, on_side(side), ground)
     falls_away = ground.vertical_slope < 0.0 or not _weightless(m, ground)
@@ -251,7 +255,7 @@ def bounces(m, devices, still, omega, ground):
     if m.restitution == 1.0 or speed == 0.0:
         return math.inf, math.inf
     for side in (here, -here):
-        slows = -_lift(m, devices, still, side, ground)
+        slows = -lifting(m, devices, still, side, ground)
         speeds = -side * _closing(m, devices, still, side, ground)
         if slows <= 0.0 or speeds <= 0.0:
             return math.inf, math.inf

@@ -5,12 +5,13 @@ import math
 from rockbatch.core import system
 from rockbatch.core.block.ending import stored_by_devices
 from rockbatch.core.block.equations import key_of, on_pivot, on_side, side_of
+from rockbatch.core.block.events import lifting
 from rockbatch.core.clock import ground_rests
 from rockbatch.core.flexure.equations import masses_about
 from rockbatch.core.flexure.model import FlexibleTraits, Flexing
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.system import airborne, pier_in
-from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED
+from rockbatch.core.types import RESTLESS, RUNNING, SURVIVED, UNDECIDED, Ground
 
 
 @inlined
@@ -59,6 +60,20 @@ def _cannot_reach(m, devices, now, limit):
     return abs(now.y.theta) < m.tipping and energy <= least
 
 
+@kernel
+def _stands_for_good(m, devices, now):
+    """Return whether both feet are down and the vibration that is left cannot lift either, by the moment at its amplitude."""
+    y, contact = now.y, now.contact
+    if contact.left == 0.0 or contact.right == 0.0:
+        return False
+    amplitude = math.hypot(y.u, y.u_rate / m.frequency)
+    quick = m.coupling * m.frequency * math.hypot(m.frequency, m.damping)
+    straight, still = Flexing(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Ground(0.0, 0.0, 0.0, 0.0)
+    inertia = masses_about(m, 0.0, 1.0).turning - m.coupling * m.coupling / m.second
+    held = -max(lifting(m, devices, straight, -1.0, still), lifting(m, devices, straight, 1.0, still)) * inertia
+    return (quick + m.gravity * m.first) * amplitude < held
+
+
 @system.status_at_sample.of(FlexibleTraits)
 def status_at_sample(traits, lanes, i, devices):
     """Return the status at a sample, and the next one to look at it: the end of the record, and every one from there on."""
@@ -74,8 +89,10 @@ def _status(traits, lanes, i, devices):
         return RUNNING
     m, now = pier_in(traits, lanes, i)
     grounded = not airborne(m, now.contact)
-    if grounded and ground_rests(lanes, i) and _cannot_reach(m, devices, now, min(lanes.peak.theta[i], m.tipping)):
-        return SURVIVED
+    if grounded and ground_rests(lanes, i):
+        limit = min(lanes.peak.theta[i], m.tipping)
+        if _stands_for_good(m, devices, now) or _cannot_reach(m, devices, now, limit):
+            return SURVIVED
     if sample < longest:
         return RUNNING
     if longest == samples:  # nothing is waited for
