@@ -25,7 +25,8 @@ from rockbatch.pier import (
     rocking_frequency,
     static_deflection,
 )
-from rockbatch.pier.equilibrium import SlowTurn, deflection_under, first_loading
+from rockbatch.pier.equilibrium import SlowTurn
+from rockbatch.pier.first_loading import deflection_under, first_loading
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import FACTS, in_words, sheet_of
 

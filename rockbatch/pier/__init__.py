@@ -28,9 +28,9 @@ from rockbatch.pier.bending import NO_SECTIONS as NO_SECTIONS
 from rockbatch.pier.bending import Mode as Mode
 from rockbatch.pier.bending import mode_of as mode_of
 from rockbatch.pier.bending import shape_at as shape_at
-from rockbatch.pier.block import Part as Part
 from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described
+from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
 from rockbatch.pier.places import offsets as offsets
 from rockbatch.pier.places import places as places

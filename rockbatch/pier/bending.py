@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.pier.block import Part, Pier
+from rockbatch.pier.block import Pier
+from rockbatch.pier.parts import Part
 from rockbatch.pier.sections import parts_of, shaft_height, unknown_masses
 
 NO_SECTIONS = 'sections: their forces are those of a rigid shaft; write shaft = "rigid", or leave them out'

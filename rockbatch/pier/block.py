@@ -1,188 +1,25 @@
-"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block.
-
-Implausible sizes, as of a wrong unit or of two values exchanged, are refused until ``confirm`` names them.
-"""
+"""The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
 
 import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.showing import InNotebook
-from rockbatch.common.units import GRAVITY, LEAST, MOST, POSITIVE, Bounds
-
-
-def _slenderness(alpha: float) -> str:
-    if alpha < math.pi / 2:
-        return f"must be within {BOUNDS['alpha'].low:g} and π/2 = 1.5708 rad"
-    return f"must be below π/2 = 1.5708 rad; if it is in degrees, write {math.radians(alpha):.4g}"
-
-
-def _rotation(theta: float) -> str:
-    return f"must be between −π/2 and π/2 rad; if it is in degrees, write {math.radians(theta):.4g}"
-
-
-_LENGTH, _MASS = Bounds(LEAST, MOST, " [m]"), Bounds(LEAST, MOST, " [t]")
-
-BOUNDS = {
-    "alpha": Bounds(1e-4, math.pi / 2, " [rad]", _slenderness, below=True),
-    "p": Bounds(1e-3, 1e3, " [rad/s]"),
-    "mu": Bounds(1e-3, 1e12, " (3 for a rectangle)"),
-    "gravity": Bounds(1e-3, 1e3, " [m/s²]"),
-    **dict.fromkeys(("size_m", "width_m", "height_m", "top_m", "deck_height_m"), _LENGTH),
-    **dict.fromkeys(("mass_t", "deck_mass_t"), _MASS),
-    "flexural_period_s": Bounds(LEAST, MOST, " [s]"),
-    "deck_over_columns": POSITIVE,
-    "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
-}
-"""Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
-
-
-LOWEST, HIGHEST = 0.25, 2.5
-"""Bounds of the heights of deck and drift, over the pier's height."""
-
-THINNEST, THICKEST = 0.03, 1000.0
-"""Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
-0.2, walls with a deck some 30, slender frames more."""
-
-NARROWEST, BROADEST = 0.01, 5.0
-"""Bounds of a deck's radius of gyration over its height: a deck 10 m wide has 3 m."""
-
-LIGHTEST, HEAVIEST = 0.005, 100.0
-"""Bounds of the mass of a deck over that of what carries it."""
-
-
-def out_of_bounds(**values: float | None) -> list[str]:
-    """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
-    return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
-
-
-def _falls(alpha: float, theta: float) -> list[str]:
-    """Return that a pier of slenderness ``alpha`` let go at ``theta`` [rad] does not come back; empty if it does."""
-    if abs(theta) < alpha:
-        return []
-    degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
-    return [
-        f"initial_rotation_rad = {theta:g}: must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is "
-        f"let go falls{degrees}"
-    ]
-
-
-def _refuse(wrong: list[str]) -> None:
-    if wrong:
-        raise InputError(*wrong)
-
-
-def _unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
-    """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
-    doubts = {}
-    if width_m > height_m:
-        doubts["width_m"] = (
-            f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
-            "only, and slides before; width and height may be exchanged"
-        )
-    for name, value in heights.items():
-        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
-            doubts[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
-    return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
-
-
-def unlikely_mass(pier: "Pier", confirm: Collection[str], name: str = "mass_t") -> list[str]:
-    """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
-
-    ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
-    """
-    volume = 8.0 * pier.half_width**2 * pier.height
-    if pier.mass_t is None or THINNEST <= pier.mass_t / volume <= THICKEST or name in confirm:
-        return []
-    width, density = 2.0 * pier.half_width, pier.mass_t / volume
-    return [
-        f"{name} = {pier.mass_t if name == 'mass_t' else width:g}: a block {width:.3g} m wide and as thick, "
-        f"{2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have {density:.2g} t/m³; {remedy(name)}"
-    ]
-
-
-def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
-    """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
-    ratio = deck_mass_t / mass_t
-    if LIGHTEST <= ratio <= HEAVIEST or "deck_mass_t" in confirm:
-        return []
-    return [
-        f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
-    ]
-
-
-def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]) -> list[str]:
-    """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
-    radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
-    if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
-        return []
-    return [
-        f"deck_inertia_t_m2 = {inertia_t_m2:g}: that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck "
-        f"at {height_m:g} m; {remedy('deck_inertia_t_m2')}"
-    ]
-
-
-class Part(NamedTuple):
-    """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²].
-
-    ``length_m`` is the length along the axis over which its mass is spread evenly, 0 of a mass at one height; only forces in
-    sections need it.
-
-    Examples
-    --------
-    >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)
-    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666, length_m=30.0)
-    """
-
-    mass_t: float
-    height_m: float
-    inertia_t_m2: float = 0.0
-    length_m: float | None = None
-
-    @classmethod
-    @checked
-    def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
-        """Return a uniform shaft that stands on the pivots: a rectangle."""
-        _refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
-        return cls.rectangle(mass_t, 0.5 * height_m, height_m, width_m)
-
-    @classmethod
-    @checked
-    def rectangle(cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0) -> "Part":
-        """Return a rectangle whose centre is at ``height_m``, ``length_m`` along the axis of the pier; or two legs, of
-        ``mass_t`` together, whose own axes are ``apart_m`` from each other."""
-        return cls(mass_t, height_m, mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0, length_m)
-
-
-def _in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:
-    return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
-
-
-def _length_problems(n: int, part: Part) -> list[str]:
-    """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
-    length = part.length_m
-    if length is None or length == 0:
-        return []
-    name = f"part_{n}_length_m"
-    if not LEAST <= length <= MOST:
-        return [f"{name} = {length:g}: must be 0 or a number above it, to {MOST:g}"]
-    if 0.5 * length > part.height_m * (1.0 + _ROUNDING):
-        reach = 2.0 * part.height_m
-        return [f"{name} = {length:g}: reaches below the pivots; about {part.height_m:g} m it may be {reach:g} at most"]
-    rod = part.mass_t * length**2 / 12.0
-    if part.inertia_t_m2 < rod * (1.0 - _ROUNDING):
-        return [
-            f"{name} = {length:g}: a mass spread over it has an inertia of m L²/12 = {rod:.6g} t m² at least, "
-            f"inertia_t_m2 = {part.inertia_t_m2:g} is less"
-        ]
-    return []
-
-
-_ROUNDING = 1e-6
-"""Share by which lengths and inertias of parts may be beyond what can be: digits that a study does not give."""
+from rockbatch.common.units import GRAVITY
+from rockbatch.pier.parts import Part, in_floats, part_problems
+from rockbatch.pier.sizes import (
+    BOUNDS,
+    THICKEST,
+    THINNEST,
+    falls,
+    out_of_bounds,
+    refuse,
+    unlikely_deck,
+    unlikely_inertia,
+    unlikely_sizes,
+)
 
 
 @checked
@@ -246,7 +83,7 @@ class Pier(InNotebook):
         wrong = out_of_bounds(
             **{field.name: getattr(self, field.name) for field in fields(self) if field.name in BOUNDS}
         )
-        _refuse(wrong or _falls(self.alpha, self.initial_rotation_rad))
+        refuse(wrong or falls(self.alpha, self.initial_rotation_rad))
 
     @classmethod
     @checked
@@ -267,12 +104,12 @@ class Pier(InNotebook):
         "top_m", "deck_height_m", "mass_t", "deck_mass_t", "deck_inertia_t_m2".
         Raises ``InputError`` for what is impossible or not confirmed.
         """
-        _refuse(
+        refuse(
             out_of_bounds(alpha=alpha, size_m=size_m, mu=mu, gravity=gravity)
-            or _unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
+            or unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         )
         pier = cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
-        _refuse(unlikely_mass(pier, confirm))
+        refuse(unlikely_mass(pier, confirm))
         return pier
 
     @classmethod
@@ -289,7 +126,7 @@ class Pier(InNotebook):
     ) -> "Pier":
         """Return a solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
         wrong = out_of_bounds(width_m=width_m, height_m=height_m)
-        _refuse(wrong or _unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
+        refuse(wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
         return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=(*confirm, "top_m"))
 
@@ -332,32 +169,28 @@ class Pier(InNotebook):
             With every impossible number; part 1 is the first.
         """
         try:
-            parts = [_in_floats(*part) for part in parts]
+            parts = [in_floats(*part) for part in parts]
         except (TypeError, ValueError, OverflowError) as error:
             raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
         wrong = out_of_bounds(width_m=width_m)
         for n, part in enumerate(parts, 1):
-            wrong += BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
-            for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
-                if not (value == 0 or LEAST <= value <= MOST):
-                    wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
-            wrong += _length_problems(n, part)
+            wrong += part_problems(n, part)
         if not parts:
             wrong.append("parts: there are none; a pier has one at least")
-        _refuse(wrong)
+        refuse(wrong)
         mass = math.fsum(part.mass_t for part in parts)
         height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
         inertia = math.fsum(part.inertia_t_m2 + part.mass_t * (part.height_m - height) ** 2 for part in parts)
         if height == 0 or inertia == 0:
             lack = "no height" if height == 0 else "no rotary inertia about their common centre"
             raise InputError(f"parts: they have {lack}; a shaft has m (width² + height²)/12 at half its height")
-        _refuse(_unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m))
+        refuse(unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m))
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
         confirmed = ("top_m", "mass_t")
         pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
-        _refuse(unlikely_mass(pier, confirm, "width_m"))
+        refuse(unlikely_mass(pier, confirm, "width_m"))
         return replace(pier, parts=tuple(parts), deck_height_m=None if deck_height_m == top else deck_height_m)
 
     @classmethod
@@ -382,18 +215,18 @@ class Pier(InNotebook):
         higher of shaft and deck. See :meth:`of_parts`, and :meth:`from_size` for ``confirm``.
         """
         wrong = out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
-        _refuse(
+        refuse(
             wrong
-            or _unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
+            or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
             + unlikely_deck(mass_t, deck_mass_t, confirm)
         )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2, 0.0)
-        _refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
+        refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
         confirmed = ("width_m", "top_m", "deck_height_m")
         pier = cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
-        _refuse(unlikely_mass(pier, confirm))
+        refuse(unlikely_mass(pier, confirm))
         return pier
 
     @classmethod
@@ -436,7 +269,7 @@ class Pier(InNotebook):
             wrong.append(f"mu = {column.mu:g}: the columns of a frame are solid rectangles, mu = 3")
         if wrong or column.mass_t is None:
             raise InputError(*wrong)
-        _refuse(unlikely_deck(columns * column.mass_t, deck_mass_t, confirm))
+        refuse(unlikely_deck(columns * column.mass_t, deck_mass_t, confirm))
         ratio = deck_mass_t / (columns * column.mass_t)
         return cls(
             column.alpha,
@@ -505,6 +338,21 @@ class Pier(InNotebook):
     def least_beta(self) -> float:
         """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
+
+
+def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") -> list[str]:
+    """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
+
+    ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
+    """
+    volume = 8.0 * pier.half_width**2 * pier.height
+    if pier.mass_t is None or THINNEST <= pier.mass_t / volume <= THICKEST or name in confirm:
+        return []
+    width, density = 2.0 * pier.half_width, pier.mass_t / volume
+    return [
+        f"{name} = {pier.mass_t if name == 'mass_t' else width:g}: a block {width:.3g} m wide and as thick, "
+        f"{2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have {density:.2g} t/m³; {remedy(name)}"
+    ]
 
 
 def described(pier: Pier) -> dict[str, float]:

@@ -9,7 +9,7 @@ from typing import NamedTuple, get_args
 
 from rockbatch.common.errors import remedy
 from rockbatch.common.units import POSITIVE
-from rockbatch.pier.block import HIGHEST, LOWEST, Pier
+from rockbatch.pier.block import Pier
 from rockbatch.pier.places import WAYS, offsets, symmetric
 from rockbatch.pier.restraints import (
     BOUNDS,
@@ -23,6 +23,7 @@ from rockbatch.pier.restraints import (
     Stop,
     Tendon,
 )
+from rockbatch.pier.sizes import HIGHEST, LOWEST
 
 SPEED = 0.1
 """Speed of a viscous damper [m/s] at which it has less than the pier's weight; heels of piers that step reach 0.1 to 1 m/s."""

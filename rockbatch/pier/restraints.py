@@ -9,8 +9,8 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
-from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import Pier
+from rockbatch.pier.sizes import BOUNDS as OF_PIER
 
 DamperKind = Literal["friction", "viscous", "hysteretic"]
 

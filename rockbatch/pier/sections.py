@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.common.errors import InputError
-from rockbatch.pier.block import Part, Pier
+from rockbatch.pier.block import Pier
+from rockbatch.pier.parts import Part
 
 _ROUNDING = 1e-9
 """Share of the shaft's height within which a mass at one height is at a section: it counts as above it."""

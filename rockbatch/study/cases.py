@@ -22,9 +22,9 @@ from rockbatch.pier import (
     problems,
 )
 from rockbatch.pier.bases import BOUNDS, WORDS
-from rockbatch.pier.block import BOUNDS as OF_PIER
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
+from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices

@@ -6,7 +6,8 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.pier.block import BOUNDS, unlikely_deck, unlikely_inertia, unlikely_mass
+from rockbatch.pier.block import unlikely_mass
+from rockbatch.pier.sizes import BOUNDS, unlikely_deck, unlikely_inertia
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names

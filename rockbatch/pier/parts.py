@@ -1,0 +1,83 @@
+"""Parts of which a pier is made up, their centres on its axis."""
+
+from typing import NamedTuple
+
+from rockbatch.common.arguments import checked
+from rockbatch.common.units import LEAST, MOST
+from rockbatch.pier.sizes import BOUNDS, out_of_bounds, refuse
+
+
+class Part(NamedTuple):
+    """A part of a pier, its centre on the axis: mass [t], height above the pivots [m], rotary inertia about it [t m²].
+
+    ``length_m`` is the length along the axis over which its mass is spread evenly, 0 of a mass at one height; only forces in
+    sections need it.
+
+    Examples
+    --------
+    >>> rb.Part.shaft(width_m=8.0, height_m=30.0, mass_t=2000.0)
+    Part(mass_t=2000.0, height_m=15.0, inertia_t_m2=160666.66666666666, length_m=30.0)
+    """
+
+    mass_t: float
+    height_m: float
+    inertia_t_m2: float = 0.0
+    length_m: float | None = None
+
+    @classmethod
+    @checked
+    def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":
+        """Return a uniform shaft that stands on the pivots: a rectangle."""
+        refuse(out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t))
+        return cls.rectangle(mass_t, 0.5 * height_m, height_m, width_m)
+
+    @classmethod
+    @checked
+    def rectangle(cls, mass_t: float, height_m: float, length_m: float, width_m: float, apart_m: float = 0.0) -> "Part":
+        """Return a rectangle whose centre is at ``height_m``, ``length_m`` along the axis of the pier; or two legs, of
+        ``mass_t`` together, whose own axes are ``apart_m`` from each other."""
+        return cls(mass_t, height_m, mass_t * (length_m**2 + width_m**2 + 3.0 * apart_m**2) / 12.0, length_m)
+
+
+def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_m: float | None = None) -> Part:
+    """Return a part of floats.
+
+    Raises
+    ------
+    TypeError, ValueError, OverflowError
+        For values that are no numbers.
+    """
+    return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
+
+
+def part_problems(n: int, part: Part) -> list[str]:
+    """Return a message for each value of part ``n`` that cannot be."""
+    wrong = BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
+    for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
+        if not (value == 0 or LEAST <= value <= MOST):
+            wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
+    return wrong + _length_problems(n, part)
+
+
+def _length_problems(n: int, part: Part) -> list[str]:
+    """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
+    length = part.length_m
+    if length is None or length == 0:
+        return []
+    name = f"part_{n}_length_m"
+    if not LEAST <= length <= MOST:
+        return [f"{name} = {length:g}: must be 0 or a number above it, to {MOST:g}"]
+    if 0.5 * length > part.height_m * (1.0 + _ROUNDING):
+        reach = 2.0 * part.height_m
+        return [f"{name} = {length:g}: reaches below the pivots; about {part.height_m:g} m it may be {reach:g} at most"]
+    rod = part.mass_t * length**2 / 12.0
+    if part.inertia_t_m2 < rod * (1.0 - _ROUNDING):
+        return [
+            f"{name} = {length:g}: a mass spread over it has an inertia of m L²/12 = {rod:.6g} t m² at least, "
+            f"inertia_t_m2 = {part.inertia_t_m2:g} is less"
+        ]
+    return []
+
+
+_ROUNDING = 1e-6
+"""Share by which lengths and inertias of parts may be beyond what can be: digits that a study does not give."""

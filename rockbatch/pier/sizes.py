@@ -1,0 +1,107 @@
+"""Possible and plausible sizes of a pier.
+
+Implausible ones, as of a wrong unit or of two values exchanged, are refused until ``confirm`` names them.
+"""
+
+import math
+from collections.abc import Collection
+
+from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
+
+
+def _slenderness(alpha: float) -> str:
+    if alpha < math.pi / 2:
+        return f"must be within {BOUNDS['alpha'].low:g} and π/2 = 1.5708 rad"
+    return f"must be below π/2 = 1.5708 rad; if it is in degrees, write {math.radians(alpha):.4g}"
+
+
+def _rotation(theta: float) -> str:
+    return f"must be between −π/2 and π/2 rad; if it is in degrees, write {math.radians(theta):.4g}"
+
+
+_LENGTH, _MASS = Bounds(LEAST, MOST, " [m]"), Bounds(LEAST, MOST, " [t]")
+
+BOUNDS = {
+    "alpha": Bounds(1e-4, math.pi / 2, " [rad]", _slenderness, below=True),
+    "p": Bounds(1e-3, 1e3, " [rad/s]"),
+    "mu": Bounds(1e-3, 1e12, " (3 for a rectangle)"),
+    "gravity": Bounds(1e-3, 1e3, " [m/s²]"),
+    **dict.fromkeys(("size_m", "width_m", "height_m", "top_m", "deck_height_m"), _LENGTH),
+    **dict.fromkeys(("mass_t", "deck_mass_t"), _MASS),
+    "flexural_period_s": Bounds(LEAST, MOST, " [s]"),
+    "deck_over_columns": POSITIVE,
+    "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
+}
+"""Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
+
+
+LOWEST, HIGHEST = 0.25, 2.5
+"""Bounds of the heights of deck and drift, over the pier's height."""
+
+THINNEST, THICKEST = 0.03, 1000.0
+"""Bounds of the mass of all that rocks over its width squared and twice the height of its centre [t/m³]: hollow towers have some
+0.2, walls with a deck some 30, slender frames more."""
+
+NARROWEST, BROADEST = 0.01, 5.0
+"""Bounds of a deck's radius of gyration over its height: a deck 10 m wide has 3 m."""
+
+LIGHTEST, HEAVIEST = 0.005, 100.0
+"""Bounds of the mass of a deck over that of what carries it."""
+
+
+def out_of_bounds(**values: float | None) -> list[str]:
+    """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
+    return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
+
+
+def falls(alpha: float, theta: float) -> list[str]:
+    """Return that a pier of slenderness ``alpha`` let go at ``theta`` [rad] does not come back; empty if it does."""
+    if abs(theta) < alpha:
+        return []
+    degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
+    return [
+        f"initial_rotation_rad = {theta:g}: must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is "
+        f"let go falls{degrees}"
+    ]
+
+
+def refuse(wrong: list[str]) -> None:
+    """Raise an InputError with these messages, if there are any."""
+    if wrong:
+        raise InputError(*wrong)
+
+
+def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+    """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
+    doubts = {}
+    if width_m > height_m:
+        doubts["width_m"] = (
+            f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
+            "only, and slides before; width and height may be exchanged"
+        )
+    for name, value in heights.items():
+        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
+            doubts[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
+    return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+
+
+def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
+    """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
+    ratio = deck_mass_t / mass_t
+    if LIGHTEST <= ratio <= HEAVIEST or "deck_mass_t" in confirm:
+        return []
+    return [
+        f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
+    ]
+
+
+def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]) -> list[str]:
+    """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
+    radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
+    if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
+        return []
+    return [
+        f"deck_inertia_t_m2 = {inertia_t_m2:g}: that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck "
+        f"at {height_m:g} m; {remedy('deck_inertia_t_m2')}"
+    ]
