@@ -11,8 +11,8 @@ from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
+from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import of_pier
-from rockbatch.toml.kinds import shown
 
 MOST_NAMES, MOST_FILES = 3, 6
 """Most names of cases that are listed, since the scorecard has all of them, and of files."""

@@ -11,6 +11,7 @@ from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import shown
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case
@@ -19,7 +20,6 @@ from rockbatch.study import Study, load_study
 from rockbatch.study.rule_choices import implausible
 from rockbatch.study.rule_files import Checks, load_rules, read_checks
 from rockbatch.study.rules import Rule
-from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]

@@ -23,6 +23,7 @@ from rockbatch.checks.bounds import (
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import STATISTICS, Values
@@ -30,7 +31,6 @@ from rockbatch.results.rows import complete, counts_as, simulated, suites, with_
 from rockbatch.results.sections import MEANING as OF_SECTIONS
 from rockbatch.study.rule_choices import FAR, chooses, has_section, limit_key, unmet
 from rockbatch.study.rules import Rule
-from rockbatch.toml.kinds import shown
 
 MOST_NAMES = 5
 

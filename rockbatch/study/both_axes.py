@@ -9,12 +9,12 @@ from dataclasses import replace
 from typing import Any
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.motions import MotionSet
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier, Restraint, offsets, problems
 from rockbatch.study.piers import with_width
 from rockbatch.study.spec import Case, MotionSpec
-from rockbatch.toml.kinds import shown
 from rockbatch.toml.reader import Table, TomlFile
 
 KEY = "other_width_m"

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import remedy
+from rockbatch.common.showing import shown
 from rockbatch.pier import (
     EPSILON_AND_ZETA,
     MOST_ETA,
@@ -29,7 +30,7 @@ from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import choice, positive, shown, text, within
+from rockbatch.toml.kinds import choice, positive, text, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
