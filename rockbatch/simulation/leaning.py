@@ -89,7 +89,8 @@ def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
 def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple[Samples, Samples]:
     """Return the unstressed positions of the left and the right support at every row [m], up from those at the start."""
     b, h, theta = pier.half_width, pier.height, rows.theta
-    rise, drop = b * theta, 0.0
+    rise: Samples = b * theta
+    drop: float | Samples = 0.0
     if base.kinematics == "finite":
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
     deflection = yield_deflection(pier, base)

@@ -59,9 +59,13 @@ def responses(finished: Finished) -> Markup:
     for (series, pier), of_case in sorted(by_case.items(), key=lambda item: _rotation(item[1])):
         by_demand = {worst.demand: worst for worst in of_case}
         name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
-        runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
-        cells = [_response(finished, by_demand[demand]) if demand in by_demand else "–" for demand in present]
-        rows.append([name, *cells, *(cell for kind in devices for cell in _of_devices(finished, runs, kind))])
+        cells: list[object] = [
+            _response(finished, by_demand[demand]) if demand in by_demand else "–" for demand in present
+        ]
+        if devices:
+            runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
+            cells += [cell for kind in devices for cell in _of_devices(finished, runs, kind)]
+        rows.append([name, *cells])
     heads = [Head("case"), *(_head(name) for name in present)]
     heads += [head for kind in devices for head in _heads_of(finished, kind)]
     return table(heads, rows, name="Greatest responses")
