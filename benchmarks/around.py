@@ -4,12 +4,14 @@
 
 "fixed" and "tolerance" run whole studies with `--jobs 1`, and the kernels of the same groups of runs alone, in turn.
 "fig7" is `rockbatch run` of the study of that name, then `check` and `report` of its folder; "dry" is `--dry-run` of a
-study with dampers. Medians; what is compiled is compiled before, Python's modules too (PYTHONDONTWRITEBYTECODE, which would have
-each command compile them anew, is left out).
+study with dampers. "million", on request only, is a million short runs of rigid piers on rigid ground, once. The others are
+medians; what is compiled is compiled before, Python's modules too (PYTHONDONTWRITEBYTECODE, which would have each command
+compile them anew, is left out).
 """
 
 import argparse
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -79,6 +81,39 @@ def study(title: str, records: int, scales: int, betas: int, etas: int, numerics
     return text + more + "".join(RECORD.format(station=station) for station in near)
 
 
+PULSES = """
+title = "1,000,000 short runs"
+
+[pier]
+alpha = {alphas}
+p = {ps}
+
+[motions]
+scale = {scales}
+
+[numerics]
+substeps = 1
+quiet_s = 0.5
+
+[output]
+both_laws = false
+histories = "none"
+
+[[case]]
+name = "rigid"
+base = "rigid"
+"""
+
+PULSE = """
+[[motions.pulse]]
+name = "sine {period:.2f} s"
+shape = "sine"
+amplitude_g = 0.4
+period_s = {period:.2f}
+dt_s = 0.02
+duration_s = 2.0
+"""
+
 STUDIES = {
     "fixed": study("4,800 runs at one step per sample", 12, 4, 10, 10, "substeps = 1"),
     "tolerance": study("16,320 runs to the tolerance, 2,720 groups", 6, 20, 8, 17, "tolerance = 1e-4"),
@@ -87,11 +122,17 @@ STUDIES = {
 
 def processor_time(command: Sequence[str]) -> float:
     """User and system time [s] of a process; it may end with 1, where a check failed."""
+    usage = usage_of(command)
+    return usage.ru_utime + usage.ru_stime
+
+
+def usage_of(command: Sequence[str]) -> resource.struct_rusage:
+    """What a process used, as of :func:`processor_time`."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
     _, status, usage = os.wait4(process.pid, 0)
     assert os.waitstatus_to_exitcode(status) in (0, 1), " ".join(command)
-    return usage.ru_utime + usage.ru_stime
+    return usage
 
 
 def rockbatch(*words: object) -> float:
@@ -156,22 +197,40 @@ def dry(folder: Path, times: int) -> None:
     print(f"--dry-run of 144 runs with dampers: {taken:.2f} s of processor time, {wall:.2f} s", flush=True)
 
 
+def million(folder: Path) -> None:
+    """Print what a million runs take, the memory, and the size of their page."""
+    file, out = folder / "million.toml", folder / "million"
+    text = PULSES.format(
+        alphas=[round(0.1 + 0.01 * i, 2) for i in range(20)],
+        ps=[round(0.8 + 0.1 * i, 1) for i in range(10)],
+        scales=[round(0.3 + 0.01 * i, 2) for i in range(100)],
+    )
+    file.write_text(text + "".join(PULSE.format(period=0.3 + 0.02 * i) for i in range(50)), encoding="utf-8")
+    usage = usage_of([sys.executable, "-m", "rockbatch", "run", str(file), "--out", str(out)])
+    print(
+        f"1,000,000 runs: {usage.ru_utime + usage.ru_stime:.0f} s, {usage.ru_maxrss / 2**20:.2f} GiB at most; page of "
+        f"{(out / 'report.html').stat().st_size / 1e6:.1f} MB",
+        flush=True,
+    )
+
+
 ROWS = {
     "fixed": lambda folder, times: whole("fixed", folder, times),
     "tolerance": lambda folder, times: whole("tolerance", folder, times),
     "fig7": fig7,
     "dry": dry,
 }
+LONG = {"million": lambda folder, _: million(folder)}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("rows", nargs="*", metavar="ROW", help=", ".join(ROWS))
+    parser.add_argument("rows", nargs="*", metavar="ROW", help=", ".join([*ROWS, *LONG]))
     parser.add_argument("--times", type=int, default=3)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for name in arguments.rows or ROWS:
-            ROWS[name](Path(folder), arguments.times)
+            (ROWS | LONG)[name](Path(folder), arguments.times)
 
 
 if __name__ == "__main__":

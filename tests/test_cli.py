@@ -533,3 +533,10 @@ def test_a_demand_that_does_not_exist_is_answered_in_a_line_with_the_command_tha
     assert main(["run", str(study)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.endswith('demand = "zzz": expected one that `rockbatch check --list` lists')
+
+
+def test_reading_results_loads_no_record_format():
+    code = "import sys, rockbatch.checks, rockbatch.reporting\n"
+    code += "print([m for m in sys.modules if m.startswith('rockbatch.motions.formats')])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -108,7 +108,7 @@ def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, st
     """Return ``outcome`` with what observers make of the recorded run: energy balance, forces; unless it is very long."""
     if stop:
         return None
-    if not outcome.was_run:
+    if not outcome.was_run or not (output.ledger or output.forces or output.devices_work):
         return outcome
     steps = steps_of(run.motion, outcome.substeps, numerics.quiet_s)
     ledger = output.ledger and steps <= MOST_STEPS_OF_A_LEDGER

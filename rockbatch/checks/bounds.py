@@ -131,7 +131,7 @@ def noted(runs: "pd.DataFrame", words: str) -> npt.NDArray[np.bool_]:
     """Return True for each run whose note has these words, shape (n,)."""
     if "note" not in runs:
         return np.zeros(len(runs), dtype=bool)
-    return runs["note"].astype(str).str.contains(words, regex=False).to_numpy(dtype=bool)
+    return np.array([words in str(note) for note in runs["note"]], dtype=bool)
 
 
 def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:

@@ -70,19 +70,19 @@ def runs_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], records: int) -> 
     """
     scales, scale_of = np.unique(runs["scale"].to_numpy(np.float64), return_inverse=True)
     statuses = [status for status in ENDED if status != NOT_RUN]
-    status_of = runs["status"].to_numpy(object)
+    kind_of = pd.Index(statuses).get_indexer(pd.Index(runs["status"])) + 1  # 0 of those that end standing
     planned = records * runs["polarity"].nunique()
     counted = []
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         axes = list(of_axes)
         (case, _), rows = axes[0], np.concatenate([rows for _, rows in axes])
-        for place, scale in enumerate(scales):
-            of_scale, every = rows[scale_of[rows] == place], planned * len(axes)
-            ended = {status: int((status_of[of_scale] == status).sum()) for status in statuses}
-            ended[NOT_RUN] = max(every - len(of_scale), 0)
-            counts = {status: n for status, n in ended.items() if n}
-            total = max(every, len(of_scale))
-            counted.append(CaseRuns(str(case["case"]), case["columns"], float(scale), total, counts))
+        every, width = planned * len(axes), len(statuses) + 1
+        kinds = np.bincount(scale_of[rows] * width + kind_of[rows], minlength=len(scales) * width)
+        for scale, (stood, *ended) in zip(scales.tolist(), kinds.reshape(-1, width).tolist(), strict=True):
+            present = stood + sum(ended)
+            ends = zip((*statuses, NOT_RUN), (*ended, max(every - present, 0)), strict=True)
+            counts = {status: n for status, n in ends if n}
+            counted.append(CaseRuns(str(case["case"]), case["columns"], scale, max(every, present), counts))
     return counted
 
 

@@ -9,7 +9,7 @@ _NAMES = {
     "baseline": "Offset",
     "design_spectra": "EUROCODE AashtoSpectrum AsceSpectrum EurocodeSpectrum NzsSpectrum TableSpectrum read_spectrum",
     "folder": "read_motions",
-    "formats.record_file": "ReadOptions",
+    "record_file": "ReadOptions",
     "hazard": "HazardCurve",
     "manifest_draft": "write_manifest",
     "measures": "arias_intensity bracketed_duration cumulative_absolute_velocity displacement pga pgd pgv significant_duration "

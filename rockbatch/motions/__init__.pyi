@@ -10,7 +10,6 @@ from rockbatch.motions.design_spectra import NzsSpectrum as NzsSpectrum
 from rockbatch.motions.design_spectra import TableSpectrum as TableSpectrum
 from rockbatch.motions.design_spectra import read_spectrum as read_spectrum
 from rockbatch.motions.folder import read_motions as read_motions
-from rockbatch.motions.formats.record_file import ReadOptions as ReadOptions
 from rockbatch.motions.hazard import HazardCurve as HazardCurve
 from rockbatch.motions.manifest_draft import write_manifest as write_manifest
 from rockbatch.motions.measures import arias_intensity as arias_intensity
@@ -29,6 +28,7 @@ from rockbatch.motions.motion import Unusable as Unusable
 from rockbatch.motions.motion_set import MotionSet as MotionSet
 from rockbatch.motions.pairs import pair_spectrum as pair_spectrum
 from rockbatch.motions.pulses import pulse as pulse
+from rockbatch.motions.record_file import ReadOptions as ReadOptions
 from rockbatch.motions.scaling import Target as Target
 from rockbatch.motions.scaling import at_target as at_target
 from rockbatch.motions.selection import Selection as Selection

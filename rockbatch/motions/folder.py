@@ -23,13 +23,13 @@ from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
 from rockbatch.motions.formats import format_of, read_record, usable
 from rockbatch.motions.formats.obspy_plugin import HEAD
-from rockbatch.motions.formats.record_file import ReadOptions, RecordFile
 from rockbatch.motions.leaving_out import LeaveOut, Reading
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, with_sequences
 from rockbatch.motions.texts import with_legible_texts
 

@@ -3,6 +3,9 @@
 SHORTEST_STEP, LONGEST_STEP = 1e-5, 1.0
 """Sampling interval [s]: recorders take 20 to 1000 samples a second; digitised film and simulations stay within, too."""
 
+SAME_STEP = 0.01
+"""Relative: intervals that differ by less are the same one, printed with few decimals (1/256 s as .0039)."""
+
 MOST_STEPS = 20
 """Greatest ratio of the sampling intervals of two components of a record."""
 

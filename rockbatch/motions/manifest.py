@@ -21,9 +21,9 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
+from rockbatch.motions.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.sequences import SEQUENCE, ShockSequence, read_sequences
 from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, text
 from rockbatch.toml.meant import names

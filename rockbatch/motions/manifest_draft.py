@@ -13,9 +13,9 @@ from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
-from rockbatch.motions.formats.record_file import ReadOptions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.plausible import gross_findings
+from rockbatch.motions.record_file import ReadOptions
 from rockbatch.motions.stations import by_station
 
 _HEAD = """\

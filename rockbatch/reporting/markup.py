@@ -64,7 +64,8 @@ def number(value: object, form: str = ".4g") -> str:
         return ""
     if not isinstance(value, float):
         return str(value)
-    shown = _without_exponent(format(value, form))
+    written = format(value, form)
+    shown = written if form in _DECIMALS and abs(value) < _LEAST_GROUPED else _without_exponent(written)
     return shown.removeprefix("-") if shown.startswith("-0") and float(shown.replace(",", "")) == 0 else shown
 
 
@@ -80,6 +81,10 @@ def _without_exponent(written: str) -> str:
     value = float(written)
     return f"{value:,.{digits}f}" if abs(value) >= 1e4 else f"{value:.{digits}f}"
 
+
+_DECIMALS = frozenset(f".{digits}f" for digits in range(10))
+_LEAST_GROUPED = 9999.0
+"""Below which a number in a format of :data:`_DECIMALS` is written as it is: most cells of long tables are."""
 
 _FEWEST, _MOST = 6, 9
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")

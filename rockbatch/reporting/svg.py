@@ -444,18 +444,19 @@ def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     last = np.maximum.accumulate(np.where(ways != 0, np.arange(len(ways))[:, None], 0), axis=0)
     ways = np.take_along_axis(ways, last, axis=0)  # a level stretch goes on as before
     kept[1:-1] = np.any(ways[1:] * ways[:-1] < 0, axis=1)
-    inner = np.flatnonzero(~kept)
+    (x, y), inner = np.ascontiguousarray(points.T), np.flatnonzero(~kept)
     while len(inner):
         ends = np.flatnonzero(kept)
-        piece = np.searchsorted(ends, inner) - 1
-        start = points[ends[piece]]
-        chord, way = points[ends[piece + 1]] - start, points[inner] - start
-        away = np.abs(chord[:, 0] * way[:, 1] - chord[:, 1] * way[:, 0]) / np.hypot(chord[:, 0], chord[:, 1])
-        first = np.flatnonzero(np.diff(piece, prepend=-1))
-        count = np.diff(first, append=len(piece))
+        first = np.searchsorted(inner, ends)
+        count = first[1:] - first[:-1]
+        open_ = np.flatnonzero(count)  # chords with points between their ends
+        first, count, start, end = first[open_], count[open_], ends[open_], ends[open_ + 1]
+        across, down = x[end] - x[start], y[end] - y[start]
+        offset, length = across * y[start] - down * x[start], np.hypot(across, down)
+        across, down, offset, length = (np.repeat(of_chord, count) for of_chord in (across, down, offset, length))
+        away = np.abs(across * y[inner] - down * x[inner] - offset) / length
         largest = np.maximum.reduceat(away, first)
-        farthest = np.flatnonzero(away == np.repeat(np.where(largest > 1.0, largest, -1.0), count))
+        farthest = away == np.repeat(np.where(largest > 1.0, largest, -1.0), count)
         kept[inner[farthest]] = True
-        inner = inner[np.repeat(largest > 1.0, count)]
-        inner = inner[~kept[inner]]
+        inner = inner[np.repeat(largest > 1.0, count) & ~farthest]
     return places[kept]

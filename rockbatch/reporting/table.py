@@ -101,10 +101,17 @@ def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options:
 def _cells(kind: str, values: Iterable[object], form: str, **attributes: object) -> list[Markup]:
     """Return the cells of a column, its numbers with their decimal points below each other."""
     start, end = tag(kind, _HERE, **attributes).split(_HERE)
-    shown = [value if isinstance(value, Markup) else number(value, form) for value in values]
+    shown = [_text(value, form) for value in values]
     if form.endswith("g"):  # decimals that differ from row to row
         shown = _aligned(shown)
-    return [Markup(f"{start}{escape(value)}{end}") for value in shown]
+    return [Markup(f"{start}{value}{end}") for value in shown]
+
+
+def _text(value: object, form: str) -> str:
+    """Return a value as HTML; a number has nothing to escape, and there are many."""
+    if isinstance(value, Markup):
+        return value
+    return number(value, form) if isinstance(value, float) else escape(number(value, form))
 
 
 def _aligned(values: Sequence[str]) -> list[str]:

@@ -149,23 +149,20 @@ def distributions_of_all(results: Labelled, count: str) -> Figure:
 
 
 def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
-    peaks_of_ok = runs["theta_max_over_alpha"].where(runs["status"] == "ok").to_numpy(dtype=np.float64)
-    top = 1.04 * float(np.nanmax(peaks_of_ok, initial=0.0)) or 1.0
+    values, status = runs["theta_max_over_alpha"].to_numpy(np.float64), runs["status"].to_numpy(object)
+    counted_as = counts_as(runs, count)[0].to_numpy(object)
+    top = 1.04 * float(np.nanmax(values[status == "ok"], initial=0.0)) or 1.0
     right = 1.08 * top if eventful else top
     marks: list[Mark] = [Span("x", top, right, look=Look("band"))] if eventful else []
-    for place, group in runs.groupby("series"):
+    for place, rows in sorted(runs.groupby("series").indices.items()):
         foundation = series[int(str(place))]
-        theta, share = distribution(
-            group["theta_max_over_alpha"].to_numpy(dtype=np.float64),
-            group["status"].to_list(),
-            counts_as(group, count)[0].to_list(),
-        )
+        theta, share = distribution(values[rows], status[rows].tolist(), counted_as[rows].tolist())
         look = Look("level", dash=foundation.index % DASHES) if foundation.rigid else line_of(foundation.index)
         reached = float(share[-1]) if len(share) else 0.0
         x = np.repeat(np.concatenate(([0.0], theta, [right])), 2)[1:-1]
         y = np.repeat(np.concatenate(([0.0], share)), 2)
         marks.append(Polyline(x, y, foundation.label, look=look, label=foundation.label))
-        if reached < 1.0 and group["status"].isin(NO_PEAK).any():
+        if reached < 1.0 and np.isin(status[rows], NO_PEAK).any():
             note = f"{foundation.label}: {100 * (1 - reached):.0f} % {OVER}"
             middle = np.full(2, 0.5 * (top + right))
             marks.append(Polyline(middle, np.array([reached, 1.0]), look=look))

@@ -55,9 +55,10 @@ class Labelled:
         ``columns`` maps the ``varied`` keys to values.
         """
         key, pier = foundation(case, columns, varied), pier_of(columns, varied)
-        words = [case, *(quantity(name, value) for name, value in columns.items())]  # a case without a run
         if key in self.places and pier in self.pier_places:
             words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
+        else:  # without a run
+            words = [case, *(quantity(name, value) for name, value in columns.items())]
         scaled = f"motions scaled by {scale:g}" if self.many_scales else ""
         return ", ".join(filter(None, (*words, scaled)))
 

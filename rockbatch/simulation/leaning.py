@@ -35,6 +35,19 @@ class Apart(NamedTuple):
         return self.lean >= MOSTLY * (self.lean + self.rocking_then) and self.rocking_then < MOSTLY * self.rocking
 
 
+class Path(NamedTuple):
+    """Columns of a history, of a pier on springs, from which its lean follows."""
+
+    t: Samples
+    theta: Samples
+    omega: Samples
+    v: Samples
+    z_left: Samples
+    z_right: Samples
+    left: Samples
+    right: Samples
+
+
 def may_lean(outcome: Outcome) -> bool:
     """Return whether the greatest rotation may be mostly lean: the pier stands, and rests at half of it or more."""
     return outcome.status == "ok" and abs(outcome.theta_res or 0.0) >= MOSTLY * outcome.theta_max > 0.0
@@ -42,20 +55,22 @@ def may_lean(outcome: Outcome) -> bool:
 
 def apart(pier: Pier, base: ElasticBase, rows: np.recarray) -> Apart:
     """Separate rocking from lean in the ``rows`` of a run, at samples and both sides of events."""
-    theta, lean, t = rows.theta, lean_of(pier, base, rows), rows.t
+    path = Path(*(np.ascontiguousarray(rows[name]) for name in Path._fields))  # columns are read many times
+    theta, lean, t = path.theta, lean_of(pier, base, path), path.t
     swing = theta - lean
     peak = int(np.abs(theta).argmax())
     side = np.sign(theta[peak])
-    return Apart(*greatest_swing(t, theta, rows.omega, swing), float(side * lean[peak]), float(side * swing[peak]))
+    return Apart(*greatest_swing(t, theta, path.omega, swing), float(side * lean[peak]), float(side * swing[peak]))
 
 
 def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -> tuple[float, float]:
     """Return the greatest |``swing``| [rad], θ less what is straight between rows, and its time, which may lie between rows."""
-    h = np.diff(t)
-    most, instant = float(np.abs(swing).max()), float(t[np.abs(swing).argmax()])
-    first, last = (h * rate - np.diff(theta) for rate in (omega[:-1], omega[1:]))
-    bound = np.maximum(np.abs(swing[:-1]), np.abs(swing[1:])) + np.maximum(np.abs(first), np.abs(last))
-    near = np.flatnonzero(bound > most)
+    h, size = np.diff(t), np.abs(swing)
+    greatest = size.argmax()
+    most, instant = float(size[greatest]), float(t[greatest])
+    turned = np.diff(theta)
+    first, last = (h * rate - turned for rate in (omega[:-1], omega[1:]))
+    near = np.flatnonzero(np.maximum(size[:-1], size[1:]) + np.maximum(np.abs(first), np.abs(last)) > most)
     for s in np.arange(1, PARTS) / PARTS:  # θ is cubic between rows
         between = (1.0 - s) * swing[near] + s * swing[near + 1]
         rocking = np.abs(between + s * (1.0 - s) * ((1.0 - s) * first[near] - s * last[near]))
@@ -64,17 +79,18 @@ def greatest_swing(t: Samples, theta: Samples, omega: Samples, swing: Samples) -
     return most, instant
 
 
-def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray) -> Samples:
+def lean_of(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> Samples:
     """Return the rotation [rad] at which the pier would rest on its base as it is at every row (THEORY.md, eq. 20)."""
     left, right = unstressed(pier, base, rows)
     b = pier.half_width
     return 0.5 * (left - right) / b / tilt_over_residual(pier.gravity, pier.height, b, vertical_frequency(pier, base))
 
 
-def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray) -> tuple[Samples, Samples]:
+def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray | Path) -> tuple[Samples, Samples]:
     """Return the unstressed positions of the left and the right support at every row [m], up from those at the start."""
     b, h, theta = pier.half_width, pier.height, rows.theta
-    rise, drop = b * theta, 0.0
+    rise: Samples = b * theta
+    drop: float | Samples = 0.0
     if base.kinematics == "finite":
         rise, drop = b * np.sin(theta), h * (1.0 - np.cos(theta))
     deflection = yield_deflection(pier, base)
@@ -86,6 +102,8 @@ def unstressed(pier: Pier, base: ElasticBase, rows: np.recarray) -> tuple[Sample
 
 def _last_borne(unstressed: Samples, borne: Samples, at_first: float) -> Samples:
     """Return the unstressed position of a support, which stays where it was, ``at_first`` [m], while its pivot is away."""
+    if borne.all():
+        return unstressed
     last = np.maximum.accumulate(np.where(borne, np.arange(len(borne)), -1))
     return np.where(last < 0, at_first, unstressed[last])
 

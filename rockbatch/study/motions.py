@@ -12,8 +12,8 @@ from rockbatch.common.units import GRAVITY, Bounds
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset
-from rockbatch.motions.formats.record_file import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.pulses import SHAPES, unlikely
+from rockbatch.motions.record_file import LAYOUTS, ROLES, ReadOptions
 from rockbatch.motions.selection import Selection
 from rockbatch.motions.sequences import read_sequences
 from rockbatch.study.spec import FemaSpec, MotionSpec, PulseSpec

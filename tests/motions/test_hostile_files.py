@@ -15,9 +15,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import columns, miniseed, with_obspy
-from rockbatch.motions.formats.record_file import ReadOptions
 from rockbatch.motions.formats.with_obspy import CHECKS
 from rockbatch.motions.manifest_draft import write_manifest
+from rockbatch.motions.record_file import ReadOptions
 
 
 def names(found) -> list[str]:
@@ -223,7 +223,7 @@ def test_a_large_file_takes_a_few_times_its_size():
     from pathlib import Path
 
     from rockbatch.motions.formats import read_record
-    from rockbatch.motions.formats.record_file import RecordFile
+    from rockbatch.motions.record_file import RecordFile
 
     data = at2_text(wiggle(200_000), number="{:15.7E}".format).encode()
     tracemalloc.start()

@@ -32,10 +32,10 @@ from rockbatch.motions.formats import (
     volumes,
 )
 from rockbatch.motions.formats.obspy_plugin import HEAD
-from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.record_file import RecordFile
 from rockbatch.motions.texts import with_legible_texts
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read

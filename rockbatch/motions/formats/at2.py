@@ -14,12 +14,12 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import LOOKED_AT, aligned_numbers, is_cut_short, number_in
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_of, split_stem
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.record_file import RecordFile, unstated
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = tuple(

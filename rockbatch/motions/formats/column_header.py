@@ -6,14 +6,12 @@ from dataclasses import dataclass
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor
-from rockbatch.motions.limits import HUGE
+from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
 
 SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3}
 """Units of time [s]."""
 
-SAME_STEP = 0.01
-"""Relative: intervals that differ by less are the same one, printed with few decimals (1/256 s as .0039)."""
 
 _SLOWEST = 1.0  # Hz: a number below it that is called a rate is rather an interval
 _RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")

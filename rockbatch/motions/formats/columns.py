@@ -12,7 +12,6 @@ import numpy as np
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats.column_header import (
-    SAME_STEP,
     Column,
     StatedStep,
     columns_with_units,
@@ -26,12 +25,13 @@ from rockbatch.motions.formats.column_header import (
     stated_unit,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
-from rockbatch.motions.formats.record_file import ReadOptions, RecordFile, text_of, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
+from rockbatch.motions.limits import SAME_STEP
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
+from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of, unstated
 
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
 

@@ -8,10 +8,10 @@ in cm/s² or, velocities, in cm/s. The layout is that of the programs' own files
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, layout, read_header
-from rockbatch.motions.formats.record_file import RecordFile, unstated
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.record_file import RecordFile, unstated
 
 _PER_LINE = 6
 _TEXT = layout(

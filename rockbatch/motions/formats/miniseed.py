@@ -12,11 +12,11 @@ from rockbatch.common.lazy import obspy
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats import stationxml
-from rockbatch.motions.formats.record_file import RecordFile, no_acceleration
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _YEARS = 1900, 2100
 _MOST_NAMED = 5  # of the .xml files that could not be read

@@ -12,8 +12,8 @@ from typing import Any, BinaryIO
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import GRAVITY, acceleration_factor
-from rockbatch.motions.formats.record_file import text_of
 from rockbatch.motions.formats.recording import Recording, contradictions_of, letters
+from rockbatch.motions.record_file import text_of
 
 HEAD = 4096
 """Bytes that a format is known by."""

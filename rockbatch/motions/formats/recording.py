@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
-from rockbatch.motions.formats.record_file import RecordFile
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
+from rockbatch.motions.record_file import RecordFile
 
 Series = tuple[Samples, str]
 """Values, shape (npts,), and their unit."""

@@ -13,11 +13,11 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
 from rockbatch.motions.formats.header_lines import moment
-from rockbatch.motions.formats.record_file import RecordFile, no_acceleration, unstated
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.record_file import RecordFile, no_acceleration, unstated
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _DAY = 86400.0  # s

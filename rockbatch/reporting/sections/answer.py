@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from decimal import ROUND_UP, Decimal
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
 from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
 from rockbatch.reporting.table import Head, alarm, table
+from rockbatch.results.labelled import as_dicts
 from rockbatch.results.rows import NOT_RUN
 from rockbatch.results.suite_statistics import reasons_of_failure
 
@@ -55,13 +57,20 @@ def responses(finished: Finished) -> Markup:
     by_case = grouped(finished.worst, lambda worst: _place(finished, worst))
     present = [name for name in RESPONSES if any(worst.demand == name for worst in finished.worst)]
     devices = [kind for kind, (column, _) in DEVICES.items() if f"{kind}_{column}" in finished.runs]
+    places = [worst.place for worst in finished.worst]
+    run_at = dict(zip(places, as_dicts(finished.runs.iloc[places]), strict=True))  # one by one takes a millisecond each
     rows = []
     for (series, pier), of_case in sorted(by_case.items(), key=lambda item: _rotation(item[1])):
         by_demand = {worst.demand: worst for worst in of_case}
         name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
-        runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
-        cells = [_response(finished, by_demand[demand]) if demand in by_demand else "–" for demand in present]
-        rows.append([name, *cells, *(cell for kind in devices for cell in _of_devices(finished, runs, kind))])
+        cells: list[object] = [
+            _response(finished, by_demand[demand], run_at[by_demand[demand].place]) if demand in by_demand else "–"
+            for demand in present
+        ]
+        if devices:
+            runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
+            cells += [cell for kind in devices for cell in _of_devices(finished, runs, kind)]
+        rows.append([name, *cells])
     heads = [Head("case"), *(_head(name) for name in present)]
     heads += [head for kind in devices for head in _heads_of(finished, kind)]
     return table(heads, rows, name="Greatest responses")
@@ -80,9 +89,9 @@ def _head(name: str) -> Head:
     return Head(RESPONSES[name].head, ".3g", note)
 
 
-def _response(finished: Finished, worst: Worst) -> Markup:
+def _response(finished: Finished, worst: Worst, run: dict[str, Any]) -> Markup:
     """Return a greatest response, with the value in all its units and its record as a note."""
-    said = f"{in_words(worst)}: {finished.place_of(worst.run)}, t = {number(float(worst.run['t_max_s']))} s"
+    said = f"{in_words(worst)}: {finished.place_of(run)}, t = {number(float(run['t_max_s']))} s"
     return tag("span", number(worst.value * RESPONSES[worst.demand].factor, ".3g"), title=said)
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.units import GRAVITY, acceleration_factor
-from rockbatch.motions.formats.column_header import SAME_STEP
-from rockbatch.motions.limits import STEPS, is_step
+from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
 
 LAYOUTS = ("columns", "wrapped")
 """Of numbers in text files: a column for each component, or one series that goes on from line to line."""
