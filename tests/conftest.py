@@ -1,38 +1,97 @@
-"""What holds for all tests."""
+"""What holds for all tests: which kernels fast ones may compile, and how others are tried without the compiler."""
 
-import sys
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+from unittest import mock
 
 import pytest
 
 from rockbatch.common.garbage import collect_rarely
+from rockbatch.motions.motion import Motion
+from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
 
 collect_rarely()
 
-KNOWN = set()
-"""Kernels that this process has looked at."""
-
 PHYSICS = ("core", "simulation", "verification")
+DEVICE = (Damper("viscous", nu=0.1),)
+SHARED = [
+    ElasticBase(50.0, restraints=DEVICE),
+    RigidBase(restraints=DEVICE),
+    RigidBase(),
+    ElasticBase(50.0),
+    ElasticBase(50.0, zeta=0.05),
+]
+"""Bases whose kernels fast tests compile (CONTRIBUTING.md)."""
+
+
+SLOW = ({"finite"}, {"n"}, {"damped", "devices"}, {"shaft"})
+"""What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
+
+
+def compiled_traits(base):
+    """Return what distinguishes the kernel of a base from that of springs or a rigid base."""
+    traits = {"devices": bool(base.restraints), "shaft": base.bends}
+    if base.on_springs:
+        n = base.has_exponent and base.n != 5.0
+        traits |= {"finite": base.kinematics == "finite", "n": n, "damped": base.zeta is not None}
+    return {name for name, present in traits.items() if present}
+
+
+def marks_of(parameter):
+    """Return the marks of a test that compiles the kernel of a base, or of the case with that name."""
+    if isinstance(parameter, str) and "finite" in parameter:
+        return ["slow"]
+    traits = compiled_traits(parameter) if isinstance(parameter, Base) else set()
+    if traits in ({"devices"}, {"damped"}) or not traits:
+        return []
+    return ["slow"] if traits in SLOW else ["slow", "thorough"]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark tests of the physics that have a base with a kernel of its own among their parameters, and compile it."""
+    for item in items:
+        if item.path.parent.name in PHYSICS and hasattr(item, "callspec") and "uncompiled" not in item.fixturenames:
+            for mark in {mark for each in item.callspec.params.values() for mark in marks_of(each)}:
+                item.add_marker(mark)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_finish(session):
+    """Compile the shared kernels before the first test of the physics, each in one of the workers."""
+    worker = getattr(session.config, "workerinput", None)
+    if worker and any(item.path.parent.name in PHYSICS for item in session.items):
+        from rockbatch import simulate
+
+        for base in SHARED[int(worker["workerid"][2:]) :: worker["workercount"]]:
+            simulate(Pier(0.2, 1.0), base, Motion.still(0.1), substeps=1, forces=True, ledger=True)
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_call(item):
-    """Fail a fast test of the physics that needs a kernel of its own: each takes 20 s to compile (CONTRIBUTING.md)."""
-    result = yield
-    run = sys.modules.get("rockbatch.core.run")
-    for kernel in getattr(getattr(run, "_march", None), "signatures", ()):
-        if kernel not in KNOWN:
-            KNOWN.add(kernel)
-            fast = item.path.parent.name in PHYSICS and not item.get_closest_marker("slow")
-            assert not fast or is_shared(kernel), (
-                f"mark as slow; it compiles {kernel[0]} with devices {str(kernel[4])[:20]}"
-            )
-    return result
+def pytest_runtest_protocol(item):
+    """Fail a fast test of the physics that needs another kernel than the shared ones."""
+    if item.path.parent.name not in PHYSICS or item.get_closest_marker("slow"):
+        return (yield)
+    from rockbatch.core import run
+
+    march = run._march
+
+    def shared_march(traits, *rest):
+        own = [name for name, value in traits._asdict().items() if value is not None]
+        shared = own in ([], ["pull"], ["damped"]) and type(traits).__name__ != "FlexibleTraits"
+        if not shared:
+            pytest.fail(f"mark as slow, or run it uncompiled: {traits} has a kernel of its own")
+        return march(traits, *rest)
+
+    with mock.patch.object(run, "_march", shared_march):
+        return (yield)
 
 
-def is_shared(kernel):
-    """Return whether fast tests share a kernel: that of a rigid base, or of springs with one thing beside them at most."""
-    traits, devices = kernel[0], kernel[4]
-    beside = (
-        [*traits][:-1] if traits.instance_class.__name__ == "SpringTraits" else []
-    )  # the pull is that of the devices
-    return sum(str(each) != "none" for each in (*beside, devices)) <= 1
+@pytest.fixture(scope="session")
+def uncompiled():
+    """Call functions in a process in which Numba compiles nothing: a sub-step of a run takes a millisecond there."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        with pytest.MonkeyPatch.context() as patch:  # here Numba would notice it, too
+            patch.setenv("NUMBA_DISABLE_JIT", "1")
+            pool.submit(int).result()
+        yield lambda function, *given, **named: pool.submit(function, *given, **named).result()

@@ -161,7 +161,7 @@ def weak_pairs(count, devices=lambda rng: ()):
 
 def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form_between_its_points():
     """Without a point at first yield the curve is 0.9 to 4.2 % low there."""
-    for pier, base in weak_pairs(28):
+    for pier, base in weak_pairs(10):
         sheet = rb.statics(pier, base)
         theta = np.linspace(1e-6, sheet.unstable_rad, 20_001)[:-1]
         finite = base.kinematics == "finite"

@@ -127,6 +127,7 @@ def test_a_cluster_with_a_worker_killed_in_the_middle_comes_to_the_same_bytes(tm
     assert found == table(tmp_path, study, runs, Threads(2))
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_runs_at_which_workers_die_end_the_batch_and_what_is_finished_is_kept(tmp_path, study, runs, monkeypatch):
     """Here the first death is one too many; as delivered, dask allows three for a task."""
@@ -193,7 +194,7 @@ def address_of(file):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.parametrize("how", [signal.SIGKILL, pytest.param(signal.SIGSTOP, marks=pytest.mark.thorough)])
 def test_a_scheduler_that_stops_or_falls_silent_is_reported_in_a_sentence(file, tmp_path, how):
     """And soon; in a process of its own, because distributed logs to the real stderr."""
     pytest.importorskip("distributed")

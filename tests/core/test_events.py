@@ -170,6 +170,7 @@ def test_a_state_near_the_end_of_a_step_is_that_of_a_step_to_there(m):
             assert getattr(beyond, name) == pytest.approx(expected, abs=1e-13)
 
 
+@pytest.mark.slow
 def test_several_events_in_one_step_are_taken_in_their_order():
     """ω_v h = 0.5 and a strong vertical motion: events share steps, yet their sequence is the reference's.
 
@@ -211,7 +212,7 @@ def tuned(base) -> float:
     return dt
 
 
-@pytest.mark.parametrize("nudge", [-1e-9, -1e-13, -2e-16, 0.0, 2e-16, 1e-13, 1e-9])
+@pytest.mark.parametrize("nudge", [-1e-9, -2e-16, 0.0, 2e-16, 1e-9])
 @pytest.mark.parametrize(
     "base",
     [
@@ -337,18 +338,18 @@ def test_impacts_of_a_rigid_block_accumulate_to_rest_in_finite_time():
     assert len(run.events) < 100
 
 
-def test_a_run_from_rest_does_not_chatter_on_the_rounding_of_its_equilibrium():
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_a_run_from_rest_does_not_chatter_on_the_rounding_of_its_equilibrium(kinematics):
     """The static balance leaves accelerations of 1e-15 m/s²; their sign must not fight that of the coming shaking."""
     failed = []
     rng = np.random.default_rng(0)
     motion = Motion("ramp", 0.01, np.arange(10) * 0.01)
-    for i in range(300):
-        kinematics = ("first-order", "finite")[i % 2]
+    for _ in range(150):
         pier = Pier(0.2, round(rng.uniform(0.5, 4.0), 1))
         eta, beta = round(1.05 + 9.0 * rng.uniform(), 2), float(round(rng.uniform(20.0, 100.0)))
         base = YieldingBase(beta, 0.1, kinematics, eta=eta)
         if run_fixed(pier, base, motion, least_substeps(pier, base, motion.dt), 0.0, wait=False).status != "ok":
-            failed.append((pier.p, beta, eta, kinematics))
+            failed.append((pier.p, beta, eta))
     known = run_fixed(Pier(0.2, 1.6), YieldingBase(34.0, 0.1, eta=7.32), motion, 1, 0.0, wait=False)
     assert (known.status, failed) == ("ok", [])
 

@@ -40,6 +40,7 @@ def run_copy(folder: Path) -> float:
     return float(done.stdout)
 
 
+@pytest.mark.slow
 def test_an_edit_in_a_called_kernel_changes_the_next_run(tmp_path):
     """Numba's own cache looks at the caller's file only. Without the arm, which that calls, the ground does no work."""
     package = tmp_path / "rockbatch"

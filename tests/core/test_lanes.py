@@ -23,7 +23,7 @@ from rockbatch.simulation import Run, Stop, run_all_fixed, springs
 def crowd(every_kind):
     """Three times as many runs as lanes, of many kinds, with records of different length and sampling interval."""
     runs = []
-    for seed in hard_seeds(range(5 * LANES), every_kind)[: 3 * LANES]:
+    for seed in hard_seeds(range(13 * LANES), every_kind)[: 3 * LANES]:
         pier, base, motion = hard_case(seed, npts=60 + 17 * (seed % 11))
         if seed % 4 == 0 and isinstance(base, YieldingBase):
             base = replace(base, spring="hardening", n=base.n if base.has_exponent else 5.0)

@@ -7,6 +7,7 @@ import re
 import numba
 import numpy as np
 import pytest
+from core_samples import THOROUGH
 from scipy.interpolate import CubicHermiteSpline
 
 from rockbatch.core.block.lanes import LANE
@@ -118,7 +119,13 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
 
 @pytest.mark.parametrize(
     "changes",
-    [*PIERS.values(), *(pytest.param(pier, marks=pytest.mark.slow) for pier in SLOW_PIERS.values())],
+    [
+        *PIERS.values(),
+        *(
+            pytest.param(pier, marks=THOROUGH if name == "finite-damped" else pytest.mark.slow)
+            for name, pier in SLOW_PIERS.items()
+        ),
+    ],
     ids=[*PIERS, *SLOW_PIERS],
 )
 def test_where_the_pass_on_springs_sees_nothing_no_pivot_separates_lands_yields_or_turns_back(changes):

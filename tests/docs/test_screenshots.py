@@ -57,6 +57,7 @@ def test_the_script_takes_a_report_wide_narrow_dark_and_printed(script, tmp_path
         assert (picture.getpixel((3, 3)) < 40) is shot.dark
 
 
+@pytest.mark.thorough
 @pytest.mark.slow
 def test_all_screenshots_are_made_anew(script, tmp_path):
     if script.browser() is None:

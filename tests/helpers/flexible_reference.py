@@ -16,7 +16,10 @@ STILL = 1e-7
 
 
 HOP = 3e-5
-"""Longest step in flight [s], within which a pivot must not leave the ground and land."""
+"""Longest step in flight [s], within which a pivot must not leave the ground and land, however short it hops."""
+
+LEVELS, SHARES = np.polynomial.legendre.leggauss(4)
+"""Of the mass of a uniform part: integrals over it are those of a shape of the third degree, and of its square."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +42,10 @@ def points_of(parts, top, **numbers):
     """Return Points of ``parts``, each (mass, low, high, half of the distance between two columns of points)."""
     mass, x, z = [], [], []
     for total, low, high, spread in parts:
-        count = 1 if low == high else 400
-        for level in low + (high - low) * (np.arange(count) + 0.5) / count:
-            mass += [0.5 * total / count] * 2
+        for level, share in zip(LEVELS, SHARES, strict=True):
+            mass += [0.25 * total * share] * 2
             x += [-spread, spread]
-            z += [level] * 2
+            z += [0.5 * (low + high) + 0.5 * (high - low) * level] * 2
     ratio = np.array(z) / top
     bent = np.where(ratio < 1, (3 * ratio**2 - ratio**3) / 2, 1 + 1.5 * (ratio - 1))
     return Points(np.array(mass), np.array(x), np.array(z), bent, **numbers)
@@ -114,7 +116,7 @@ def _blow(of, key, corner, q, rates, restitution):
     return np.linalg.solve(matrix, momentum)
 
 
-def run(of, ground, dt, theta=0.0, until=None):
+def run(of, ground, dt, theta=0.0, until=None, hop=HOP):
     """Return times, θ and u of the run under ``ground``, rows of horizontal and vertical acceleration each ``dt``."""
     steps = len(ground) - 1 if until is None else round(until / dt)
     ground = np.vstack([ground, np.zeros((max(0, steps + 2 - len(ground)), 2))])
@@ -162,7 +164,7 @@ def run(of, ground, dt, theta=0.0, until=None):
             else:
                 for event in events:
                     event.terminal, event.direction = True, -1
-                length, longest = end, HOP if down == "none" else dt / 3
+                length, longest = end, hop if down == "none" else dt / 3
                 if down == "one" and state[1] == 0.0:  # a bounce must not begin and end within one step
                     back = -key * slope(t, state)[4]
                     length = min(end, t + 0.5 * key * state[4] / back) if key * state[4] > 0 < back else end

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core_samples import pulse
+from core_samples import THOROUGH, pulse
 
 from rockbatch.core.block import lanes
 from rockbatch.core.devices.pull import devices_of
@@ -20,22 +20,23 @@ BASES = [
     pytest.param(RigidBase(), id="rigid"),
     pytest.param(ELASTIC, id="elastic"),
     pytest.param(BOUC_WEN, id="bouc-wen"),
-    pytest.param(FINITE, id="finite", marks=pytest.mark.slow),
+    pytest.param(FINITE, id="finite"),
 ]
 RANDOM_BASES = [BASES[0], pytest.param(ELASTIC, id="elastic", marks=pytest.mark.slow), BASES[2]]
 
 
-def crossed(bases, devices, on_all, once=""):
+def crossed(bases, devices, on_all, *, wholly=False, once=""):
     """Return parameters of every base with every one of the named ``devices``.
 
-    Fast tests have all of them on rigid ground and on Bouc–Wen springs, and those named ``on_all`` on springs of other laws too:
-    that of a spring has no part in what devices do. The one named ``once``, of many steps, they have on Bouc–Wen springs only.
+    Fast tests have all of them on rigid ground, but the one named ``once``, of many steps, and on Bouc–Wen springs those named
+    ``on_all``, or all if ``wholly``. Slow ones have the rest there, and ``on_all`` on every other base; thorough ones all.
     """
     parameters = []
     for base in bases:
         for name, each in devices.items():
-            fast = base.id == "bouc-wen" or (base.id == "rigid" and name != once) or name == on_all
-            marks = base.marks if fast else (*base.marks, pytest.mark.slow)
+            common = base.id == "bouc-wen" or (base.id == "rigid" and name != once)
+            fast = common and (base.id == "rigid" or wholly or name == on_all)
+            marks = () if fast else (pytest.mark.slow,) if common or name == on_all else THOROUGH
             parameters.append(pytest.param(*base.values, each, id=f"{base.id}-{name}", marks=marks))
     return parameters
 

@@ -63,6 +63,7 @@ def test_springs_stay_within_their_law():
         assert z[0] == pytest.approx(-1 / 2.2, rel=1e-14)
 
 
+@pytest.mark.slow
 def test_energy_starts_at_zero_and_is_kept_between_impacts_of_elastic_springs():
     """After the pulse, on elastic springs with ε = 1 and finite kinematics, only changes of H alter the stored energy.
 

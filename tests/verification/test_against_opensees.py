@@ -28,6 +28,7 @@ def at_samples(run, case):
     return rows[["t", "theta", "v_left", "v_right"]].to_numpy()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_peaks_and_depths_on_elastic_and_yielding_springs_are_those_of_opensees(name):
     """0.6 % of the peak, and 1.2 % of its time and of the depths; measured 0.5 and 1.0 %."""
@@ -66,6 +67,7 @@ def peak_over_alpha(case, steps: int, *, at_the_middle: bool) -> float:
     return peak / pier.alpha
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name for name, case in CASES.items() if not case.base.yields and case.motion.vertical is None]
 )

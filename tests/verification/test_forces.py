@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 import pytest
+from core_samples import THOROUGH
 from reference_forces import greatest_forces
 
 import rockbatch as rb
@@ -49,7 +50,7 @@ BASES = {
         50, 0.3, flight="guided", kinematics="finite", restraints=(rb.Damper("viscous", nu=0.2), rb.Tendon(psi=0.1, lam=0.3)),
     ),
 }  # fmt: skip
-FINITE_TIED = pytest.param("elastic, finite, tied", marks=pytest.mark.slow)  # compiled by itself
+FINITE_TIED = pytest.param("elastic, finite, tied", marks=THOROUGH)
 EVERY_BASE = pytest.mark.parametrize(
     "name", [FINITE_TIED if name == "elastic, finite, tied" else name for name in BASES]
 )
@@ -244,6 +245,25 @@ def test_a_block_at_rest_that_is_shaken_below_uplift_leans_on_one_corner():
 
 
 # Newton's laws
+
+
+def test_forces_on_finite_springs_are_those_of_the_motion_uncompiled(uncompiled):
+    """N by differences of v, V by those of H θ̇ with H = h cos θ + b sin θ (c_R − c_L), but beside events and kinks of the law."""
+    dt, base = 2e-3, replace(BASES["epp, finite"], beta=30.0)
+    t = np.arange(450) * dt
+    motion = rb.Motion("short", dt, 0.8 * G * np.sin(2 * np.pi * t / 0.6), 2.0 * np.sin(5 * t))
+    response = uncompiled(rb.simulate, PIER, base, motion, substeps=1, quiet_s=0.0, wait=False, forces=True)
+    forces, theta, events = response.forces, response.theta, response.events["t"].to_numpy()
+    side = np.sign(forces["pivot_right"].to_numpy()) - np.sign(forces["pivot_left"].to_numpy())
+    speed = (PIER.height * np.cos(theta) + PIER.half_width * np.sin(theta) * side) * response.omega
+    rows = np.array([i for i in range(1, len(theta) - 1) if np.abs(events - response.t[i]).min() > 2.5 * dt])
+    assert min(np.count_nonzero(side[rows]), np.count_nonzero(side[rows] == 0.0)) > 100
+    second = (response.v[rows - 1] - 2.0 * response.v[rows] + response.v[rows + 1]) / dt**2
+    normal = G + response.history["ag_v"].to_numpy()[rows] + second
+    shear = response.history["ag_h"].to_numpy()[rows] + (speed[rows + 1] - speed[rows - 1]) / (2.0 * dt)
+    for name, expected in (("normal_force", normal), ("base_shear", shear)):
+        off = np.abs(forces[name].to_numpy()[rows] - expected)
+        assert np.quantile(off, 0.98) < 2e-3 * np.abs(expected).max(), name
 
 
 @EVERY_BASE
@@ -484,8 +504,9 @@ HARD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "little damping" else name for name in HARD]
+    "name", [pytest.param(name, marks=THOROUGH) if name == "little damping" else name for name in HARD]
 )
 def test_peaks_are_those_of_another_solver_where_a_law_is_steep(name):
     """DOP853 from event to event; the error of a run bounds what it differs by, and no parabola adds to a peak."""
@@ -515,7 +536,7 @@ def test_a_yielding_support_bears_no_more_than_it_can():
 
 
 @EVERY_BASE
-@pytest.mark.parametrize("amplitude", [0.6, 1.0, 3.0])
+@pytest.mark.parametrize("amplitude", [1.0, *(pytest.param(each, marks=pytest.mark.slow) for each in (0.6, 3.0))])
 def test_the_reversed_motion_exchanges_left_and_right_and_keeps_the_rest(name, amplitude):
     base = BASES[name]
     motion = shaken(amplitude=amplitude)

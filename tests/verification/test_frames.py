@@ -46,7 +46,9 @@ def follow(pier: Pier, base: RigidBase, motion: Motion, substeps: int = 8) -> tu
     return rows[rows.kind == SAMPLE], rows[rows.kind > 0.0]
 
 
-@pytest.mark.parametrize(("upwards", "offset"), [(1.4, None), (2.4, 0.0)], ids=["free", "tied"])
+@pytest.mark.parametrize(
+    ("upwards", "offset"), [(1.4, None), pytest.param(2.4, 0.0, marks=pytest.mark.slow)], ids=["free", "tied"]
+)
 def test_a_frame_flies_as_its_columns_and_its_deck_do(upwards, offset):
     """Four flights, in the last of which the deck changes corners: 1e-8 of 0.02 rad, by DOP853 at 1e-11."""
     motion, bodies = shaken(upwards), reference(offset)

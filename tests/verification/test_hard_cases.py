@@ -58,9 +58,10 @@ CHAOTIC = {("10 minutes of shaking", "100,000 impacts"), ("10 minutes of shaking
 """They fall with every step, at another time with each."""
 
 
-@pytest.mark.parametrize("minutes", [0, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("minutes", [0, pytest.param(10, marks=pytest.mark.thorough)])
 def test_every_run_of_the_study_ends_with_the_status_that_is_right(minutes):
-    """All 72 runs of configs/hard_cases.toml; those of ten minutes are slow. Why: docs/pages/verification.md and below."""
+    """All 72 runs of configs/hard_cases.toml; those of ten minutes are thorough. Why: docs/pages/verification.md and below."""
     study = load_study(CONFIGS / "hard_cases.toml")
     chosen = [each for each in study.motions.pulses if (each.duration_s > 100) == (minutes > 0)]
     table = rb.run(replace(study, motions=replace(study.motions, pulses=chosen)), jobs=2)
@@ -77,6 +78,7 @@ def test_every_run_of_the_study_ends_with_the_status_that_is_right(minutes):
         assert int(tick.impacts.iloc[0]) > 100_000
 
 
+@pytest.mark.slow
 def test_slenderness_from_mast_to_slab_ends_with_a_status_and_a_peak_that_falls():
     """configs/hard_cases_slenderness.toml: the stockier the pier, the smaller θ_max/α.
 
@@ -105,6 +107,7 @@ def until_the_end(pier, base, motion):
     return run_fixed(pier, base, motion, settled.substeps, 0.0, wait=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("alpha", [0.02, 0.05, 0.4, 0.8, 1.2])
 def test_slenderness_from_mast_to_slab_follows_the_reference(alpha):
     """One-sine of 2 tan α g and 0.2 s, 1.5 s long; the peak within twice the tolerance of 1e-6 α, and all counts."""
@@ -127,6 +130,7 @@ def jumps() -> Motion:
     return Motion("jumps", 0.05, samples)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("epsilon", [0.0, 1.0])
 @pytest.mark.parametrize("motion", [pulse("cosine", 1.0, dt=0.01, end=2.0), jumps()], ids=["full", "jumps"])
 def test_impacts_that_lose_all_or_nothing_under_motions_that_jump_follow_the_reference(motion, epsilon):
@@ -197,6 +201,7 @@ def test_steps_become_short_enough_for_the_stiffest_springs_by_themselves():
     assert run_fixed(FIG5, base, push, 1, 0.0, wait=False).status == "failed"
 
 
+@pytest.mark.slow
 def test_the_stiffest_springs_are_close_to_the_rigid_base():
     """β = 5000 under Fig. 5's pulse: within 1 % of Housner's block, whose impacts lose a little more."""
     motion = pulse("sine", 0.5, dt=0.005, end=3.0)
@@ -270,6 +275,7 @@ def test_flight_by_a_hair_is_distinguished_from_none(excess, status, steps):
 # Impacts without number, and without velocity
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_impacts_of_an_endless_bounce_keep_their_time():
     """ε = 1 on elastic springs of β = 5000 under a steady −0.6 g: nothing is lost, each bounce takes the same 1.37 ms.
 
@@ -366,7 +372,7 @@ def test_a_peak_on_a_sample_is_like_any_other(nudge):
 
 def test_a_pulse_after_ten_minutes_of_silence_does_what_it_does_at_once():
     """The pier at rest does not drift: 59,000 zeros change θ_max by less than 1e-9 α, and its time by 590 s."""
-    base = YieldingBase(50.0, 0.1, "finite", eta=3.0)
+    base = YieldingBase(50.0, 0.1, eta=3.0)
     early = pulse("sine", 0.5, 1.0, dt=0.01, end=10.0)
     late = replace(early, horizontal=np.concatenate([np.zeros(59_000), early.horizontal]))
     now, then = (run_to_tolerance(FIG5, base, motion, 1e-4) for motion in (early, late))
@@ -451,6 +457,7 @@ def test_a_rigid_block_overturns_at_the_amplitude_at_which_its_energy_reaches_th
     assert standing.theta_max / FIG5.alpha == pytest.approx(0.9984, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_pier_on_springs_overturns_on_the_side_of_the_hair_on_which_the_reference_does():
     """Bracket of 1e-9, then 1e-6 either way (the pulses of configs/hard_cases.toml): standing at 0.9985 α, and fallen.
 

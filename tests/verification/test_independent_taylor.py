@@ -29,7 +29,7 @@ def taylor(independent):
     return independent("taylor")
 
 
-@pytest.mark.parametrize("c", [1e-3, 1e-6, 1e-12])
+@pytest.mark.parametrize("c", [pytest.param(1e-3, marks=pytest.mark.slow), 1e-6, 1e-12])
 def test_a_hop_is_seen_however_short_it_is(taylor, c):
     """x (c − x) (½ − x) falls at x = c and rises at ½."""
     poly = np.zeros(taylor.COLUMNS)

@@ -33,11 +33,12 @@ TIED_OR_NOT = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("alpha", "amplitude", "restraints", "zeta"),
     [
         *((alpha, amplitude, (), None) for alpha, amplitude in ((0.2, 2.0), (0.3, 3.0), (0.4, 6.0))),
-        *(pytest.param(*case, 0.1, marks=pytest.mark.slow) for case in TIED_OR_NOT),
+        *(pytest.param(*case, 0.1, marks=pytest.mark.thorough) for case in TIED_OR_NOT),
     ],
 )
 def test_peaks_differ_by_about_the_share_and_have_a_note_beyond_five_percent(alpha, amplitude, restraints, zeta):
@@ -67,9 +68,9 @@ def test_a_pier_that_overturns_has_no_peak_to_doubt():
 
 
 def test_the_terminal_and_the_report_say_so(tmp_path, capsys):
-    case = {"name": "springs", "base": "elastic", "beta": 60, "epsilon": 0.1, "kinematics": ["first-order", "finite"]}
-    strong = SINE | {"amplitude_g": 2.5, "period_s": 1.0}
-    study = write_study(tmp_path, study_text(pier={"alpha": 0.4, "p": 1.0}, pulses=(strong,), cases=(case,)))
+    case = {"name": "springs", "base": "elastic", "beta": 60, "epsilon": 0.1}
+    pulses = (SINE, SINE | {"name": "strong", "amplitude_g": 2.5, "period_s": 1.0})
+    study = write_study(tmp_path, study_text(pier={"alpha": 0.4, "p": 1.0}, pulses=pulses, cases=(case,)))
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
     assert f"1 run rotates further than {LINEARISED} holds" in capsys.readouterr().err
     page = Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8"))

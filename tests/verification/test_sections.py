@@ -142,7 +142,7 @@ def check_against_points(seed, base, vertical, k_deck=0.0):
 
 @pytest.mark.parametrize("name", BASES)
 def test_forces_in_sections_are_those_that_accelerate_the_mass_above(name):
-    for seed in range(12):
+    for seed in range(3):
         check_against_points(seed, BASES[name], vertical=0.3)
 
 
@@ -230,16 +230,16 @@ def test_a_block_at_rest_bears_its_weight_and_the_ground_by_hand():
 # Extremes
 
 
-def test_a_mirrored_motion_gives_the_same_extremes():
+@pytest.mark.parametrize("name", BASES)
+def test_a_mirrored_motion_gives_the_same_extremes(name):
     rng = np.random.default_rng(9)
     pier, heights = random_pier(rng), (0.0, 2.0, 4.0)
     motion = random_motion(rng, pier, 0.8)
-    for base in BASES.values():
-        both = [
-            sections_of(*recorded(pier, base, m, substeps=8), heights)
-            for m in (motion, motion.times(1.0, reverse=True))
-        ]
-        assert np.allclose(*([section[:-1] for section in sections] for sections in both), rtol=1e-9)
+    both = [
+        sections_of(*recorded(pier, BASES[name], m, substeps=8), heights)
+        for m in (motion, motion.times(1.0, reverse=True))
+    ]
+    assert np.allclose(*([section[:-1] for section in sections] for sections in both), rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", BASES)

@@ -84,7 +84,7 @@ def test_an_elastic_stop_without_a_gap_in_the_middle_is_a_tendon_without_prestre
         assert one.stop_force == pytest.approx(other.tendon_force, rel=1e-5)  # of a tendon that at the end of a step
 
 
-@pytest.mark.parametrize(("base", "stops"), crossed(BASES, STOPS, "crushes"))
+@pytest.mark.parametrize(("base", "stops"), crossed(BASES, STOPS, "crushes", wholly=True))
 def test_runs_agree_with_the_reference(base, stops):
     base = stopped(base, stops)
     solver = reference(FIG5, base, SHAKEN)

@@ -143,7 +143,7 @@ def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("added", [0.0, 0.4])
+@pytest.mark.parametrize("added", [pytest.param(0.0, marks=pytest.mark.thorough), 0.4])
 @pytest.mark.parametrize(
     "through",
     [
