@@ -307,11 +307,13 @@ def test_without_a_word_a_bar_is_drawn_on_a_terminal_only(study, capfd, monkeypa
     assert "/6 [" in capfd.readouterr().err
 
 
-def test_doors_are_cheap_until_they_are_opened():
+def test_doors_are_cheap_until_they_are_opened_and_checking_never_loads_the_compiler(commanded):
     code = "import sys, rockbatch as rb\ndir(rb); rb.report; rb.load_study\n"
-    code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib', 'scipy') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib', 'scipy') if m in sys.modules])\n"
+    code += f"from rockbatch.commands.cli import main; main(['check', {str(commanded / 'run')!r}])\n"
+    code += "print([m for m in ('numba', 'obspy', 'h5py', 'matplotlib') if m in sys.modules])"
+    lines = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert (lines[0], lines[-1]) == ("[]", "[]")
 
 
 def test_every_public_name_is_there():

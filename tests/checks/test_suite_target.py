@@ -150,7 +150,9 @@ def near_fault(tmp_path, **spectrum):
         "period_range_s": [0.2244, 2.2483], "at_least": 0.9,
     }  # fmt: skip
     motions = {"path": str(NEAR_FAULT), "vertical": False, "target": keys | spectrum}
-    return load_study(write_study(tmp_path, study_text(motions=motions, pulses=(), cases=[RIGID_BASE])))
+    return load_study(
+        write_study(tmp_path, study_text(motions=motions, pulses=(), cases=[RIGID_BASE], output={"histories": "none"}))
+    )
 
 
 def test_records_that_need_too_large_a_factor_leave_no_suite_below_its_target(tmp_path):

@@ -299,4 +299,4 @@ def test_mistakes_come_in_one_order_whatever_the_hashes_of_texts(tmp_path):
 
     first = said(0)
     assert first.count("write component =") == 2
-    assert {said(seed) for seed in (1, 2)} == {first}
+    assert said(1) == first

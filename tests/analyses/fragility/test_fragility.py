@@ -232,7 +232,7 @@ def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape
 
 
 def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_path):
-    study = load_study(written(tmp_path, IDA))
+    study = load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.1"))
     spec = read_fragility(study)
 
     def searched(folder, engines):
