@@ -34,6 +34,8 @@ from rockbatch.results.columns import columns
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
+pytestmark = pytest.mark.usefixtures("no_report")
+
 STUDY = study_text(
     title="Two pulses on many foundations",
     motions={"polarity": ["+", "-"], "scale": [0.5, 1.0]},

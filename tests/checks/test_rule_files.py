@@ -22,6 +22,8 @@ from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS, listed
 from rockbatch.study.rule_files import CHECK, load_rules
 
+pytestmark = pytest.mark.usefixtures("no_report")
+
 CONFIGS = Path(__file__).parents[2] / "configs"
 MARGIN = """
 [[check]]
@@ -385,7 +387,8 @@ def test_every_verdict_has_a_sign_and_a_word_that_the_terminal_can_show(passing,
     assert f"0.4 {expected[0][0]} 80 %" in terminal.buffer.getvalue().decode(encoding)
 
 
-def test_the_verdicts_stand_in_the_report(tmp_path):
+def test_the_verdicts_stand_in_the_report(tmp_path, monkeypatch):
+    monkeypatch.undo()  # that page is made
     study = rules_file(tmp_path / "pier.toml", STUDY)
     assert main(["run", str(study), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
     report = tmp_path / "out/report.html"

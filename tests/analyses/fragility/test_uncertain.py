@@ -112,7 +112,7 @@ def test_the_contribution_is_that_of_made_up_capacities(stripes):
     errors = np.array([(np.array(share.effects) - [0.2, -0.1]) / share.errors for share in found])
     assert np.abs(errors.mean(axis=0)).max() < 3 / math.sqrt(suites)
     assert 0.7 < errors.std() < 1.4
-    whole = fit(made_capacities(400, rng, stripes)[0]).dispersion
+    whole = fit(made_capacities(150, rng, stripes)[0]).dispersion
     assert whole == pytest.approx(math.sqrt(0.09 + of_inputs), rel=0.1)
 
 
