@@ -24,9 +24,7 @@ def small(tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(
-    ("what", "times"), [("study", 25), ("journal", 40), ("folder", 3), ("analysis", 1), ("rules", 20)]
-)
+@pytest.mark.parametrize(("what", "times"), [("study", 25), ("journal", 40), ("folder", 3), ("rules", 20)])
 def test_a_damaged_one_ends_in_words_or_in_what_is_right(small, what, times):
     ends, bad = damage.repeated(getattr(small, f"damage_{what}"), times, seed=3)
     assert bad == []

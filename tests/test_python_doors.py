@@ -61,6 +61,7 @@ reason = "what the bearings can follow"
 measure = "PGA"
 levels_g = [0.4, 0.8, 1.6, 3.2]
 method = "ida"
+hunt_step = 0.2
 tolerance = 0.2
 
 [fragility.hazard]
@@ -79,7 +80,7 @@ frequency = [2.0, 6.0]
 frequencies = 3
 amplitude = [1.0, 8.0]
 amplitudes = 4
-tolerance = 0.1
+tolerance = 0.4
 width = 1.0
 
 [sensitivity]
@@ -223,7 +224,7 @@ def test_what_was_saved_counts_as_finished(study, tmp_path, name, monkeypatch):
 
 def test_a_saved_analysis_leaves_no_table_of_an_earlier_one(study, tmp_path):
     stripes = tmp_path / "stripes.toml"
-    stripes.write_text(STUDY.replace('method = "ida"\ntolerance = 0.2\n', ""), encoding="utf-8")
+    stripes.write_text(STUDY.replace('method = "ida"\nhunt_step = 0.2\ntolerance = 0.2\n', ""), encoding="utf-8")
     found = rb.fragility(stripes)
     assert found.fragility_capacities is None
     (tmp_path / "fragility_capacities.csv").touch()
