@@ -34,5 +34,5 @@ def test_a_study_that_asks_has_the_half_cycles_of_every_run(tmp_path):
         assert len(impacts) == row["impacts"]
         assert impacts[["omega_before_rad_s", "omega_after_rad_s"]].notna().all(axis=None)
     assert "half_cycle 0 begins with the run" in OUTPUT["half_cycles"].words
-    rb.run(study.with_(output=None), tmp_path / "out", fresh=True)
+    rb.run(study.with_(output=None), tmp_path / "out")
     assert not (tmp_path / "out" / HALF_CYCLES).exists()
