@@ -396,14 +396,14 @@ def sealed(folder: Path) -> None:
 class Sample:
     """A study that was carried out, its folder, and its journal when all of it was finished."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, analyses: tuple[str, ...] = ("fragility", "spectrum", "sensitivity")) -> None:
         self.study = folder / "study.toml"
         self.study.write_text(STUDY, encoding="utf-8")
         with quiet():
             assert main(["run", str(self.study), "--out", str(folder / "out"), "--shard", "1/1"]) == 0
             self.journal = (folder / "out" / JOURNAL).read_bytes()
             assert main(["run", str(self.study), "--out", str(folder / "out")]) == 0
-            for analysis in ("fragility", "spectrum", "sensitivity"):
+            for analysis in analyses:
                 assert main([analysis, str(self.study), "--out", str(folder / "out")]) == 0
             shutil.copytree(folder / "out", folder / "other")
             rb.report(folder / "out", folder / "other", out=folder / "both.html")

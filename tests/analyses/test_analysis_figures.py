@@ -80,8 +80,13 @@ def test_a_fragility_has_its_shares_and_one_colour_for_each_case(tmp_path):
     assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
 
 
-def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_and_record(tmp_path):
-    result = rb.spectrum(study(tmp_path, SPECTRUM))
+@pytest.fixture(scope="module")
+def spectrum(tmp_path_factory):
+    return rb.spectrum(study(tmp_path_factory.mktemp("spectrum"), SPECTRUM))
+
+
+def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_and_record(spectrum, tmp_path):
+    result = spectrum
     figure = spectra(result.spectrum_suite, result.spectrum, result.info)
     assert [panel.caption for panel in figure.panels] == ["rigid", "pads"]
     lines = of_kind(figure.panels[0].marks, Polyline)
@@ -99,8 +104,8 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_a
     )
 
 
-def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(tmp_path):
-    result = rb.spectrum(study(tmp_path, SPECTRUM))
+def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(spectrum):
+    result = spectrum
     panel = maps(result.overturning_map, result.info).panels[0]
     regions = result.overturning_map[result.overturning_map["case"] == "rigid"]
     drawn = {REGIONS[outcome][1] for outcome in regions["outcome"] if outcome != "safe"}

@@ -1,6 +1,7 @@
 """half_cycles.csv, which a study asks for: what Response.half_cycles has of each run."""
 
 import pandas as pd
+import pytest
 from studies import study_text, write_study
 
 import rockbatch as rb
@@ -8,6 +9,8 @@ from rockbatch.batch.repeated import HALF_CYCLES
 from rockbatch.common.files import read_table
 from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS
 from rockbatch.study.load import OUTPUT
+
+pytestmark = pytest.mark.usefixtures("no_report")
 
 PIER = {"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": [0.05, 0.1]}
 
@@ -31,5 +34,5 @@ def test_a_study_that_asks_has_the_half_cycles_of_every_run(tmp_path):
         assert len(impacts) == row["impacts"]
         assert impacts[["omega_before_rad_s", "omega_after_rad_s"]].notna().all(axis=None)
     assert "half_cycle 0 begins with the run" in OUTPUT["half_cycles"].words
-    rb.run(study.with_(output=None), tmp_path / "out", fresh=True)
+    rb.run(study.with_(output=None), tmp_path / "out")
     assert not (tmp_path / "out" / HALF_CYCLES).exists()

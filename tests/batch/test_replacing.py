@@ -1,9 +1,13 @@
 """Results are never replaced without a word, and those of another study not at all unless it is asked for."""
 
 import pytest
-from studies import study_text, write_study
+from studies import RIGID, study_text, write_study
 
 from rockbatch.commands.cli import main
+
+pytestmark = pytest.mark.usefixtures("no_report")
+
+SMALL = {"cases": (RIGID,), "output": {"histories": "none"}}
 
 
 def run(study, out, *more):
@@ -13,7 +17,7 @@ def run(study, out, *more):
 @pytest.fixture
 def finished(tmp_path):
     """A study and its results."""
-    study = write_study(tmp_path, study_text(title="Pier 4"), "pier.toml")
+    study = write_study(tmp_path, study_text(title="Pier 4", **SMALL), "pier.toml")
     out = tmp_path / "reports" / "pier"
     run(study, out)
     return study, out
@@ -35,7 +39,9 @@ def test_an_earlier_version_is_named(finished, capsys):
 def test_another_study_of_the_same_name_does_not_take_its_place(finished, tmp_path, capsys):
     study, out = finished
     (tmp_path / "other").mkdir()
-    other = write_study(tmp_path / "other", study_text(title="Pier 4", pier={"alpha": 0.3, "p": 1.0}), "pier.toml")
+    other = write_study(
+        tmp_path / "other", study_text(title="Pier 4", pier={"alpha": 0.3, "p": 1.0}, **SMALL), "pier.toml"
+    )
     before = {path.name: path.read_bytes() for path in out.iterdir()}
     capsys.readouterr()
     assert run(other, out) == 2
@@ -55,7 +61,7 @@ def test_a_study_that_has_moved_is_known_by_its_title(finished, tmp_path, capsys
     run(moved, out)
     assert "an earlier version of the study" in capsys.readouterr().err
     moved.unlink()
-    other = write_study(tmp_path, study_text(title="Pier 5"), "pier5.toml")
+    other = write_study(tmp_path, study_text(title="Pier 5", **SMALL), "pier5.toml")
     assert run(other, out) == 2
     assert '"Pier 4"' in capsys.readouterr().err
 

@@ -17,6 +17,8 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.study.rule_files import load_rules
 
+pytestmark = pytest.mark.usefixtures("no_report")
+
 INF = math.inf
 
 

@@ -323,7 +323,7 @@ def test_a_damaged_archive_ends_in_records_or_reasons(tmp_path):
         path.unlink()
     rng = np.random.default_rng(0)
     reasons = 0
-    for i in range(500):
+    for i in range(150):
         name, data = list(whole.items())[i % len(whole)]
         damaged = bytearray(data[: rng.integers(0, len(data))] if rng.random() < 0.3 else data)
         for _ in range(int(rng.integers(0, 6))):
@@ -335,7 +335,7 @@ def test_a_damaged_archive_ends_in_records_or_reasons(tmp_path):
         assert not any("reader failed" in unusable.reason for unusable in found.unusable)
         assert found.motions or found.unusable or found.left_out or not damaged
         os.unlink(tmp_path / name)
-    assert reasons > 100
+    assert reasons > 30
 
 
 def test_a_record_in_a_file_without_a_known_suffix_is_recognised_by_its_header(tmp_path):

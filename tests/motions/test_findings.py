@@ -239,6 +239,7 @@ def components() -> list[Component]:
     return real_components(unit="g") + fema_p695.all_components()
 
 
+@pytest.mark.slow
 @needs_records
 def test_no_real_record_comes_near_the_limit_of_alternation():
     """The largest of 200 real components is 7 % of its PGA; an instrument's is all of it."""
@@ -248,6 +249,7 @@ def test_no_real_record_comes_near_the_limit_of_alternation():
     assert max(shares) < 0.3 * ALTERNATION
 
 
+@pytest.mark.slow
 @needs_records
 def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
     pytest.importorskip("hdf5plugin")

@@ -168,6 +168,7 @@ def test_all_real_records_at_once_hold_each_recording_once():
     assert len(set(samples)) == len(samples)
 
 
+@pytest.mark.slow
 def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not():
     """The limit lies between both; halves of a record stand for the parts of a long one."""
     components = real_components()
@@ -198,7 +199,10 @@ def test_real_files_of_one_recording_correlate_and_those_of_other_records_do_not
     assert max(correlation(*half) for half in halves) < 0.47
 
 
-@pytest.mark.parametrize("folder", ["formats", "suite", "table1", "open"])
+@pytest.mark.parametrize(
+    "folder",
+    [pytest.param("formats", marks=pytest.mark.slow), "table1", "open", pytest.param("suite", marks=pytest.mark.slow)],
+)
 def test_the_draft_of_real_records_loads_and_changes_no_name_and_no_number(tmp_path, folder):
     for path in sorted((RECORDS / folder).rglob("*")):
         target = tmp_path / "copy" / path.relative_to(RECORDS)

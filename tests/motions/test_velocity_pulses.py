@@ -86,6 +86,7 @@ def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
     assert (still.kind, math.isnan(still.period_s)) == ("no", True)
 
 
+@pytest.mark.slow
 @needs_records
 def test_near_field_records_are_classified_as_published():
     from rockbatch.motions import fema_p695

@@ -81,11 +81,14 @@ def test_more_runs_than_a_table_holds_are_refused_before_the_first(tmp_path, mon
     )
 
 
-def test_the_greatest_number_of_cases_is_checked_to_the_end(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(("betas", "shown"), [(2, 30), pytest.param(12, 300, marks=pytest.mark.slow)])
+def test_the_greatest_number_of_cases_is_checked_to_the_end(tmp_path, monkeypatch, capsys, betas, shown):
     """Stages after the runs say what they are if they take long; a case is a line of run.json, and the page stays small."""
     monkeypatch.setattr("rockbatch.batch.listening.PATIENCE_S", 0.0)
-    monkeypatch.setattr(lists, "MOST_CASES", 360)
-    cases = {"beta": [50 + 0.1 * i for i in range(12)], "eta": [2 + 0.01 * i for i in range(30)]}
+    most = 30 * betas
+    monkeypatch.setattr(lists, "MOST_CASES", most)
+    monkeypatch.setattr("rockbatch.reporting.overview.MOST_FOUNDATIONS", shown)
+    cases = {"beta": [50 + 0.1 * i for i in range(betas)], "eta": [2 + 0.01 * i for i in range(30)]}
     text = study_text(
         pulses=(SINE | {"duration_s": 0.5},), cases=(PADS | cases,), numerics={"substeps": 1, "quiet_s": 0.0},
         output={"both_laws": False, "histories": "none"},
@@ -95,8 +98,8 @@ def test_the_greatest_number_of_cases_is_checked_to_the_end(tmp_path, monkeypatc
     assert "writing run.json" in said
     assert "writing report.html" in said
     info = (tmp_path / "out/run.json").read_text(encoding="utf-8")
-    assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == 360
-    assert len(info) < 360 * 500
+    assert sum(line.startswith('  {"case": ') for line in info.splitlines()) == most
+    assert len(info) < most * 500 + 5000
     page = (tmp_path / "out/report.html").read_text(encoding="utf-8")
-    assert "The first 300 of 360 foundations, in the order of the study" in page
-    assert len(page) < 2_500_000
+    assert f"The first {shown} of {most} foundations, in the order of the study" in page
+    assert len(page) < 500_000 + most * 6000

@@ -317,7 +317,7 @@ theta_max_over_alpha = 0.1
     assert len(problems) == len(expected) + 5
 
 
-@pytest.mark.parametrize("name", ["example", "pier_with_dampers", "pier_with_deck", "fragility"])
+@pytest.mark.parametrize("name", ["pier_with_dampers", "fragility"])
 def test_a_hundred_mistakes_come_first_and_the_rest_is_not_read(tmp_path, name):
     """No more than a hundred are noted: a pier without its keys is then no sound one."""
     path = CONFIGS / f"{name}.toml"
@@ -571,7 +571,7 @@ def _is_read_or_refused(path: Path) -> None:
     assert all(problem.startswith(f"{path}:") for problem in problems)
 
 
-@settings(max_examples=80, deadline=None)  # the first example pays for the imports
+@settings(max_examples=30, deadline=None)  # the first example pays for the imports
 @given(st.lists(st.tuples(_TABLES, st.dictionaries(_KEYS, _ANY, max_size=9)), max_size=6))
 def test_whatever_is_written_gives_a_study_or_an_input_error(tmp_path_factory, tables):
     chunks = [f"{table}\n" + "".join(f"{k} = {_written(v)}\n" for k, v in keys.items()) for table, keys in tables]
@@ -580,7 +580,7 @@ def test_whatever_is_written_gives_a_study_or_an_input_error(tmp_path_factory, t
     _is_read_or_refused(path)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 1000), _ANY)
 def test_any_value_in_the_place_of_a_good_one_gives_a_study_or_an_input_error(tmp_path_factory, place, value):
     lines = (CONFIGS / "example.toml").read_text().splitlines()

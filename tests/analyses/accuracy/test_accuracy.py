@@ -39,9 +39,15 @@ STUDY = study_text(
 )
 
 
+SMALL = study_text(
+    motions={"scale": [0.8, 1.0]}, pulses=(SINE | {"duration_s": 1.0},), cases=(RIGID, PADS | {"beta": [20, 40]}),
+    output={"histories": "all"},
+)  # fmt: skip
+
+
 @pytest.fixture
 def study_file(tmp_path):
-    return write_study(tmp_path, STUDY)
+    return write_study(tmp_path, SMALL)
 
 
 @pytest.fixture(scope="module")
@@ -204,7 +210,7 @@ def test_the_command_writes_its_table_and_the_report_shows_it(study_file, tmp_pa
 
     # a later run keeps the section, a changed study loses it
     for change, kept in (("", True), ("\n# another study", False)):
-        study_file.write_text(STUDY + change, encoding="utf-8")
+        study_file.write_text(SMALL + change, encoding="utf-8")
         assert ("Measured on" in (out / "report.html").read_text(encoding="utf-8")) or not kept
         assert main(["run", str(study_file), "--out", str(out)]) == 0
         text = (out / "report.html").read_text(encoding="utf-8")

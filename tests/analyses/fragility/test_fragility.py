@@ -232,7 +232,7 @@ def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape
 
 
 def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_path):
-    study = load_study(written(tmp_path, IDA))
+    study = load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.1"))
     spec = read_fragility(study)
 
     def searched(folder, engines):
@@ -241,7 +241,7 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_pa
             try:
                 with journal:
                     waves = Waves(study, journal, engine)
-                    curves = assess(study, spec, motions, waves)
+                    curves = assess(study, spec, motions[:3], waves)
                     journal.write_in_order(folder / "runs.csv")
             except KeyboardInterrupt:
                 assert (folder / "runs.csv.part").exists()
@@ -249,7 +249,7 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_pa
 
     straight = searched(tmp_path / "straight", [Threads(1)])
     resumed = searched(tmp_path / "resumed", [Interrupted(0), Interrupted(2), Threads(2)])
-    assert straight[0] == resumed[0] > 5 * 4 * 2
+    assert straight[0] == resumed[0] > 3 * 4 * 2
     assert straight[2] == resumed[2]
     for one, other in zip(straight[1], resumed[1], strict=True):
         assert (one.stripes, one.capacities) == (other.stripes, other.capacities)

@@ -56,8 +56,9 @@ def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
 
 
 def test_without_limits_and_with_wide_ones_the_curves_are_the_same(tmp_path):
-    plain = rb.fragility(study(tmp_path, LEVELS | COARSE))
-    wide = rb.fragility(study(tmp_path, LEVELS | COARSE | {"least_scale": 0.01, "most_scale": 100.0}))
+    two = {"levels_g": [0.4, 0.6]} | COARSE
+    plain = rb.fragility(study(tmp_path, two))
+    wide = rb.fragility(study(tmp_path, two | {"least_scale": 0.01, "most_scale": 100.0}))
     pd.testing.assert_frame_equal(plain.fragility, wide.fragility)
     pd.testing.assert_frame_equal(plain.fragility_capacities, wide.fragility_capacities)
 

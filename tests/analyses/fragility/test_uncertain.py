@@ -103,15 +103,16 @@ def made_capacities(n, rng, stripes):
 def test_the_contribution_is_that_of_made_up_capacities(stripes):
     """β² = 0.3² + 0.2² − 2·0.6·0.2·0.1 + 0.1²: the second part is that of the inputs, in the mean over suites of 40 records."""
     rng, correlation = np.random.default_rng(1), np.array([[1.0, 0.6], [0.6, 1.0]])
-    found = [contribution(*made_capacities(40, rng, stripes), correlation) for _ in range(40)]
+    suites = 20
+    found = [contribution(*made_capacities(40, rng, stripes), correlation) for _ in range(suites)]
     of_inputs = 0.2**2 - 2 * 0.6 * 0.2 * 0.1 + 0.1**2
-    assert sum(share.interval[0] ** 2 <= of_inputs <= share.interval[1] ** 2 for share in found) >= 34
+    assert sum(share.interval[0] ** 2 <= of_inputs <= share.interval[1] ** 2 for share in found) >= 0.85 * suites
     squares = np.array([share.dispersion**2 for share in found])
-    assert abs(squares.mean() - of_inputs) < 3 * squares.std() / math.sqrt(40)
+    assert abs(squares.mean() - of_inputs) < 3 * squares.std() / math.sqrt(suites)
     errors = np.array([(np.array(share.effects) - [0.2, -0.1]) / share.errors for share in found])
-    assert np.abs(errors.mean(axis=0)).max() < 3 / math.sqrt(40)
+    assert np.abs(errors.mean(axis=0)).max() < 3 / math.sqrt(suites)
     assert 0.7 < errors.std() < 1.4
-    whole = fit(made_capacities(400, rng, stripes)[0]).dispersion
+    whole = fit(made_capacities(150, rng, stripes)[0]).dispersion
     assert whole == pytest.approx(math.sqrt(0.09 + of_inputs), rel=0.1)
 
 
@@ -148,13 +149,13 @@ def test_an_amplitude_of_overturning_proportional_to_a_lognormal_slenderness_is_
     )  # fmt: skip
     study = load_study(write_study(tmp_path, text))
     spec = read_fragility(study)
-    motions = [replace(ground_motions(study).motions[0], name=f"pulse {n}") for n in range(25)]
+    motions = [replace(ground_motions(study).motions[0], name=f"pulse {n}") for n in range(16)]
     of_runs = replace(study, varied=spec.uncertain.columns)
     with Journal(tmp_path / "runs.csv.part", columns(of_runs), {}) as journal:
         (curve,) = assess(study, spec, motions, Waves(of_runs, journal, Threads(1)))
         rows = [row for _, row in journal.rows()]
     alpha = {row["record"]: float(row["drawn_alpha"]) for row in rows}
-    assert len({(row["record"], row["drawn_alpha"]) for row in rows}) == 25  # the same at all intensities of a record
+    assert len({(row["record"], row["drawn_alpha"]) for row in rows}) == 16  # the same at all intensities of a record
     drawn = np.array([alpha[motions[m].name] for m, _ in curve.capacities])
     capacity = np.array([cap.decided.high for _, cap in curve.capacities])
     assert capacity / drawn == pytest.approx(3.289147, rel=2e-4)
@@ -239,7 +240,7 @@ def test_without_scatter_everything_is_as_without_the_table(tmp_path, method):
     levels = {} if method == "cloud" else {"levels_g": [0.3, 0.5]}
     coarse = {"hunt_step": 0.1, "window": 0.01} if method == "ida" else {}
     text = study_text(
-        pier={"alpha": 0.2, "p": 2.0}, pulses=seven_pulses(0.4), numerics={"tolerance": 1e-3},
+        pier={"alpha": 0.2, "p": 2.0}, pulses=seven_pulses(0.4)[::3], numerics={"tolerance": 1e-3},
         fragility={"method": method, "measure": "PGA"} | levels | coarse,
     )  # fmt: skip
     study = load_study(write_study(tmp_path, text))

@@ -173,7 +173,7 @@ def test_windows_are_run_on_springs_only_where_the_study_asks_for_them(tmp_path)
     cases = (RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"})
     plain, asked = (
         rb.fragility(study(tmp_path, name, settings, cases))
-        for name, settings in (("plain", {}), ("asked", {"window": 0.05}))
+        for name, settings in (("plain", {"hunt_step": 0.05}), ("asked", {"hunt_step": 0.05, "window": 0.05}))
     )
     assert [bool(curve.windows) for curve in plain.curves] == [True, False]
     assert [curve.windows.width for curve in asked.curves] == [0.05, 0.05]
@@ -193,7 +193,10 @@ def test_other_methods_have_no_windows(tmp_path, method):
 
 
 def test_whatever_the_number_of_threads_the_shares_are_the_same_and_python_draws_their_curve(tmp_path):
-    one, two = (rb.fragility(study(tmp_path, f"{jobs}", {}), tmp_path / f"out {jobs}", jobs=jobs) for jobs in (1, 2))
+    one, two = (
+        rb.fragility(study(tmp_path, f"{jobs}", {"hunt_step": 0.02}), tmp_path / f"out {jobs}", jobs=jobs)
+        for jobs in (1, 2)
+    )
     for name in ("fragility", "fragility_runs", "fragility_capacities"):
         files = [(tmp_path / f"out {jobs}" / f"{name}.csv").read_bytes() for jobs in (1, 2)]
         assert files[0] == files[1]

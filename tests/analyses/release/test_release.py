@@ -115,11 +115,11 @@ KINDS = [
 
 @pytest.mark.parametrize(("spread", "reading"), KINDS[2:3])
 def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
-    """Of 20 tests 19 are expected, and fewer than 17 in one of 60 suites.
+    """Of 8 tests 7.6 are expected, and fewer than 7 in one of 17 suites.
 
-    Nor are they wider than the values scatter: Student's t of ten impacts makes 1.2 of the normal width, to 3 deviations of 16 %.
+    Nor are they wider than the values scatter: Student's t of ten impacts makes 1.2 of the normal width, to 2 deviations of 27 %.
     """
-    tests = fits(block, spread, reading, 20)
+    tests = fits(block, spread, reading, 8)
     assert covered(tests) >= 0.85
     scatter = np.std([fit.value for fit in tests])
     assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.6)
@@ -185,7 +185,7 @@ def tomllike(**release):
 
 
 @pytest.mark.parametrize("case", [
-    {"name": "pads", "base": "elastic", "beta": 60, "zeta": 0.3},
+    pytest.param({"name": "pads", "base": "elastic", "beta": 60, "zeta": 0.3}, marks=pytest.mark.slow),
     {"name": "soil", "base": "yielding", "beta": 60, "eta": 4, "zeta": 0.3},
 ], ids=["elastic", "yielding"])  # fmt: skip
 def test_damping_of_springs_is_found_again(case):
@@ -199,7 +199,7 @@ def test_damping_of_springs_is_found_again(case):
     assert row["value"] == pytest.approx(0.1, abs=2e-3)
 
 
-@pytest.mark.parametrize("factor", [1.03, 0.97])
+@pytest.mark.parametrize("factor", [1.03, pytest.param(0.97, marks=pytest.mark.slow)])
 def test_times_of_another_pier_are_distinguished_from_losses(factor):
     """All times longer by 3 %, as of a pier that is larger by 6 %, with errors of reading of 1 ms and 0.2 mrad."""
     random, exact = np.random.default_rng(4), passages([0.9] * IMPACTS)
@@ -266,7 +266,6 @@ def test_the_command_leaves_what_python_has(tmp_path):
     result = rb.release(path)
     for name, table in result.tables.items():
         pd.testing.assert_frame_equal(table, read_table(tmp_path / "out" / f"{name}.csv"), check_exact=True)
-    assert len(result.plot().axes) == 1
     assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
 
 

@@ -101,11 +101,12 @@ def part(shape):
 
 
 @pytest.mark.parametrize(
-    "shape", [pytest.param(shape, marks=[pytest.mark.slow] * (shape == "ricker")) for shape in PARTS]
+    ("shape", "number"),
+    [("sine", 75), *(pytest.param(shape, 150, marks=pytest.mark.slow) for shape in PARTS)],
 )
-def test_a_map_shows_at_random_points_what_their_simulation_says(shape):
+def test_a_map_shows_at_random_points_what_their_simulation_says(shape, number):
     shown = part(shape)
-    differ, far = wrong(shown, scattered(shown.spec, 150))
+    differ, far = wrong(shown, scattered(shown.spec, number))
     assert far == []
     assert len(differ) <= 1
 

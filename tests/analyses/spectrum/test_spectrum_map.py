@@ -221,7 +221,7 @@ STUDY = study_text(
                 "frequencies": 3,
                 "amplitude": [1.0, 8.0],
                 "amplitudes": 15,
-                "tolerance": 0.01,
+                "tolerance": 0.05,
                 "width": 0.5,
             },
             {
