@@ -108,7 +108,7 @@ def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
     found.card = document.querySelector("#answer .card").getBoundingClientRect().bottom;
     found.figure = document.querySelector("#answer .dots .row svg").getBoundingClientRect().bottom;
     """
-    found = browse(tmp_path, page, act, size=(1400, 900))
+    found = browse(page, act, size=(1400, 900))
     assert 0 < found["answer"] < found["card"] < found["figure"] < 900
 
 
@@ -178,7 +178,7 @@ def test_the_legend_stands_above_the_fold(tmp_path):
     ]
     write_verdicts(tmp_path, [*failing, verdict("4", "not decided", note="2 stations count; the check asks for 3")])
     act = 'found.legend = document.querySelector("#answer ul.key").getBoundingClientRect().bottom;'
-    assert 0 < browse(tmp_path, write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
+    assert 0 < browse(write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
 
 
 def test_the_picture_is_not_parted_from_its_axis_or_legend_on_paper():
