@@ -11,6 +11,7 @@ import pandas as pd
 import pint
 import pytest
 from altered_histories import altered
+from report_samples import write_results
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -586,10 +587,10 @@ def loaded(code):
 
 
 def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
-    carried_out(tmp_path, FEW.replace('histories = "all"', 'histories = "none"'))
+    write_results(tmp_path)
+    write_study(tmp_path, study_text(cases=(RIGID,), output={"histories": "none"}))
     run = f"""
 import rockbatch as rb
-from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories
 study = rb.load_study({str(tmp_path / "study.toml")!r})
 rb.run(study)
