@@ -40,11 +40,19 @@ def can_be_nobody():
 @pytest.fixture
 def study(tmp_path):
     write_at2(tmp_path / "records", "r000.AT2", wiggle())
-    motions = {"path": "records", "scale": [i / 100 for i in range(1, 301)]}  # more than one group
-    return write_study(tmp_path, study_text(motions=motions, pulses=(), cases=(RIGID,), output={"histories": "none"}))
+    return of_records(tmp_path, [i / 100 for i in range(1, 301)])  # more than one group
 
 
-@pytest.mark.parametrize(("processes", "jobs", "otherwise"), [(1, 1, ""), (2, 4, ", or write --jobs 1")])
+def of_records(folder, scales):
+    """Write a study of the records of a folder."""
+    motions = {"path": "records", "scale": scales}
+    return write_study(folder, study_text(motions=motions, pulses=(), cases=(RIGID,), output={"histories": "none"}))
+
+
+@pytest.mark.parametrize(
+    ("processes", "jobs", "otherwise"),
+    [(1, 1, ""), pytest.param(2, 4, ", or write --jobs 1", marks=pytest.mark.slow)],
+)
 def test_where_processes_are_too_few_a_sentence_says_so_and_no_record_is_to_blame(study, processes, jobs, otherwise):
     """Without a limit to their threads, OpenBLAS sends SIGINT where it is loaded, and numexpr ends the process."""
     out = study.with_name("out")
@@ -61,6 +69,7 @@ def test_where_processes_are_too_few_a_sentence_says_so_and_no_record_is_to_blam
 
 
 def test_with_three_processes_one_thread_finishes_the_batch(study):
+    study = of_records(study.parent, [0.5, 1.0])
     few, many = (study.with_name(name) for name in ("few", "many"))
     done = rockbatch_as_nobody(3, "run", str(study), "--out", str(few), "--jobs", "1")
     assert done.returncode == 0, done.stderr
@@ -76,6 +85,18 @@ def test_a_path_from_a_missing_home_is_refused(study):
     assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr
 
 
+def test_where_dask_raises_an_error_of_processes_the_sentence_is_the_same(study, monkeypatch, capsys):
+    distributed = pytest.importorskip("distributed")
+
+    def refuses(**_):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(distributed, "Client", refuses)
+    assert main(["run", str(study), "--engine", "dask", "--jobs", "1"]) == 2
+    assert "rockbatch: dask could not start a cluster on this machine (can't start" in capsys.readouterr().err
+
+
+@pytest.mark.slow
 def test_where_dask_cannot_start_its_processes_a_sentence_says_so(study):
     pytest.importorskip("distributed")
     out = study.with_name("out")

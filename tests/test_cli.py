@@ -11,11 +11,13 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from report_samples import write_results
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.streams import in_width
+from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 
 STUDY = study_text(title="A <pulse> & a pier")
@@ -293,13 +295,13 @@ def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(mon
         monkeypatch.setattr("sys.stderr", terminal)
         listener = messages.Terminal()
         with listener.progress(3):
-            time.sleep(2.3)
+            time.sleep(1.2)
             listener.say("compiling")
         terminal.flush()
         shown = os.read(ours, 100_000).decode()
     os.close(ours)
+    assert "0/3 [00:00<" in shown
     assert "0/3 [00:01<" in shown
-    assert "0/3 [00:02<" in shown
     assert "\rcompiling" in shown.replace(" ", "")
 
 
@@ -375,11 +377,11 @@ def started(study, out, redirected, **more):
 @pytest.mark.parametrize(
     ("redirected", "more", "code"),
     [
-        ("", {"PYTHONIOENCODING": "ascii"}, 0), ("> /dev/full", {}, 1), (">&- 2>&-", {}, 0),
+        ("> /dev/full", {"PYTHONIOENCODING": "ascii"}, 1),
         *(
             pytest.param(*way, marks=pytest.mark.slow)
             for way in (
-                ("", {"PYTHONIOENCODING": "latin-1"}, 0), ("2> /dev/full", {}, 0), ("> /dev/full 2> /dev/full", {}, 1)
+                ("", {"PYTHONIOENCODING": "ascii"}, 0), (">&- 2>&-", {}, 0), ("> /dev/full 2> /dev/full", {}, 1)
             )
         ),
     ],
@@ -395,38 +397,18 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
-def test_checks_and_their_report_do_not_need_a_reader(study, tmp_path):
+def test_checks_and_their_report_do_not_need_a_reader(tmp_path):
     rules = tmp_path / "rules.toml"
     rules.write_text(
         '[[check]]\nname = "é"\ndemand = "theta_max_over_alpha"\nat_most = 0.9\nreason = "r"\n', encoding="utf-8"
     )
-    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
-    before = (tmp_path / "out/report.html").read_bytes()
+    (tmp_path / "out").mkdir()
+    before = write_report(write_results(tmp_path / "out"), []).read_bytes()
     check = f"{sys.executable} -m rockbatch check {tmp_path / 'out'} --rules {rules}"
     done = subprocess.run(f"({check}; echo $? >&2) | true", shell=True, capture_output=True, text=True)
     assert done.stderr.split()[-1] == "1"
     assert "Traceback" not in done.stderr
     assert (tmp_path / "out/report.html").read_bytes() != before
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
-def test_an_interrupt_while_modules_are_loaded_is_reported_as_any_other(study):
-    code = f"""
-import os, signal, sys
-
-class Interrupts:
-    def find_spec(self, name, path=None, target=None):
-        if name == "rockbatch.commands.run":
-            os.kill(os.getpid(), signal.SIGINT)
-
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
-sys.meta_path.insert(0, Interrupts())
-sys.argv = ["rockbatch", "run", {str(study)!r}]
-from rockbatch.__main__ import main
-sys.exit(main())
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (130, "rockbatch: interrupted\n")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has a home folder always")

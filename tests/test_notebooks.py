@@ -1,10 +1,17 @@
 """The notebooks of the docs run from top to bottom, without a word on stderr, and are kept with what they come to."""
 
+import ast
 import importlib.util
+import re
+import tomllib
 from pathlib import Path
 
 import nbformat
 import pytest
+from jsonschema import Draft7Validator
+
+import rockbatch as rb
+from rockbatch.study.schema import STUDY, schema_of
 
 FOLDER = Path(__file__).parents[1] / "docs" / "notebooks"
 _SPEC = importlib.util.spec_from_file_location("execute", FOLDER / "execute.py")
@@ -14,6 +21,20 @@ _SPEC.loader.exec_module(execute)
 
 def test_there_are_notebooks():
     assert [path.name for path in execute.NOTEBOOKS] == ["first_study.ipynb"]
+
+
+def test_the_cells_use_names_that_are_public_and_studies_that_are_read():
+    (path,) = execute.NOTEBOOKS
+    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    for cell in cells:
+        used = {
+            node.attr for node in ast.walk(ast.parse(cell)) if getattr(getattr(node, "value", None), "id", "") == "rb"
+        }
+        assert used <= set(rb.__all__)
+    (study,) = (text for cell in cells for text in re.findall(r'f"""(.*?)"""', cell, re.DOTALL))
+    written = tomllib.loads(re.sub(r"\{.*\}", "records", study))
+    wrong = Draft7Validator(schema_of(STUDY, "")).iter_errors(written)
+    assert [error.message for error in wrong] == []
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +59,7 @@ def texts(outputs):
     return [output.get("text") or output.data["text/plain"] for output in outputs]
 
 
+@pytest.mark.slow
 def test_a_notebook_is_kept_with_what_it_comes_to(notebook):
     stored = nbformat.read(execute.NOTEBOOKS[0], as_version=4)
     nbformat.validate(stored)
@@ -50,6 +72,7 @@ def shown(outputs, kind):
     return [output.data[kind] for output in outputs if kind in output.get("data", {})]
 
 
+@pytest.mark.slow
 def test_the_first_study_shows_its_objects_as_tables_and_figures(executed):
     tables = shown(executed, "text/html")
     assert sum("10 ground motions" in table for table in tables) == 1
@@ -58,6 +81,7 @@ def test_the_first_study_shows_its_objects_as_tables_and_figures(executed):
     assert len(shown(executed, "image/png")) == 2
 
 
+@pytest.mark.slow
 def test_the_bar_of_a_notebook_warns_of_nothing(executed):
     """Without ipywidgets tqdm warns, and draws in characters."""
     errors = "".join(output.text for output in executed if output.output_type == "stream" and output.name == "stderr")

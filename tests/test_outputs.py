@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
-from report_samples import write_results
+from report_samples import FIG7, write_results
 from studies import RIGID, SINE, study_text, toml, write_study
 
 import rockbatch as rb
@@ -83,7 +83,7 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    return write_results(tmp_path_factory.mktemp("results"))
+    return write_results(tmp_path_factory.mktemp("results"), records=FIG7[:1])
 
 
 @pytest.fixture(scope="module")
@@ -296,8 +296,7 @@ def test_a_terminal_is_written_into():
     os.close(inner)
 
 
-@pytest.mark.parametrize("name", ["-", "/dev/stdout"])
-@pytest.mark.parametrize("to", ["pipe", "file"])
+@pytest.mark.parametrize(("name", "to"), [("-", "pipe"), ("/dev/stdout", "file")])
 def test_stdout_has_the_table_and_nothing_else(records, tmp_path, name, to):
     command = [sys.executable, "-m", "rockbatch", *NAMED["motions"](name, {"records": records})]
     with (tmp_path / "taken").open("wb") as file:

@@ -1,11 +1,15 @@
-"""A page in a real browser."""
+"""A page in a real browser, which is started once and opens a tab for each page."""
 
+import atexit
 import base64
-import hashlib
+import itertools
 import json
-import re
 import shutil
 import subprocess
+import tempfile
+import threading
+from contextlib import contextmanager
+from functools import cache
 
 import pytest
 
@@ -17,8 +21,9 @@ const wrong = [];
 addEventListener("error", (event) => wrong.push(event.message), true);
 addEventListener("securitypolicyviolation", (event) => wrong.push(event.violatedDirective));
 """
-# Runs after it, in a block of its own, with `found` to be filled
-ACT = """{
+LOADED = "new Promise((done) => document.readyState === 'complete' ? done() : addEventListener('load', done))"
+# Runs after it, with `found` to be filled
+ACT = """(async () => {
 const found = {};
 const at = (node, fx, fy, kind = "pointermove", pointerType = "mouse") => {
   const box = node.getBoundingClientRect();
@@ -27,35 +32,93 @@ const at = (node, fx, fy, kind = "pointermove", pointerType = "mouse") => {
 };
 const press = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
 const tip = () => document.querySelector("#tip").hidden ? null : document.querySelector("#tip").textContent;
+const later = () => new Promise((resolve) => setTimeout(resolve, 100));
 %s
-setTimeout(() => { // a request that is stopped is told later
+await later(); // a request that is stopped is reported late
 found.wrong = wrong;
 found.requests = performance.getEntriesByType("resource").map((entry) => entry.name);
 found.wide = document.documentElement.scrollWidth <= innerWidth;
-const result = document.createElement("script");
-result.type = "application/json";
-result.id = "found";
-result.textContent = JSON.stringify(found);
-document.body.append(result);
-}, 500);
-}"""
+return found;
+})()"""
 
 
-def browse(tmp_path, page, act="", *, size=(1200, 900)):
+def browse(page, act="", *, size=(1200, 900)):
     """Return what ``act``, run after the page's own script, fills into ``found``."""
-    text = page.read_text(encoding="utf-8")
-    scripts = WATCH, ACT % act
-    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
-    text = text.replace("script-src ", "script-src " + " ".join(f"'sha256-{digest}'" for digest in hashes) + " ", 1)
-    text = text.replace("<title>", f"<script>{scripts[0]}</script><title>", 1)
-    text = text.replace("</body>", f"<script>{scripts[1]}</script></body>")
-    driven = tmp_path / "driven.html"
-    driven.write_text(text, encoding="utf-8")
-    done = chromium(tmp_path, "--dump-dom", f"--window-size={size[0]},{size[1]}", driven.as_uri())
-    return json.loads(re.search(r'id="found">(.*?)</script>', done, re.DOTALL)[1])
+    with tab(page, size) as ask:
+        done = ask("Runtime.evaluate", expression=ACT % act, awaitPromise=True, returnByValue=True)
+    assert "exceptionDetails" not in done, done
+    return done["result"]["value"]
 
 
-def chromium(tmp_path, *arguments):
-    options = "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"
-    command = [CHROMIUM, *options, "--virtual-time-budget=3000", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+def printed(page):
+    """Return the page as a PDF."""
+    with tab(page, (1200, 900)) as ask:
+        return base64.b64decode(ask("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
+
+
+@contextmanager
+def tab(page, size):
+    """Open a page and give the function that sends commands to it."""
+    browser = chromium()
+    target = browser.ask("Target.createTarget", url="about:blank")["targetId"]
+    session = browser.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+
+    def ask(method, **params):
+        return browser.ask(method, session, **params)
+
+    watch = threading.Timer(120.0, browser.process.kill)
+    watch.start()
+    ask("Page.enable")  # without which no script runs before the page
+    ask("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+    ask("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
+    ask("Page.navigate", url=page.as_uri())
+    ask("Runtime.evaluate", expression=LOADED, awaitPromise=True)
+    try:
+        yield ask
+    finally:
+        watch.cancel()
+        browser.ask("Target.closeTarget", targetId=target)
+
+
+@cache
+def chromium():
+    """Start Chromium, which is closed at the end."""
+    return Browser()
+
+
+class Browser:
+    """Chromium, driven by the DevTools protocol: JSON between zero bytes, through the file descriptors 3 and 4."""
+
+    def __init__(self):
+        profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        options = "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile.name}"
+        piped = 'exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null 2>&1'
+        command = ["sh", "-c", piped, CHROMIUM, *options, "--remote-debugging-pipe"]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.numbers = itertools.count()
+        self.unread = b""
+        atexit.register(self.end, profile)
+
+    def end(self, profile):
+        with self.process:
+            self.process.kill()
+        profile.cleanup()
+
+    def ask(self, method, session=None, **params):
+        """Send a command and return its result."""
+        number = next(self.numbers)
+        command = {"id": number, "method": method, "params": params} | ({"sessionId": session} if session else {})
+        self.process.stdin.write(json.dumps(command).encode() + b"\0")
+        self.process.stdin.flush()
+        while (message := self.message()).get("id") != number:
+            pass
+        assert "error" not in message, message
+        return message["result"]
+
+    def message(self):
+        while b"\0" not in self.unread:
+            received = self.process.stdout.read1(1 << 20)
+            assert received, "Chromium has ended"
+            self.unread += received
+        first, _, self.unread = self.unread.partition(b"\0")
+        return json.loads(first)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-from browser import browse, chromium, needs_chromium
+from browser import browse, needs_chromium, printed
 from check_samples import verdict
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
@@ -65,45 +65,45 @@ def test_names_and_notes_of_a_hostile_folder_are_words_and_stay_on_the_page(tmp_
     found.scripts = document.scripts.length;
     found.elements = document.querySelectorAll("img, iframe, base, link, form, [onerror], [onload], [onmouseover]").length;
     """
-    found = browse(tmp_path, write_report(tmp_path, []), act)
-    own = {"ran": None, "scripts": 3, "elements": 0}  # scripts: the page's and the two of `browse`
+    found = browse(write_report(tmp_path, []), act)
+    own = {"ran": None, "scripts": 1, "elements": 0}
     assert found == own | {"wrong": [], "requests": [], "wide": True}
 
 
 @pytest.mark.parametrize("size", [(1200, 900), (500, 900)])
-def test_nothing_is_asked_for_nothing_goes_wrong_and_nothing_sticks_out(tmp_path, page, size):
-    found = browse(tmp_path, page, size=size)
+def test_nothing_is_asked_for_nothing_goes_wrong_and_nothing_sticks_out(page, size):
+    found = browse(page, size=size)
     assert found == {"wrong": [], "requests": [], "wide": True}
 
 
-def test_the_first_screen_holds_the_answer_and_the_figure_of_peaks(tmp_path, page):
+def test_the_first_screen_holds_the_answer_and_the_figure_of_peaks(page):
     act = """
     const figure = document.querySelector("#answer .dots").getBoundingClientRect();
     found.answer = document.querySelector("#answer table").getBoundingClientRect().bottom;
     found.figure = figure.bottom;
     found.inputs = document.querySelector("#studied").getBoundingClientRect().top;
     """
-    found = browse(tmp_path, page, act, size=(1400, 900))
+    found = browse(page, act, size=(1400, 900))
     assert found["answer"] < found["figure"] < 900 < found["inputs"]
 
 
-def test_the_policy_of_the_page_would_stop_a_request(tmp_path, page):
+def test_the_policy_of_the_page_would_stop_a_request(page):
     # So that the test above can fail
-    found = browse(tmp_path, page, 'document.body.append(Object.assign(new Image(), { src: "file:///x.png" }));')
+    found = browse(page, 'document.body.append(Object.assign(new Image(), { src: "file:///x.png" }));')
     assert found["wrong"] or found["requests"]
 
 
-def test_the_policy_of_the_page_lets_nothing_lead_its_links_or_forms_elsewhere(tmp_path, page):
+def test_the_policy_of_the_page_lets_nothing_lead_its_links_or_forms_elsewhere(page):
     act = """
     document.head.append(Object.assign(document.createElement("base"), { href: "https://x.invalid/" }));
     found.base = document.baseURI.split(":")[0];
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert (found["base"], found["wrong"]) == ("file", ["base-uri"])
     assert "; form-action 'none'" in page.read_text(encoding="utf-8").split("Content-Security-Policy")[1].split(">")[0]
 
 
-def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, page):
+def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(page):
     act = """
     const heads = [...document.querySelectorAll("#peaks thead button")];
     const column = heads.findIndex((head) => head.textContent === "θmax/α");
@@ -115,7 +115,7 @@ def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, 
     found.left = [...document.querySelectorAll("#peaks tbody tr")].filter((row) => !row.hidden).length;
     found.said = document.querySelector("#peaks .filter span").textContent;
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     values = list(map(float, found["up"]))
     assert len(values) == 30
     assert values == sorted(values)
@@ -123,19 +123,19 @@ def test_a_heading_sorts_by_value_both_ways_and_search_hides_the_rest(tmp_path, 
     assert (found["left"], found["said"]) == (1, "1 of 30 rows")
 
 
-def test_marks_of_the_first_screen_say_their_value_too(tmp_path, page):
+def test_marks_of_the_first_screen_say_their_value_too(page):
     act = """
     const mark = document.querySelector("#answer .dots use.s3");
     at(mark, 0.5, 0.5); found.mark = tip();
     const rigid = document.querySelector("#answer .dots .rigid");
     at(rigid, 0.5, 0.5); found.rigid = tip();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert re.search(r"\n3: β = 80, η = 2.5: 0\.\d{4} ± 3e-06", found["mark"].replace("\u00a0", " "))
     assert re.search(r"\nrigid: 0\.\d{4} ± 3e-06", found["rigid"])
 
 
-def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(tmp_path, page):
+def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(page):
     act = """
     const input = document.querySelector("#peaks input");
     input.value = "syl360 rigid"; input.dispatchEvent(new Event("input", { bubbles: true }));
@@ -143,7 +143,7 @@ def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(tmp_path, page)
     copy.click(); found.text = copy.dataset.text;
     found.link = document.querySelector("#peaks a").getAttribute("href");
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     head, row = (line.split("\t") for line in found["text"].split("\n"))
     assert head[:2] == ["record", "case"]
     assert row[:2] == ["SYL360", "rigid"]
@@ -151,20 +151,20 @@ def test_a_table_is_copied_as_it_is_shown_and_its_file_is_linked(tmp_path, page)
     assert found["link"] == "peaks.csv"
 
 
-def test_marks_say_their_value_to_the_arrow_keys_and_none_after_escape(tmp_path, page):
+def test_marks_say_their_value_to_the_arrow_keys_and_none_after_escape(page):
     act = """
     const grid = document.querySelector(".dots");
     press(grid, "ArrowRight"); found.first = tip();
     press(grid, "ArrowRight"); found.second = tip();
     press(document.body, "Escape"); found.none = tip();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert re.match(r"\w+\n.*: 0\.\d{4} ± 3e-06", found["first"].replace("\u00a0", " "), re.DOTALL)
     assert found["first"] != found["second"]
     assert found["none"] is None
 
 
-def test_entries_of_the_legend_hide_their_marks_and_rows_are_sorted_and_searched(tmp_path, page):
+def test_entries_of_the_legend_hide_their_marks_and_rows_are_sorted_and_searched(page):
     act = """
     const grid = document.querySelector("#answer .dots");
     const marks = (place) => [...grid.querySelectorAll(`[data-case="${place}"]`)];
@@ -175,7 +175,7 @@ def test_entries_of_the_legend_hide_their_marks_and_rows_are_sorted_and_searched
     entry.click(); found.hidden = drawn(2); found.others = drawn(1); found.pressed = entry.getAttribute("aria-pressed");
     entry.click(); found.again = drawn(2);
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert (found["marks"], found["hidden"], found["others"], found["again"]) == (5, 0, 6, 5)  # one overturned
     assert found["pressed"] == "false"
     assert sorted(found["before"]) == sorted(name for name, _ in FIG7)
@@ -194,7 +194,7 @@ def test_many_records_are_sorted_searched_and_all_shown_on_request(tmp_path):
     const input = document.querySelector("#answer .filter input");
     input.value = "r2"; input.dispatchEvent(new Event("input")); found.searched = words();
     """
-    found = browse(tmp_path, write_report(tmp_path, []), act)
+    found = browse(write_report(tmp_path, []), act)
     assert found["first"][-1] == "the other 17 records"
     assert len(found["first"]) == 14
     assert found["sorted"] == [f"R{i}" for i in range(30)]
@@ -202,21 +202,20 @@ def test_many_records_are_sorted_searched_and_all_shown_on_request(tmp_path):
     assert found["searched"] == ["R2", *(f"R{i}" for i in range(20, 30))]
 
 
-def test_what_is_folded_is_unfolded_by_a_link_and_the_list_stays_in_view(tmp_path, page):
+def test_what_is_folded_is_unfolded_by_a_link_and_the_list_stays_in_view(page):
     act = """
     const fold = document.querySelector("#statics > details");
     found.before = fold.open;
     document.querySelector('nav a[href="#statics"]').click();
-    setTimeout(() => {
-      found.after = fold.open;
-      found.nav = document.querySelector("nav").getBoundingClientRect().top;
-    }, 200);
+    await later();
+    found.after = fold.open;
+    found.nav = document.querySelector("nav").getBoundingClientRect().top;
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert (found["before"], found["after"], found["nav"]) == (False, True, 0)
 
 
-def test_a_table_is_filtered_by_case_and_status(tmp_path, page):
+def test_a_table_is_filtered_by_case_and_status(page):
     act = """
     const [kind, status] = document.querySelectorAll("#peaks .filter select");
     const rows = () => [...document.querySelectorAll("#peaks tbody tr")].filter((row) => !row.hidden).length;
@@ -224,7 +223,7 @@ def test_a_table_is_filtered_by_case_and_status(tmp_path, page):
     kind.value = "2"; kind.dispatchEvent(new Event("input", { bubbles: true })); found.of_case = rows();
     status.value = "overturned"; status.dispatchEvent(new Event("input", { bubbles: true })); found.of_both = rows();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert (found["all"], found["of_case"], found["of_both"]) == (30, 6, 1)
 
 
@@ -237,11 +236,11 @@ def test_a_scorecard_of_many_cases_is_unfolded_on_request(tmp_path):
     document.querySelector("#answer .legend.rest button").click();
     found.all = rows();
     """
-    found = browse(tmp_path, write_report(tmp_path, []), act)
+    found = browse(write_report(tmp_path, []), act)
     assert (found["first"], found["all"]) == (6, 35)
 
 
-def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(tmp_path, page):
+def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(page):
     act = """
     const svg = document.querySelector("svg.readings");
     const panel = svg.querySelector("svg:last-of-type"), axes = panel.querySelector("g.axes");
@@ -255,7 +254,7 @@ def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(
     document.body.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, pointerType: "touch" }));
     found.none = tip();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     lines = dict(line.split(" = ") for line in found["read"].split("\n"))
     assert list(lines) == ["t", "θ/α 1", "θ/α 2", "θ̇/(αp) 1", "θ̇/(αp) 2", "üg/g"]
     assert float(lines["t"].removesuffix(" s")) == pytest.approx(0.375, abs=0.01)
@@ -265,14 +264,14 @@ def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(
     assert found["none"] is None
 
 
-def test_loops_give_force_and_deflection_to_the_pointer_and_to_the_arrow_keys(tmp_path, page):
+def test_loops_give_force_and_deflection_to_the_pointer_and_to_the_arrow_keys(page):
     act = """
     const svg = document.querySelector("svg.readings:has(g.axes[data-kind=plane])");
     at(svg.querySelector("g.axes"), 0.5, 0.5); found.pointed = tip();
     press(svg, "ArrowRight"); found.first = tip();
     press(svg, "ArrowRight"); found.second = tip();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert all(
         re.fullmatch(r"v/δy = -?\d+\.\d+\nF/Fy = -?\d\.\d+", found[name]) for name in ("pointed", "first", "second")
     )
@@ -304,7 +303,7 @@ def test_one_motion_is_shown_at_a_time_and_a_record_is_whole_on_request(tmp_path
     box.click();
     found.whole = last();
     """
-    found = browse(tmp_path, page, act)
+    found = browse(page, act)
     assert len(found["options"]) == 2
     assert (found["before"], found["after"]) == (1, 1)
     begins = [float(found[name][0].split()[2]) for name in ("cut", "whole")]
@@ -324,14 +323,13 @@ def test_a_comparison_works_in_the_browser_too(tmp_path):
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
         write_results(tmp_path / name)
-    found = browse(tmp_path, write_comparison(tmp_path / "a", tmp_path / "b"))
+    found = browse(write_comparison(tmp_path / "a", tmp_path / "b"))
     assert found == {"wrong": [], "requests": [], "wide": True}
 
 
-def test_it_prints(tmp_path, page):
-    chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
-    printed = (tmp_path / "report.pdf").read_bytes()
-    boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
+def test_it_prints(page):
+    boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed(page))
+    assert boxes
     assert {float(width) > float(height) for width, height in boxes} == {False}  # wide tables go on below
 
 
@@ -343,6 +341,5 @@ def test_on_paper_stands_the_motion_that_is_shown_and_every_one_if_all_is_asked_
     sheets = []
     for words in ('<html lang="en">', '<html lang="en" class="whole">'):
         page.write_text(page.read_text(encoding="utf-8").replace('<html lang="en">', words), encoding="utf-8")
-        chromium(tmp_path, f"--print-to-pdf={tmp_path / 'report.pdf'}", "--no-pdf-header-footer", page.as_uri())
-        sheets.append(len(re.findall(rb"/MediaBox", (tmp_path / "report.pdf").read_bytes())))
+        sheets.append(printed(page).count(b"/MediaBox"))
     assert sheets[1] >= sheets[0] + 1

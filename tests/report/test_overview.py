@@ -19,11 +19,30 @@ BETAS, ETAS = range(20, 120, 10), (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 
 GRID = [(float(beta), eta) for beta in BETAS for eta in ETAS]
 
 
-def hundred(directory, records=FIG7, **changes):
-    """Write a report of a hundred cases."""
+FAILING = [verdict(f"c{i}", "fail", ratio=1.1 + i / 10, check="drift") for i in range(40)]
+
+
+@pytest.fixture(scope="module")
+def hundred(tmp_path_factory):
+    """Write a report of a hundred cases, which all fail under one record and overturn under another."""
+    folder = tmp_path_factory.mktemp("hundred")
     cases = [case_entry("pads", {"beta": b, "eta": e}, PIER, YieldingBase(beta=b, eta=e)) for b, e in GRID]
-    write_results(directory, records=records, cases=cases, varied=("beta", "eta"), **changes)
-    return write_report(directory, [])
+    changes = {("ERZ-NS", "pads"): {"status": "failed", "theta_max_over_alpha": "", "reason": "not settled: of many"},
+               ("RRS228", "pads"): {"status": "overturned"}}  # fmt: skip
+    write_results(folder, cases=cases, varied=("beta", "eta"), changes=changes)
+    write_verdicts(folder, FAILING)
+    return write_report(folder, [])
+
+
+@pytest.fixture(scope="module")
+def hundreds(tmp_path_factory):
+    """Write a report of three hundred records."""
+    folder = tmp_path_factory.mktemp("hundreds")
+    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(300)]
+    worst = {("R7", "rigid"): {"status": "overturned"}, ("R9", "2"): {"theta_max_over_alpha": 0.9}}
+    write_results(folder, records=records, changes=worst)
+    write_verdicts(folder, FAILING)
+    return write_report(folder, [])
 
 
 def rows(text, section):
@@ -37,9 +56,9 @@ def rows(text, section):
 
 
 def test_a_hundred_cases_have_a_row_for_each_record_on_the_first_screen_and_the_best_in_a_picture_of_their_own(
-    tmp_path,
+    hundred,
 ):
-    text = hundred(tmp_path).read_text(encoding="utf-8")
+    text = hundred.read_text(encoding="utf-8")
     assert sorted(rows(text, "answer")) == sorted(name for name, _ in FIG7)
     best = rows(text, "figure")
     assert len(best) == 14
@@ -47,20 +66,16 @@ def test_a_hundred_cases_have_a_row_for_each_record_on_the_first_screen_and_the_
     assert "All 100 foundations, in the order of the study" in text
 
 
-def test_of_hundreds_of_records_the_worst_have_a_row_and_the_others_share_one(tmp_path):
-    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(300)]
-    worst = {("R7", "rigid"): {"status": "overturned"}, ("R9", "2"): {"theta_max_over_alpha": 0.9}}
-    write_results(tmp_path, records=records, changes=worst)
-    path = write_report(tmp_path, [])
-    text = path.read_text(encoding="utf-8")
+def test_of_hundreds_of_records_the_worst_have_a_row_and_the_others_share_one(hundreds):
+    text = hundreds.read_text(encoding="utf-8")
     shown = rows(text, "answer")
     assert shown[:2] == ["R7", "R9"]
     assert shown[13] == "the other 287 records"
     assert len(shown) == 14 + 287  # on request
-    assert path.stat().st_size < 3e6
+    assert hundreds.stat().st_size < 3e6
 
 
-def test_runs_without_a_peak_are_named_by_foundation_or_counted(tmp_path):
+def test_runs_without_a_peak_are_named_by_foundation_or_counted(tmp_path, hundred):
     changes = {("RRS228", "2"): {"status": "overturned"}, ("RRS228", "rigid"): {"status": "overturned"},
                ("RRS228", "3"): {"status": "failed", "theta_max_over_alpha": ""}}  # fmt: skip
     write_results(tmp_path, changes=changes)
@@ -68,11 +83,7 @@ def test_runs_without_a_peak_are_named_by_foundation_or_counted(tmp_path):
     ends = [Page(end).text for end in re.findall(r'<span class="ends">(.*?)</span></span>', few, re.DOTALL)]
     assert ends[0].replace("?", "") == "rigid, 23"
     assert few.index("RRS228") < few.index("ERZ-NS")
-    (tmp_path / "many").mkdir()
-    many = hundred(tmp_path / "many", changes={("RRS228", "pads"): {"status": "overturned"}}).read_text(
-        encoding="utf-8"
-    )
-    assert "100 × overturned" in many
+    assert "100 × overturned" in hundred.read_text(encoding="utf-8")
 
 
 def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_path):
@@ -84,31 +95,23 @@ def test_of_many_cases_that_fail_the_checks_and_the_nearest_case_are_named(tmp_p
     assert "✗ All 40 cases fail. Nearest to passing: c0, drift at 110 % of its limit." in text
 
 
-def test_long_tables_are_folded_and_short_ones_stand_open(tmp_path):
-    text = hundred(tmp_path).read_text(encoding="utf-8")
+def test_long_tables_are_folded_and_short_ones_stand_open(hundred):
+    text = hundred.read_text(encoding="utf-8")
     assert re.search(r"<details><summary>Every run: 600 rows</summary><div [^>]*><table", text)
     assert re.search(r"<details><summary>Foundations: 100 rows</summary>", text)
     assert not re.search(r"<summary>Ground motions", text)
 
 
 @needs_chromium
-@pytest.mark.parametrize("many", ["cases", "records"])
-def test_the_whole_answer_is_on_the_first_screen(tmp_path, many):
-    records = [(f"EVENT-{i}", 0.1 + 0.001 * i) for i in range(200)] if many == "records" else FIG7
-    changes = {(records[0][0], "pads"): {"status": "failed", "theta_max_over_alpha": "", "reason": "not settled: of many"},
-               (records[1][0], "pads"): {"status": "overturned"}}  # fmt: skip
-    if many == "cases":
-        hundred(tmp_path, changes=changes)
-    else:
-        write_results(tmp_path, records=records)
-    write_verdicts(tmp_path, [verdict(f"c{i}", "fail", ratio=1.1 + i / 10, check="drift") for i in range(40)])
-    page = write_report(tmp_path, [])
+@pytest.mark.parametrize("many", ["hundred", "hundreds"])
+def test_the_whole_answer_is_on_the_first_screen(many, request):
+    page = request.getfixturevalue(many)
     act = """
     found.answer = document.querySelector("#answer .lead").getBoundingClientRect().bottom;
     found.card = document.querySelector("#answer .card").getBoundingClientRect().bottom;
     found.figure = document.querySelector("#answer .dots .row svg").getBoundingClientRect().bottom;
     """
-    found = browse(tmp_path, page, act, size=(1400, 900))
+    found = browse(page, act, size=(1400, 900))
     assert 0 < found["answer"] < found["card"] < found["figure"] < 900
 
 
@@ -178,7 +181,7 @@ def test_the_legend_stands_above_the_fold(tmp_path):
     ]
     write_verdicts(tmp_path, [*failing, verdict("4", "not decided", note="2 stations count; the check asks for 3")])
     act = 'found.legend = document.querySelector("#answer ul.key").getBoundingClientRect().bottom;'
-    assert 0 < browse(tmp_path, write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
+    assert 0 < browse(write_report(tmp_path, []), act, size=(1280, 800))["legend"] < 800
 
 
 def test_the_picture_is_not_parted_from_its_axis_or_legend_on_paper():

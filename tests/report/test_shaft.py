@@ -1,5 +1,7 @@
 """The section on forces over the height of the shaft: its table, its picture, and what a reader must not overlook."""
 
+import shutil
+
 import numpy as np
 import pytest
 from report_page import Page
@@ -23,8 +25,12 @@ def run(folder, pier=PIER):
     return folder / "out"
 
 
-def test_the_envelopes_of_every_case_are_in_the_table_and_drawn(tmp_path):
-    out = run(tmp_path)
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("shaft"))
+
+
+def test_the_envelopes_of_every_case_are_in_the_table_and_drawn(out):
     finished, sections = read(out, ()), rb.open_results(out).sections
     page = Page(shaft.section(finished))
     rows = sections[(sections["case"] == "pads") & (sections["height_m"] == 7.0)]
@@ -56,11 +62,10 @@ def test_a_pier_without_a_mass_has_forces_over_it(tmp_path):
     assert "moment/M [m²/s²]" in text
 
 
-def test_a_table_that_was_damaged_is_an_error_in_words(tmp_path):
-    out = run(tmp_path)
-    table = out / SECTIONS
+def test_a_table_that_was_damaged_is_an_error_in_words(out, tmp_path):
+    table = shutil.copytree(out, tmp_path / "out") / SECTIONS
     table.write_text(table.read_text(encoding="utf-8").replace("section_shear_kN", "shear"), encoding="utf-8")
     with pytest.raises(
         InputError, match=r"sections.csv: column section_shear_kN is missing; .*start `rockbatch run` again"
     ):
-        rb.report(out)
+        rb.report(tmp_path / "out")

@@ -1,5 +1,7 @@
 """The section on sequences: what each shock does, and what a reader must not overlook."""
 
+import shutil
+
 import pytest
 from report_page import Page
 from studies import PADS, RIGID, SINE, study_text, write_study
@@ -24,8 +26,12 @@ def page_of(out):
     return Page(shocks.section(read(out, ())))
 
 
-def test_every_shock_has_a_row_and_pauses_that_are_too_short_are_marked(tmp_path):
-    out = run(tmp_path, ["one-sine", "one-sine"], 0.5)
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("shocks"), ["one-sine", "one-sine"], 0.5)
+
+
+def test_every_shock_has_a_row_and_pauses_that_are_too_short_are_marked(out):
     page = page_of(out)
     assert "In 4 of 4 pauses the pier still moves at the end" in page.text
     assert "write a longer pause_s" in page.text
@@ -44,9 +50,8 @@ def test_a_pier_at_rest_and_one_that_falls_are_said(tmp_path):
     assert "not reached" in text
 
 
-def test_a_table_that_was_damaged_is_an_error_in_words(tmp_path):
-    out = run(tmp_path, ["one-sine", "one-sine"], 5.0, [RIGID])
-    table = out / SHOCKS
+def test_a_table_that_was_damaged_is_an_error_in_words(out, tmp_path):
+    table = shutil.copytree(out, tmp_path / "out") / SHOCKS
     table.write_text(table.read_text(encoding="utf-8").replace("shock_status", "state"), encoding="utf-8")
     with pytest.raises(InputError, match=r"shocks.csv: column shock_status is missing; .*start `rockbatch run` again"):
-        rb.report(out)
+        rb.report(tmp_path / "out")

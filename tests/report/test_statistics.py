@@ -10,7 +10,13 @@ from report_samples import FIG7, write_results
 
 from rockbatch.quantities.statistics import quantile
 from rockbatch.reporting import write_report
+from rockbatch.reporting.finished import read
+from rockbatch.reporting.sections import statistics
 from rockbatch.results.suite_statistics import records, suite, suites
+
+
+def page_of(folder):
+    return Page(statistics.section(read(folder, ())))
 
 
 def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
@@ -82,9 +88,9 @@ def test_the_table_counts_as_the_checks_do(tmp_path, count, n, largest):
         for case in "1234":
             changes[record, case] = {"station": station}
     write_results(tmp_path, changes=changes, count=count)
-    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
-    head = page.tables["suite"][0]
-    row = dict(zip(head, next(row for row in page.tables["suite"] if row[0] == "rigid"), strict=True))
+    page = page_of(tmp_path)
+    head = page.tables[""][0]
+    row = dict(zip(head, next(row for row in page.tables[""] if row[0] == "rigid"), strict=True))
     assert row["n"] == n
     assert float(row["mean"]) == pytest.approx({"worse": 0.4, "every": 0.35}[largest])  # of 0.2, 0.4, 0.6; of 0.1 … 0.6
     assert "A record is a" in page.text
@@ -93,8 +99,8 @@ def test_the_table_counts_as_the_checks_do(tmp_path, count, n, largest):
 def test_the_table_says_how_many_stood_and_which_percentiles_fall_on_overturned_runs(tmp_path):
     changes = {(record, "2"): {"status": "overturned"} for record, _ in FIG7[:2]}
     write_results(tmp_path, changes=changes)
-    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
-    rows = page.tables["suite"]
+    page = page_of(tmp_path)
+    rows = page.tables[""]
     head = rows[0]
     row = dict(zip(head, next(row for row in rows if row[0].startswith("2:")), strict=True))
     assert (row["n"], row["84 %"], row["maximum"], row["overturned"]) == ("6", "∞", "∞", "2")
@@ -105,12 +111,12 @@ def test_the_table_says_how_many_stood_and_which_percentiles_fall_on_overturned_
 
 def test_settlements_are_in_millimetres_and_the_rigid_base_has_none(tmp_path):
     write_results(tmp_path)
-    page = Page(write_report(tmp_path, []).read_text(encoding="utf-8"))
+    page = page_of(tmp_path)
     with (tmp_path / "peaks.csv").open(encoding="utf-8", newline="") as file:
         settled = [float(row["settlement_m"]) for row in csv.DictReader(file) if row["case"] == "3"]
-    rows = [row for row in page.tables["suite"] if row[0].startswith("3:")]
+    rows = [row for row in page.tables[""] if row[0].startswith("3:")]
     assert float(rows[-1][2]) == pytest.approx(1000 * np.mean(settled), abs=0.005)
-    assert sum(row[0] == "rigid" for row in page.tables["suite"]) == 1
+    assert sum(row[0] == "rigid" for row in page.tables[""]) == 1
 
 
 def test_with_and_without_vertical_stand_side_by_side_where_both_were_run(tmp_path):

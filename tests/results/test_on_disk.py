@@ -11,6 +11,7 @@ import pandas as pd
 import pint
 import pytest
 from altered_histories import altered
+from report_samples import write_results
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -346,7 +347,7 @@ def test_a_failed_run_is_never_the_worst_and_a_case_that_only_failed_has_none():
 
 def test_worst_is_what_a_study_keeps_that_does_not_say(tmp_path):
     text = STUDY.replace('histories = "all"\n', "").replace("ledger = true\n", "")
-    text = text.replace("[motions]\n", "[motions]\nscale = 0.9\n")
+    text = text.replace('[motions]\npolarity = ["+", "-"]\n', "[motions]\nscale = 0.9\n")
     saved, study, runs = carried_out(tmp_path, text)
     keep_histories(saved, study, runs)
     results = rb.open_results(tmp_path)
@@ -380,9 +381,7 @@ def test_the_worst_runs_go_first_where_not_all_fit(tmp_path):
 TIED = RIGID | {"damper": [{"kind": "friction", "f": 0.05}], "tendon": {"psi": 0.1, "lambda": 0.5}}
 
 
-@pytest.mark.parametrize(
-    "text", [STUDY, study_text(cases=[TIED], output={"histories": "all"})], ids=["springs", "tied"]
-)
+@pytest.mark.parametrize("text", [FEW, study_text(cases=[TIED], output={"histories": "all"})], ids=["springs", "tied"])
 def test_the_size_of_histories_is_announced_beforehand(tmp_path, text):
     """Of dampers and tendons the loops, too."""
     saved, study, runs = carried_out(tmp_path, text)
@@ -586,10 +585,10 @@ def loaded(code):
 
 
 def test_a_study_that_asks_for_no_histories_never_loads_hdf5(tmp_path):
-    carried_out(tmp_path, FEW.replace('histories = "all"', 'histories = "none"'))
+    write_results(tmp_path)
+    write_study(tmp_path, study_text(cases=(RIGID,), output={"histories": "none"}))
     run = f"""
 import rockbatch as rb
-from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories
 study = rb.load_study({str(tmp_path / "study.toml")!r})
 rb.run(study)
