@@ -54,11 +54,14 @@ def test_every_error_leaves_a_program_and_another_one():
         assert ast.dump(ast.parse(changed)) != ast.dump(ast.parse(source))
 
 
-@pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
-def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, survived):
+@pytest.mark.parametrize(
+    ("limit", "test", "noticed"),
+    [("3", "", ""), ("2", "def test_limit()", ""), ("2", "@pytest.mark.slow\ndef test_limit()", " (slow)")],
+)
+def test_an_error_survives_fast_and_slow_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, test, noticed):
     import run
     from places import mutants
-    from run import Place, noticed_by
+    from run import FAST, SLOW, Place, noticed_by
 
     source = f"def small(x):\n    return x < {limit}\n"
     (tmp_path / PRODUCT).mkdir()
@@ -67,12 +70,12 @@ def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limi
     (tmp_path / "test_few.py").write_text(
         "from few import small\ndef test_small(): assert small(1) and not small(9)\ndef test_unsound(): assert False\n"
     )
-    if not survived:
-        (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
+    if test:
+        (tmp_path / "test_limit.py").write_text(f"import pytest\nfrom few import small\n{test}: assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
     place = Place(f"{PRODUCT}/few.py", mutant)
-    monkeypatch.setattr(run, "tests_of", lambda place: [["test_few.py"], ["."]])
-    assert noticed_by(place, tmp_path, set()) == ("" if survived else "test_limit.py::test_limit")
+    monkeypatch.setattr(run, "tests_of", lambda place: [(FAST, ["test_few.py"]), (FAST, ["."]), (SLOW, ["."])])
+    assert noticed_by(place, tmp_path, set()) == (f"test_limit.py::test_limit{noticed}" if test else "")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source
 
 

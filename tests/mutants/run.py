@@ -4,9 +4,9 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
 Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
-module defines, then all fast tests of its package; those of other packages may notice more. It is noticed where a test fails that
-passes without it, or computes far longer. What is finished is kept in build/mutants and not done again. An error that changes no
-answer is listed, with the reason, in equivalent.toml.
+module defines, then all fast tests of its package, then the slow tests of the nearest files; those of other packages may notice more.
+It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants and not done
+again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
 
 import argparse
@@ -56,7 +56,10 @@ TESTS = {
 }
 """Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
-PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-m", "not slow", "-p", "no:cacheprovider"
+PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-p", "no:cacheprovider"
+FAST, SLOW = "not slow", "slow and not thorough"
+BY_SLOW = " (slow)"
+"""What ends the name of a slow test where no fast one noticed the error."""
 
 
 class Place(NamedTuple):
@@ -105,8 +108,11 @@ def copied(number: int) -> Path:
     return copy
 
 
-def tests_of(place: Place) -> list[list[str]]:
-    """Return test files: those first that name most of what the module of the error defines, then the others of its package."""
+def tests_of(place: Place) -> list[tuple[str, list[str]]]:
+    """Return test files, each time with the mark of the tests in them that run.
+
+    First are the fast tests of files that name most of what the module of the error defines, then those of the others of its package.
+    """
     folders = TESTS.get(place.package, (place.package,))
     path, order = TOP / place.file, dict[Path, int]()
     for i, name in enumerate(folders):
@@ -121,7 +127,8 @@ def tests_of(place: Place) -> list[list[str]]:
         return order[test], -len(names & words) - 3 * shared, str(test)
 
     tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
-    return [chosen for chosen in (tests[:NEAREST], tests[NEAREST:]) if chosen]
+    stages = (FAST, tests[:NEAREST]), (FAST, tests[NEAREST:]), (SLOW, tests[:NEAREST])
+    return [(mark, chosen) for mark, chosen in stages if chosen]
 
 
 def _defined(path: Path) -> Iterator[str]:
@@ -138,16 +145,16 @@ def noticed_by(place: Place, copy: Path, sound: set[str]) -> str:
 
     ``sound`` are tests that are known to pass without an error; this adds to them.
     """
-    for tests in tests_of(place):
+    for mark, tests in tests_of(place):
         unsound: list[str] = []
         while True:
             with _error_in(copy, place):
-                failed = _failure([*tests, *(f"--deselect={test}" for test in unsound)], copy)
+                failed = _failure(mark, [*tests, *(f"--deselect={test}" for test in unsound)], copy)
             if not failed or failed in unsound:
                 break
-            if failed in sound or failed.endswith(TOO_SLOW) or not _failure([failed], copy):
+            if failed in sound or failed.endswith(TOO_SLOW) or not _failure(mark, [failed], copy):
                 sound.add(failed)
-                return failed
+                return failed + BY_SLOW * (mark == SLOW)
             unsound.append(failed)
     return ""
 
@@ -167,12 +174,12 @@ def _error_in(copy: Path, place: Place) -> Iterator[None]:
                 shutil.rmtree(wrong)
 
 
-def _failure(chosen: list[str], copy: Path) -> str:
-    """Return the test, of those ``chosen``, that fails in a copy of the project; "" if none does."""
+def _failure(mark: str, chosen: list[str], copy: Path) -> str:
+    """Return the test, of those ``chosen`` that have a mark, that fails in a copy of the project; "" if none does."""
     limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(limit := LONGEST * len(chosen))]
     with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
         process = subprocess.Popen(
-            [*limited, sys.executable, "-m", "pytest", *PYTEST, *chosen], cwd=copy, stdout=output, stderr=output,
+            [*limited, sys.executable, "-m", "pytest", *PYTEST, "-m", mark, *chosen], cwd=copy, stdout=output, stderr=output,
             env=os.environ | {"PYTHONPATH": str(copy)}, start_new_session=True,
         )  # fmt: skip
         try:
@@ -203,7 +210,7 @@ def judged(places: list[Place], copies: list[Path]) -> Iterator[tuple[Place, str
         for entry in entries
         if entry["noticed_by"] or entry["tests"] == tests
     }
-    sound = set(filter(None, known.values()))
+    sound = {name.removesuffix(BY_SLOW) for name in known.values() if name}
     free: Queue[Path] = Queue()
     for copy in copies:
         free.put(copy)
@@ -241,15 +248,15 @@ def main() -> int:
     copies = [copied(number) for number in range(chosen.jobs)]
     for place, found in judged(places, copies):
         kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
-        if not found or found.endswith(TOO_SLOW):
+        if not found or found.endswith((TOO_SLOW, BY_SLOW)):
             print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
         for package in (place.package, "all"):
-            counts.setdefault(package, Counter())[kind] += 1
-    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate")
+            counts.setdefault(package, Counter()).update([kind, BY_SLOW] if found.endswith(BY_SLOW) else [kind])
+    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'only by slow':>13} {'equivalent':>11} {'survived':>9}  rate")
     for package, count in sorted(counts.items(), key=lambda item: (item[0] == "all", item[0])):
         matter = count["noticed"] + count["survived"]
         rate = f"{count['noticed'] / matter:.0%}" if matter else ""
-        print(f"{package:20} {count['noticed']:8} {count['equivalent']:11} {count['survived']:9}  {rate}")
+        print(f"{package:20} {count['noticed']:8} {count[BY_SLOW]:13} {count['equivalent']:11} {count['survived']:9}  {rate}")
     return 0
 
 
