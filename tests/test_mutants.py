@@ -19,7 +19,7 @@ def importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
-def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording():
+def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording_nor_rounding():
     from places import mutants
 
     source = (
@@ -27,6 +27,7 @@ def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wordin
         '    """1 < 2"""\n'
         "    if x <= 0.5 and not g(x, y):\n"
         '        raise ValueError(f"{x + 1} < 2")\n'
+        "    sum(zip(x, strict=True), 1e-9)\n"
         "    return max(x, y) - 3\n"
     )
     assert [str(mutant) for mutant in mutants(source)] == [

@@ -4,9 +4,9 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
 Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
-module defines, then all fast tests of its package, then the slow tests of the nearest files; those of other packages may notice more.
-It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants and not done
-again. An error that changes no answer is listed, with the reason, in equivalent.toml.
+module defines, then all fast tests of its package, then the slow tests of the nearest files; those of other packages may notice
+more. It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants
+and not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
 
 import argparse
@@ -56,7 +56,7 @@ TESTS = {
 }
 """Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
-PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-p", "no:cacheprovider"
+PYTEST = "-q", "-x", "--tb=no", "-p", "no:cacheprovider"
 FAST, SLOW = "not slow", "slow and not thorough"
 BY_SLOW = " (slow)"
 """What ends the name of a slow test where no fast one noticed the error."""
@@ -111,7 +111,7 @@ def copied(number: int) -> Path:
 def tests_of(place: Place) -> list[tuple[str, list[str]]]:
     """Return test files, each time with the mark of the tests in them that run.
 
-    First are the fast tests of files that name most of what the module of the error defines, then those of the others of its package.
+    First are fast tests of the files that name most of what the module of the error defines, then those of its package's others.
     """
     folders = TESTS.get(place.package, (place.package,))
     path, order = TOP / place.file, dict[Path, int]()
@@ -180,7 +180,7 @@ def _failure(mark: str, chosen: list[str], copy: Path) -> str:
     with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
         process = subprocess.Popen(
             [*limited, sys.executable, "-m", "pytest", *PYTEST, "-m", mark, *chosen], cwd=copy, stdout=output, stderr=output,
-            env=os.environ | {"PYTHONPATH": str(copy)}, start_new_session=True,
+            env=os.environ | {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}, start_new_session=True,
         )  # fmt: skip
         try:
             code = process.wait(10 * limit)
@@ -242,6 +242,8 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     chosen = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
+    # To compile the libraries and pytest's plugins takes longer than most tests
+    os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(BUILD / "bytecode")}
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
     places = drawn(chosen.seed, chosen.count, chosen.only)
@@ -252,11 +254,15 @@ def main() -> int:
             print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
         for package in (place.package, "all"):
             counts.setdefault(package, Counter()).update([kind, BY_SLOW] if found.endswith(BY_SLOW) else [kind])
-    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'only by slow':>13} {'equivalent':>11} {'survived':>9}  rate")
+    print(
+        f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'only by slow':>13} {'equivalent':>11} {'survived':>9}  rate"
+    )
     for package, count in sorted(counts.items(), key=lambda item: (item[0] == "all", item[0])):
         matter = count["noticed"] + count["survived"]
         rate = f"{count['noticed'] / matter:.0%}" if matter else ""
-        print(f"{package:20} {count['noticed']:8} {count[BY_SLOW]:13} {count['equivalent']:11} {count['survived']:9}  {rate}")
+        print(
+            f"{package:20} {count['noticed']:8} {count[BY_SLOW]:13} {count['equivalent']:11} {count['survived']:9}  {rate}"
+        )
     return 0
 
 
