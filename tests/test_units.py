@@ -42,13 +42,14 @@ OF_NAMES = {
 }  # fmt: skip
 """Ends of names of keys, by the unit in which they are counted."""
 SPELT = {
-    "mg": "Mg", "tonnes": "metric_ton", "t": "metric_ton", "kn": "kN", "n": "N", "mn": "MN", 
-    "tf": "metric_ton * standard_gravity", "kip": "kip", "kips": "kip", "kn_m": "kN/m", "n_m": "N/m", "mn_m": "MN/m", "n_mm": "N/mm", "kn_mm": "kN/mm",
-    "kip_in": "kip/inch", "kip_ft": "kip/ft", "tf_m": "metric_ton * standard_gravity/m", "kn_s_m": "kN s/m", "kns_m": "kN s/m", "n_s_m": "N s/m",
-    "ns_m": "N s/m", "mn_s_m": "MN s/m", "mns_m": "MN s/m", "m_s": "m/s", "cm_s": "cm/s", "mm_s": "mm/s", "rad_s": "rad/s",
-    "g": "standard_gravity", "m_s2": "m/s^2", "cm_s2": "cm/s^2", "gal": "cm/s^2", "t_m2": "metric_ton m^2", "m2": "m^2",
-    "mm2": "mm^2", "cm2": "cm^2", "percent": "0.01", "pct": "0.01", "mpa": "MPa", "kpa": "kPa", "gpa": "GPa", "hz": "Hz",
-    "knm": "kN m", "kj": "kJ", "lbf": "lbf", "in": "inch", "sec": "s", "degrees": "deg",
+    "mg": "Mg", "tonnes": "metric_ton", "t": "metric_ton", "kn": "kN", "n": "N", "mn": "MN",
+    "tf": "metric_ton * standard_gravity", "kip": "kip", "kips": "kip", "kn_m": "kN/m", "n_m": "N/m", "mn_m": "MN/m",
+    "n_mm": "N/mm", "kn_mm": "kN/mm", "kip_in": "kip/inch", "kip_ft": "kip/ft", "tf_m": "metric_ton * standard_gravity/m",
+    "kn_s_m": "kN s/m", "kns_m": "kN s/m", "n_s_m": "N s/m", "ns_m": "N s/m", "mn_s_m": "MN s/m", "mns_m": "MN s/m",
+    "m_s": "m/s", "cm_s": "cm/s", "mm_s": "mm/s", "rad_s": "rad/s", "g": "standard_gravity", "m_s2": "m/s^2",
+    "cm_s2": "cm/s^2", "gal": "cm/s^2", "t_m2": "metric_ton m^2", "m2": "m^2", "mm2": "mm^2", "cm2": "cm^2",
+    "percent": "0.01", "pct": "0.01", "mpa": "MPa", "kpa": "kPa", "gpa": "GPa", "hz": "Hz", "knm": "kN m", "kj": "kJ",
+    "lbf": "lbf", "in": "inch", "sec": "s", "degrees": "deg",
 }  # fmt: skip
 
 
