@@ -4,7 +4,7 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
 Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
-module defines, then all fast tests of its package, then the slow tests of the nearest files; those of other packages may notice
+module defines, then those of the next dozen files about its package, then the slow tests of the nearest files; others may notice
 more. It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants
 and not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
@@ -41,8 +41,8 @@ LONGEST = 200
 """Seconds of computing for each file of tests, its kernels included, after which they count as failed."""
 TOO_SLOW = "no end"
 """What ends a name of tests that took longer, or were killed."""
-NEAREST = 6
-"""Test files that meet an error first."""
+NEAREST, MOST = 6, 18
+"""Test files that meet an error first, and at all."""
 TESTS = {
     "core": ("core", "simulation", "verification"),
     "simulation": ("simulation", "batch", "core", "verification"),
@@ -50,9 +50,22 @@ TESTS = {
     "motions/formats": ("motions",),
     "reporting": ("report", "docs"),
     "quantities": ("results", "checks", "analyses/test_quantities.py", "report"),
-    "toml": ("test_toml.py", "study"),
+    "results": ("results", "report", "batch"),
+    "checks": ("checks", "results", "report"),
+    "toml": ("test_toml.py", "test_units.py", "study"),
+    "rockbatch": ("test_python_doors.py", "test_python_pieces.py", "test_doors.py"),
     "commands": ("test_cli.py", "test_arguments.py", "test_doors.py", "test_outputs.py", "test_hostile_calls.py"),
-    "common": ("test_f*.py", "test_outputs.py", "test_interrupts.py", "test_pier_figures.py", "results", "batch"),
+    "common": (
+        *(
+            "test_f*.py",
+            "test_units.py",
+            "test_arguments.py",
+            "test_notebooks.py",
+            "test_outputs.py",
+            "test_interrupts.py",
+        ),
+        *("test_pier_figures.py", "results", "report", "batch"),
+    ),
 }
 """Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
@@ -111,7 +124,7 @@ def copied(number: int) -> Path:
 def tests_of(place: Place) -> list[tuple[str, list[str]]]:
     """Return test files, each time with the mark of the tests in them that run.
 
-    First are fast tests of the files that name most of what the module of the error defines, then those of its package's others.
+    First are fast tests of the files that name most of what the module of the error defines, then those of further ones.
     """
     folders = TESTS.get(place.package, (place.package,))
     path, order = TOP / place.file, dict[Path, int]()
@@ -121,13 +134,13 @@ def tests_of(place: Place) -> list[tuple[str, list[str]]]:
                 order.setdefault(test, i)
     names = {path.stem} | {name for name in _defined(path) if not name.startswith("_")}
 
-    def nearness(test: Path) -> tuple[int, int, str]:
+    def nearness(test: Path) -> tuple[int, str]:
         words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
-        shared = len({*path.parts} & {*test.parts}) + (path.stem in test.stem)  # of folders, and the name itself
-        return order[test], -len(names & words) - 3 * shared, str(test)
+        shared = len({*path.parts} & {*test.parts}) + 2 * (path.stem in test.stem)  # of folders, and the name itself
+        return 2 * order[test] - len(names & words) - 3 * shared, str(test)
 
     tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
-    stages = (FAST, tests[:NEAREST]), (FAST, tests[NEAREST:]), (SLOW, tests[:NEAREST])
+    stages = (FAST, tests[:NEAREST]), (FAST, tests[NEAREST:MOST]), (SLOW, tests[:NEAREST])
     return [(mark, chosen) for mark, chosen in stages if chosen]
 
 
