@@ -25,7 +25,7 @@ def cubics(number, seed=1):
     """Random cubics of a step of 1, and each with what a step ``h`` has at its ends: values, and slopes."""
     rng = np.random.default_rng(seed)
     for _ in range(number):
-        f = Polynomial.fromroots(rng.uniform(-0.5, 1.5, 3)) * rng.choice([-1.0, 1.0]) + rng.choice([0.0, 0.05])
+        f = Polynomial.fromroots(rng.uniform(-0.5, 1.5, 3)) * rng.choice([-2.3, 0.7]) + rng.choice([0.0, 0.05])
         h, slope = rng.choice(STEPS), f.deriv()
         yield f, h, (f(0.0), slope(0.0) / h, f(1.0), slope(1.0) / h, h)
 
