@@ -21,7 +21,7 @@ def importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
-def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording():
+def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording_nor_rounding():
     from places import mutants
 
     source = (
@@ -29,6 +29,7 @@ def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wordin
         '    """1 < 2"""\n'
         "    if x <= 0.5 and not g(x, y):\n"
         '        raise ValueError(f"{x + 1} < 2")\n'
+        "    sum(zip(x, strict=True), 1e-9)\n"
         "    return max(x, y) - 3\n"
     )
     assert [str(mutant) for mutant in mutants(source)] == [
@@ -57,11 +58,14 @@ def test_every_error_leaves_a_program_and_another_one():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("limit", "survived"), [("3", True), ("2", False)])
-def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, survived):
+@pytest.mark.parametrize(
+    ("limit", "test", "noticed"),
+    [("3", "", ""), ("2", "def test_limit()", ""), ("2", "@pytest.mark.slow\ndef test_limit()", " (slow)")],
+)
+def test_an_error_survives_fast_and_slow_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, test, noticed):
     import run
     from places import mutants
-    from run import Place, noticed_by
+    from run import FAST, SLOW, Place, noticed_by
 
     source = f"def small(x):\n    return x < {limit}\n"
     (tmp_path / PRODUCT).mkdir()
@@ -70,12 +74,12 @@ def test_an_error_survives_tests_that_do_not_meet_it(tmp_path, monkeypatch, limi
     (tmp_path / "test_few.py").write_text(
         "from few import small\ndef test_small(): assert small(1) and not small(9)\ndef test_unsound(): assert False\n"
     )
-    if not survived:
-        (tmp_path / "test_limit.py").write_text("from few import small\ndef test_limit(): assert not small(2)\n")
+    if test:
+        (tmp_path / "test_limit.py").write_text(f"import pytest\nfrom few import small\n{test}: assert not small(2)\n")
     (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
     place = Place(f"{PRODUCT}/few.py", mutant)
-    monkeypatch.setattr(run, "tests_of", lambda place: [["test_few.py"], ["."]])
-    assert noticed_by(place, tmp_path, set()) == ("" if survived else "test_limit.py::test_limit")
+    monkeypatch.setattr(run, "tests_of", lambda place: [(FAST, ["test_few.py"]), (FAST, ["."]), (SLOW, ["."])])
+    assert noticed_by(place, tmp_path, set()) == (f"test_limit.py::test_limit{noticed}" if test else "")
     assert (tmp_path / PRODUCT / "few.py").read_text() == source
 
 

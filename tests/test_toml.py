@@ -1,5 +1,6 @@
 """The line of every key, and what is said about files that are not TOML."""
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -8,6 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.common.errors import InputError
+from rockbatch.toml.csv_columns import columns_of
+from rockbatch.toml.kinds import Number
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.reader import TomlFile
 
@@ -185,3 +188,34 @@ def test_a_line_that_is_no_toml_is_quoted_as_it_can_be_shown(tmp_path):
         TomlFile.read(tmp_path / "x.toml")
     assert 'a = "\\x1b[31m\\x00"' in str(caught.value)
     assert str(caught.value).isprintable()
+
+
+# Small CSV files beside a study
+
+
+@pytest.mark.parametrize(
+    ("text", "gaps", "found"),
+    [
+        ("a,b\n1,2\n# remark\n\n3,4e0\n", False, {"a": [1.0, 3.0], "b": [2.0, 4.0]}),
+        ("b;a\n1,5;2\n", False, {"b": [1.5], "a": [2.0]}),
+        ("a\n1\nNaN\n", True, {"a": [1.0, math.nan]}),
+        ("a,b\n,2\n", True, {"a": [math.nan], "b": [2.0]}),
+        ("a,b\n,2\n", False, ":2: a = "),
+        ("a\nnan\n", False, ':2: a = "nan"'),
+        ("a\n1_0\n", True, ':2: a = "1_0"'),
+        ("a,b\n1\n", False, ":2: 1 cells below 2 column names"),
+        ("a,a\n1,2\n", False, ":1: a column occurs twice"),
+        ("a,c\n1,2\n", False, ':1: "c": unknown column; write one of a, b'),
+        ("# a\na\n", False, "expected a line of column names"),
+    ],
+)
+def test_columns_of_a_small_file_are_numbers_or_the_line_says_why_not(tmp_path, text, gaps, found):
+    path = tmp_path / "x.csv"
+    path.write_text(text, encoding="utf-8")
+    kinds = {name: Number("a number above 0", low=0.0, high=10.0, above=True) for name in ("a", "b")}
+    if isinstance(found, str):
+        with pytest.raises(InputError) as caught:
+            columns_of(path, kinds, gaps=gaps)
+        assert found in caught.value.problems[0]
+    else:
+        assert str(columns_of(path, kinds, gaps=gaps)) == str(found)  # NaN equals itself so

@@ -4,6 +4,7 @@ import contextlib
 import io
 import itertools
 import json
+import logging
 import os
 import pickle
 import re
@@ -414,3 +415,36 @@ def test_a_worker_rebuilds_the_very_runs(study, runs):
 def test_a_worker_with_other_kernels_refuses(study):
     with pytest.raises(InputError, match=rf"{program()}, not 0123\): install the same everywhere"):
         simulate([], [], study.numerics, NOTHING_MORE, "0123")
+
+
+def test_workers_that_die_and_come_again_are_waited_for_while_there_is_patience(monkeypatch):
+    """Nor is patience lost with a few deaths, however long ago the first was."""
+    import distributed
+
+    looks = []
+
+    def late(*_, **__):
+        looks.append(1)
+        if len(looks) < 9:
+            raise distributed.TimeoutError
+        return SimpleNamespace(done={"future"})
+
+    monkeypatch.setattr(distributed, "wait", late)
+    engine = Dask("tcp://a")
+    engine._client = client = FullWorkers(pause=False)
+    assert engine._finished_of(client, ()) == ["future"]
+    looks.clear()
+    monkeypatch.setattr(rockbatch.batch.dask, "MOST_DEATHS", 9)
+    monkeypatch.setattr(rockbatch.batch.dask, "PATIENCE_S", -1.0)
+    with pytest.raises(OSError, match="no worker for -1 s"):  # not the deaths, though they took longer
+        engine._finished_of(client, ())
+
+
+def test_what_distributed_logs_of_lost_connections_is_silenced_and_nothing_else():
+    loggers = [
+        logging.getLogger(name) for name in ("distributed.comm", "distributed", "undistributed", "numba.distributed")
+    ]
+    before = [logger.level for logger in loggers]
+    with rockbatch.batch.dask._quiet():
+        assert [logger.level == logging.CRITICAL for logger in loggers] == [True, True, False, False]
+    assert [logger.level for logger in loggers] == before

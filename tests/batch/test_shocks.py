@@ -169,3 +169,28 @@ def test_the_table_goes_when_the_study_has_no_sequence_any_more(tmp_path):
     assert not (out / SHOCKS).exists()
     with pytest.raises(rb.InputError, match=r"shocks.csv: not there; write a \[\[motions.sequence\]\]"):
         _ = rb.open_results(out).shocks
+
+
+@pytest.mark.parametrize("restraints", [(), (rb.Damper("friction", f=0.05),)], ids=["free", "held"])
+def test_what_a_shock_leaves_is_where_the_supports_would_hold_the_pier_or_where_dampers_do(restraints):
+    """Moments on supports that tilt by φ: M (β p)² b² (θ − φ) = M g h θ; dampers hold it amid a pause's last quarter."""
+    base = rb.YieldingBase(beta=40, eta=2.0, spring="epp", restraints=restraints)
+    motion = rb.sequence([shock("a", 8.0), shock("b", 5.0, 1.3)], name="s", pause=5.0)
+    response = rb.simulate(PIER, base, motion, quiet_s=5.0, substeps=8)
+    history, b, deflection = response.history, PIER.half_width, base.eta * PIER.gravity / (base.beta * PIER.p) ** 2
+    left, right = (history[f"v_{side}"] - deflection * history[f"z_{side}"] for side in ("left", "right"))
+    stiff = (base.beta * PIER.p * b) ** 2
+    for i, s in enumerate(motion.shocks):
+        row, before = response.shocks.iloc[i], history["t"] < s.until - 1e-9
+        quiet = history["theta"][(history["t"] >= s.until - 0.25 * (s.until - s.end)) & (history["t"] < s.until + 1e-9)]
+        high, low = quiet.max(), quiet.min()
+        unstressed = [
+            level[before & (history[f"force_{side}"] < 0.0)].iloc[-1]
+            for side, level in (("left", left), ("right", right))
+        ]
+        tilt = (unstressed[0] - unstressed[1]) / (2.0 * b)
+        rests = 0.5 * (high + low) if restraints else tilt / (1.0 - PIER.gravity * PIER.height / stiff)
+        assert row["theta_res_over_alpha"] * PIER.alpha == pytest.approx(rests, rel=1e-6, abs=1e-9)
+        assert row["settlement_m"] == pytest.approx(-0.5 * sum(unstressed), rel=1e-9)
+        assert row["moving_over_alpha"] * PIER.alpha == pytest.approx(0.5 * (high - low), rel=1e-3)
+        assert abs(rests) > 1e-5

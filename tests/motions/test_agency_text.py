@@ -528,3 +528,42 @@ def test_a_vertical_of_unam_points_down_where_its_sign_says_so(sign, down):
     assert [part.orientation.azimuth for part in level] == [0.0, 90.0]
     assert (vertical.orientation.vertical, vertical.orientation.down) == (True, down)
     np.testing.assert_allclose(vertical.upward, (-1.0 if down else 1.0) * C / 100, rtol=1e-3, atol=1e-6)
+
+
+def test_records_of_unam_are_of_one_station_within_one_earthquake_only():
+    plain = read(unam_text(), "x.191")[0].station
+    assert (
+        read(unam_text(**{"ORIENTACION C1-C6 (rumbo;orientacion)": "/N00E;+/N90E;+/V;+"}), "x.191")[0].station == plain
+    )
+    for changed in (
+        {"FECHA DEL SISMO [GMT]": "2017/09/20"},
+        {"HORA EPICENTRO (GMT)": "18:14:41"},
+        {"HORA DE LA PRIMERA MUESTRA (GMT)": "18:14:45"},
+        {"CLAVE DE LA ESTACION": "CANB"},
+    ):
+        assert read(unam_text(**changed), "x.191")[0].station != plain
+    unknown = {"FECHA DEL SISMO [GMT]": "", "HORA EPICENTRO (GMT)": ""}
+    assert read(unam_text(**unknown), "x.191")[0].station == "CANA"
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"NUMERO DE CANALES": "7"}, "NUMERO DE CANALES: 7; expected 1 to 6"),
+        ({"NUMERO DE CANALES": "0"}, "NUMERO DE CANALES: 0; expected 1 to 6"),
+        ({"NUMERO DE CANALES": "2.5"}, "NUMERO DE CANALES: 2.5; expected 1 to 6"),
+        ({"FORMATO DATOS (FORTRAN,10 campos/dato)": "2F10.4"}, r'"2F10.4"; expected one such as 3F10.4'),
+        ({"FORMATO DATOS (FORTRAN,10 campos/dato)": "3F1.0"}, r'"3F1.0"; expected one such as 3F10.4'),
+        ({"FORMATO DATOS (FORTRAN,10 campos/dato)": "free"}, r'"free"; expected one such as 3F10.4'),
+    ],
+)
+def test_a_header_of_unam_that_cannot_be_is_refused(changed, message):
+    with pytest.raises(InputError, match=message):
+        read(unam_text(**changed), "x.191")
+
+
+@pytest.mark.parametrize("count", [1, 6])
+def test_a_file_of_unam_may_have_one_channel_and_six(count):
+    ways = ("N00E", "N90E", "V", "N10E", "S80E", "N20E")[:count]
+    found = read(unam_text(ways, (A, B, C, A, B, C)[:count]), "x.191")
+    assert [component.orientation.label for component in found] == list(ways)

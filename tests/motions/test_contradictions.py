@@ -195,3 +195,22 @@ def test_obspys_readers_warn_of_contradictions(tmp_path):
     (tmp_path / "x.V1A").write_bytes(text(r"Duration 0\.21", "Duration 0.43")(header.data))
     with pytest.warns(UserWarning, match=r"x\.V1A \(N28W\): its header states a duration of 0.43 s"):
         assert len(read_geonet_stream(str(tmp_path / "x.V1A"))) == 3
+
+
+@pytest.mark.parametrize(
+    ("quantity", "has", "noted", "gross"),
+    [
+        ("peak", 2.0, 0.05, 0.25), ("range", 3.0, 0.05, 0.25), ("time of the peak", 0.4, 0.05, 0.25),
+        ("duration", 1.0, 0.01, 0.25), ("step", 0.001, 0.01, 0.01), ("rate", 1000.0, 0.01, 0.01),
+    ],
+)  # fmt: skip
+def test_a_difference_of_a_quarter_waits_and_of_a_few_percent_is_no_warning(quantity, has, noted, gross):
+    """Filters and offsets change a peak by some 5 %, a sample more or less a duration by 1 %; a quarter is another record."""
+    values = np.zeros(1000)
+    values[[400, 700]] = 2.0, -1.0
+    sampled = Sampled(values, 0.001, "m/s2", 1.0, values)
+    for off, kind in ((0.97 * noted, "note"), (1.03 * noted, "warning" if noted < gross else "waits"), (0.97 * gross, ""),
+                      (1.03 * gross, "waits")):  # fmt: skip
+        (found,) = contradictions([Stated(quantity, f"{(1.0 - off / (1.0 + off)) * has:.9f}")], sampled, GRAVITY)
+        assert kind in ("", "waits" if found.gross else "warning" if found.what else "note")
+        assert found.gross == (kind == "waits")

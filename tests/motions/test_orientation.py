@@ -93,3 +93,19 @@ def test_azimuths_agree_within_a_degree_across_north():
     assert same_azimuth(228.0, 229.0)
     assert not same_azimuth(0.0, 180.0)
     assert not same_azimuth(None, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "azimuth"),
+    [
+        ("N NS SN NORTH NORTHSOUTH NORTHWARD NORTE HNN EHN", 0.0),
+        ("E EW WE EAST EASTWEST EASTWARD ESTE HNE EHE", 90.0),
+        ("S SOUTH SOUTHWARD SUR S00E S00W 180", 180.0),
+        ("W WEST WESTWARD OESTE N90W S90W 270", 270.0),
+    ],
+)
+def test_points_of_the_compass_are_read_as_agencies_write_them(words, azimuth):
+    for word in words.split():
+        for label in (word, word.lower(), f"Comp. {word}"):
+            assert orientation_of(label).azimuth == azimuth
+            assert orientation_of(label).label == label

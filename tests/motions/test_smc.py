@@ -149,3 +149,10 @@ def test_rates_are_those_that_the_refusal_names(rate, dt):
             parse(smc_text(rate=rate))
     else:
         assert parse(smc_text(rate=rate))[0].dt == dt
+
+
+def test_a_file_without_comments_or_of_one_value_is_whole():
+    text = smc_text(comments=0)
+    bare = "\n".join(line for line in text.splitlines() if not line.startswith("|")) + "\n"
+    np.testing.assert_allclose(read(bare, "x.smc")[0].acceleration, A / 100, rtol=5e-5)
+    assert parse(smc_text(A[:1]))[0].values == pytest.approx(A[:1], rel=5e-5)

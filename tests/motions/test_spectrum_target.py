@@ -375,3 +375,25 @@ def test_a_linear_table_is_straight_in_its_numbers_from_zero_on(tmp_path):
     assert of_file == TableSpectrum((0.0, 0.2, 4.0), (0.4, 1.0, 0.1), 0.05, "site.csv", linear=True)
     with pytest.raises(InputError, match="must be numbers above 0"):
         TableSpectrum((0.0, 0.2), (0.4, 0.0), linear=True)
+
+
+GROUNDS = {
+    1: {"A": (1.0, 0.15, 0.4, 2.0), "B": (1.2, 0.15, 0.5, 2.0), "C": (1.15, 0.2, 0.6, 2.0), "D": (1.35, 0.2, 0.8, 2.0),
+        "E": (1.4, 0.15, 0.5, 2.0)},
+    2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.1, 0.25, 1.2), "D": (1.8, 0.1, 0.3, 1.2),
+        "E": (1.6, 0.05, 0.25, 1.2)},
+}  # fmt: skip
+"""S, T_B, T_C and T_D of EN 1998-1:2004, Tables 3.2 and 3.3."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "ground"), [(kind, ground) for kind, of_kind in GROUNDS.items() for ground in of_kind]
+)
+def test_a_study_names_grounds_of_the_eurocode_by_the_values_of_its_tables(tmp_path, kind, ground):
+    keys = {"spectrum": "EN 1998-1", "type": kind, "ground": ground, "ag_g": 0.2, "period_range_s": [0.1, 2.0]}
+    spectrum = study_with(tmp_path, keys).spectrum
+    soil, tb, tc, td = GROUNDS[kind][ground]
+    t = np.array([0.0, 0.5 * tb, tb, tc, 0.5 * (tc + td), td, 4.0])
+    top = 0.2 * soil * 2.5
+    falling = [top * tc / (0.5 * (tc + td)), top * tc / td, top * tc * td / 16.0]
+    assert spectrum.at(t) == pytest.approx([0.4 * top, 0.7 * top, top, top, *falling], rel=1e-9)

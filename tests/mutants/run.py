@@ -4,9 +4,9 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
 Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
-module defines, then all fast tests of its package; those of other packages may notice more. It is noticed where a test fails that
-passes without it, or computes far longer. What is finished is kept in build/mutants and not done again. An error that changes no
-answer is listed, with the reason, in equivalent.toml.
+module defines, then those of the next dozen files about its package, then the slow tests of the nearest files; others may notice
+more. It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants
+and not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
 
 import argparse
@@ -41,8 +41,14 @@ LONGEST = 200
 """Seconds of computing for each file of tests, its kernels included, after which they count as failed."""
 TOO_SLOW = "no end"
 """What ends a name of tests that took longer, or were killed."""
-NEAREST = 6
-"""Test files that meet an error first."""
+NEAREST, MOST = 6, 18
+"""Test files that meet an error first, and at all."""
+UNCOMPILED = [
+    "tests/verification/test_dimensions.py",
+    "tests/core/test_free_vibration.py",
+    "tests/core/test_trigonometry.py",
+]
+"""Tests of the core without a run, for which a minute would be compiled anew: errors in the core meet them first."""
 TESTS = {
     "core": ("core", "simulation", "verification"),
     "simulation": ("simulation", "batch", "core", "verification"),
@@ -50,13 +56,29 @@ TESTS = {
     "motions/formats": ("motions",),
     "reporting": ("report", "docs"),
     "quantities": ("results", "checks", "analyses/test_quantities.py", "report"),
-    "toml": ("test_toml.py", "study"),
+    "results": ("results", "report", "batch"),
+    "checks": ("checks", "results", "report"),
+    "toml": ("test_toml.py", "test_units.py", "study"),
+    "rockbatch": ("test_python_doors.py", "test_python_pieces.py", "test_doors.py"),
     "commands": ("test_cli.py", "test_arguments.py", "test_doors.py", "test_outputs.py", "test_hostile_calls.py"),
-    "common": ("test_f*.py", "test_outputs.py", "test_interrupts.py", "test_pier_figures.py", "results", "batch"),
+    "common": (
+        *(
+            "test_f*.py",
+            "test_units.py",
+            "test_arguments.py",
+            "test_notebooks.py",
+            "test_outputs.py",
+            "test_interrupts.py",
+        ),
+        *("test_pier_figures.py", "results", "report", "batch"),
+    ),
 }
 """Tests of a package, the nearest first, where they are not in a folder of its name."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
-PYTEST = "-q", "-x", "-n", "0", "--tb=no", "-m", "not slow", "-p", "no:cacheprovider"
+PYTEST = "-q", "-x", "--tb=no", "-p", "no:cacheprovider"
+FAST, SLOW = "not slow", "slow and not thorough"
+BY_SLOW = " (slow)"
+"""What ends the name of a slow test where no fast one noticed the error."""
 
 
 class Place(NamedTuple):
@@ -105,8 +127,11 @@ def copied(number: int) -> Path:
     return copy
 
 
-def tests_of(place: Place) -> list[list[str]]:
-    """Return test files: those first that name most of what the module of the error defines, then the others of its package."""
+def tests_of(place: Place) -> list[tuple[str, list[str]]]:
+    """Return test files, each time with the mark of the tests in them that run.
+
+    First are fast tests of the files that name most of what the module of the error defines, then those of further ones.
+    """
     folders = TESTS.get(place.package, (place.package,))
     path, order = TOP / place.file, dict[Path, int]()
     for i, name in enumerate(folders):
@@ -115,13 +140,16 @@ def tests_of(place: Place) -> list[list[str]]:
                 order.setdefault(test, i)
     names = {path.stem} | {name for name in _defined(path) if not name.startswith("_")}
 
-    def nearness(test: Path) -> tuple[int, int, str]:
+    def nearness(test: Path) -> tuple[int, str]:
         words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
-        shared = len({*path.parts} & {*test.parts}) + (path.stem in test.stem)  # of folders, and the name itself
-        return order[test], -len(names & words) - 3 * shared, str(test)
+        shared = len({*path.parts} & {*test.parts}) + 2 * (path.stem in test.stem)  # of folders, and the name itself
+        return 2 * order[test] - len(names & words) - 3 * shared, str(test)
 
     tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
-    return [chosen for chosen in (tests[:NEAREST], tests[NEAREST:]) if chosen]
+    first = UNCOMPILED if place.package == "core" else []
+    tests = [test for test in tests if test not in first]
+    stages = (FAST, first), (FAST, tests[:NEAREST]), (FAST, tests[NEAREST:MOST]), (SLOW, tests[:NEAREST])
+    return [(mark, chosen) for mark, chosen in stages if chosen]
 
 
 def _defined(path: Path) -> Iterator[str]:
@@ -138,16 +166,16 @@ def noticed_by(place: Place, copy: Path, sound: set[str]) -> str:
 
     ``sound`` are tests that are known to pass without an error; this adds to them.
     """
-    for tests in tests_of(place):
+    for mark, tests in tests_of(place):
         unsound: list[str] = []
         while True:
             with _error_in(copy, place):
-                failed = _failure([*tests, *(f"--deselect={test}" for test in unsound)], copy)
+                failed = _failure(mark, [*tests, *(f"--deselect={test}" for test in unsound)], copy)
             if not failed or failed in unsound:
                 break
-            if failed in sound or failed.endswith(TOO_SLOW) or not _failure([failed], copy):
+            if failed in sound or failed.endswith(TOO_SLOW) or not _failure(mark, [failed], copy):
                 sound.add(failed)
-                return failed
+                return failed + BY_SLOW * (mark == SLOW)
             unsound.append(failed)
     return ""
 
@@ -167,13 +195,13 @@ def _error_in(copy: Path, place: Place) -> Iterator[None]:
                 shutil.rmtree(wrong)
 
 
-def _failure(chosen: list[str], copy: Path) -> str:
-    """Return the test, of those ``chosen``, that fails in a copy of the project; "" if none does."""
+def _failure(mark: str, chosen: list[str], copy: Path) -> str:
+    """Return the test, of those ``chosen`` that have a mark, that fails in a copy of the project; "" if none does."""
     limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(limit := LONGEST * len(chosen))]
     with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
         process = subprocess.Popen(
-            [*limited, sys.executable, "-m", "pytest", *PYTEST, *chosen], cwd=copy, stdout=output, stderr=output,
-            env=os.environ | {"PYTHONPATH": str(copy)}, start_new_session=True,
+            [*limited, sys.executable, "-m", "pytest", *PYTEST, "-m", mark, *chosen], cwd=copy, stdout=output, stderr=output,
+            env=os.environ | {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}, start_new_session=True,
         )  # fmt: skip
         try:
             code = process.wait(10 * limit)
@@ -203,7 +231,7 @@ def judged(places: list[Place], copies: list[Path]) -> Iterator[tuple[Place, str
         for entry in entries
         if entry["noticed_by"] or entry["tests"] == tests
     }
-    sound = set(filter(None, known.values()))
+    sound = {name.removesuffix(BY_SLOW) for name in known.values() if name}
     free: Queue[Path] = Queue()
     for copy in copies:
         free.put(copy)
@@ -235,21 +263,27 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     chosen = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
+    # To compile the libraries and pytest's plugins takes longer than most tests
+    os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(BUILD / "bytecode")}
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
     places = drawn(chosen.seed, chosen.count, chosen.only)
     copies = [copied(number) for number in range(chosen.jobs)]
     for place, found in judged(places, copies):
         kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
-        if not found or found.endswith(TOO_SLOW):
+        if not found or found.endswith((TOO_SLOW, BY_SLOW)):
             print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
         for package in (place.package, "all"):
-            counts.setdefault(package, Counter())[kind] += 1
-    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate")
+            counts.setdefault(package, Counter()).update([kind, BY_SLOW] if found.endswith(BY_SLOW) else [kind])
+    print(
+        f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'only by slow':>13} {'equivalent':>11} {'survived':>9}  rate"
+    )
     for package, count in sorted(counts.items(), key=lambda item: (item[0] == "all", item[0])):
         matter = count["noticed"] + count["survived"]
         rate = f"{count['noticed'] / matter:.0%}" if matter else ""
-        print(f"{package:20} {count['noticed']:8} {count['equivalent']:11} {count['survived']:9}  {rate}")
+        print(
+            f"{package:20} {count['noticed']:8} {count[BY_SLOW]:13} {count['equivalent']:11} {count['survived']:9}  {rate}"
+        )
     return 0
 
 

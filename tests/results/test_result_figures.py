@@ -1,5 +1,6 @@
 """The figures of finished results show the rows of the table."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.common.figures.description import ENDED, Points, Polyline, Rule
 from rockbatch.results import figures
-from rockbatch.results.figures import OVER, distributions, peaks_of_all
+from rockbatch.results.figures import OVER, distributions, peaks_of_all, said_of
 from rockbatch.results.labelled import groups_of, labelled
 
 STUDY = study_text(
@@ -181,3 +182,40 @@ def test_a_case_without_runs_is_named_by_its_own_values(results):
     assert gone.startswith("gone, ")
     assert "30" in gone
     assert "9" in own(results).named_case("rock", {"p": 9.0}, ["p", "beta"])
+
+
+def test_rigid_bases_beyond_the_first_have_dashes_of_their_own(results):
+    """The sixth has those of the second; a line of an error, or of what overturned, has the look of its foundation."""
+    runs = own(results)
+    series = [replace(one, index=5) if one.rigid else one for one in runs.series]
+    for panel in distributions(list(groups_of(runs.runs, runs.piers)), series, "station").panels:
+        assert {mark.look.dash for mark in panel.marks if isinstance(mark, Polyline) and mark.label == "rock"} == {1}
+    for panel in peaks_of_all(replace(runs, series=series), results.info).panels:
+        assert {mark.look.dash for mark in panel.marks if isinstance(mark, Rule)} == {1}
+
+
+def test_the_tooltip_of_a_marker_has_value_error_and_side_or_how_the_run_ended(results):
+    one = own(results).series[-1]
+    run = {"status": "ok", "theta_max_over_alpha": 0.06166, "theta_max_error": 3.2e-7, "polarity": "-"}
+    assert said_of(one, run, False) == f"{one.label}: 0.0617 ± 3e-07"
+    assert said_of(one, run | {"theta_max_error": math.nan}, True) == f"{one.label} (-): 0.0617"
+    assert said_of(one, run | {"status": "flight"}, True) == f"{one.label} (-): flight"
+
+
+def test_on_self_similar_axes_a_run_that_did_not_move_is_none_that_stood_or_fell(results):
+    """Peaks of 0.5, 0 and one that overturned, of each foundation, in turn over the records."""
+    peaks = results.peaks[results.peaks["mirror_of"] == ""].copy()
+    peaks["status"], peaks["theta_max_over_alpha"] = "ok", 0.5
+    weak = (peaks["record"] == "weak") & (peaks["p"] == 1.0)
+    peaks.loc[weak, "theta_max_over_alpha"] = 0.0
+    fell = (peaks["record"] == "strong") & (peaks["p"] == 1.0)
+    peaks.loc[fell, ["status", "theta_max_over_alpha"]] = ["overturned", np.inf]
+    for panel in figures.self_similar(labelled(peaks, results.info, results.directory), results.info).panels:
+        marks = {mark.label: mark for mark in panel.marks if isinstance(mark, Points)}
+        assert {label: len(mark.x) for label, mark in marks.items()} == {
+            "": 2,
+            "did not move": 1,
+            ENDED["overturned"]: 1,
+        }
+        assert marks[""].shade[1].tolist() == [0.5, 0.5]
+        assert marks["did not move"].look.open

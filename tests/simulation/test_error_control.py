@@ -2,6 +2,7 @@
 
 import math
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 from rockbatch import simulation
 from rockbatch.common.notes import OVERTURNS
 from rockbatch.core.clock import WINDOWS
+from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import (
     Run,
     chaos,
@@ -23,7 +25,8 @@ from rockbatch.simulation import (
     run_to_tolerance,
 )
 from rockbatch.simulation.agreement import windows
-from rockbatch.simulation.models import readings
+from rockbatch.simulation.changes import Sized, greatest_change
+from rockbatch.simulation.models import elements, fastest_rate, readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
@@ -405,3 +408,85 @@ def test_what_is_called_settled_is_what_steps_eight_times_finer_find(seeds):
             wrong.append((seed, outcome.status, finest.status, off))
     assert compared > 300
     assert wrong == []
+
+
+B, INERTIA = FIG5.half_width, FIG5.inertia_about_pivot
+STIFF = FIG5.gravity * FIG5.size / B**2
+"""Stiffness over the mass [1/s²] of λ = 1."""
+RATES = [
+    ((Tendon(psi=0.1, lam=2.0, at=0.3),), math.sqrt(2.0 * STIFF * (B + 0.3) ** 2 / INERTIA)),
+    ((Tendon(psi=0.1, lam=2.0), Tendon(lam=1.0, at="right")), math.sqrt(STIFF * (2.0 * B**2 + (2.0 * B) ** 2) / INERTIA)),
+    ((Damper("viscous", nu=3.0, at=-0.2),), 3.0 * FIG5.p * (B + 0.2) ** 2 / INERTIA),
+    ((Damper("viscous", nu=3.0, at=0.0, brace=0.5),), 0.5 * STIFF / (3.0 * FIG5.p)),
+    ((Damper("viscous", nu=3.0, at=0.0, exponent=0.5),), 100.0 * FIG5.p),
+    ((Damper("viscous", nu=3.0, at=0.0, exponent=2.0),), 3.0 * FIG5.p * B**2 / INERTIA),
+    ((Damper("friction", f=0.1, at=0.0),), 0.0),
+    ((Damper("hysteretic", f=0.1, yield_m=0.01, at=0.0),), math.sqrt(0.1 * FIG5.gravity / 0.01 * B**2 / INERTIA)),
+    (
+        (Damper("hysteretic", f=0.1, yield_m=0.01, at=0.0, brace=0.5),),
+        math.sqrt(B**2 / INERTIA / (0.01 / (0.1 * FIG5.gravity) + 1.0 / (0.5 * STIFF))),
+    ),
+    ((DeckSpring(lam=0.5),), math.sqrt(0.5 * STIFF * (FIG5.deck**2 + B**2) / INERTIA)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("devices", "rate"), RATES)
+def test_steps_respect_how_fast_devices_let_a_block_vibrate_or_slow_it(devices, rate):
+    """About a corner: √(k r²/I0) of what is elastic, c r²/I0 of what is viscous, k/c of a damper on a brace."""
+    base = RigidBase(restraints=devices)
+    assert fastest_rate(FIG5, base) == pytest.approx(rate, rel=1e-9, abs=1e-12)
+    dt = 5.0 / rate if rate else 1.0
+    assert least_substeps(FIG5, base, dt) == (3 if rate else 1)  # ω h up to 2
+    assert first_substeps(FIG5, base, dt) == (25 if rate else 2)  # up to 0.2
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.3])
+@pytest.mark.parametrize(("devices", "_"), [rate for rate in RATES if rate[1] not in (0.0, 100.0 * FIG5.p)])
+def test_steps_on_springs_respect_the_fastest_vibration_and_decay_with_devices(devices, _, zeta):
+    """The largest eigenvalue of the linear system in full contact is not exceeded, nor is the step much finer than it asks."""
+    base = ElasticBase(40.0, zeta=zeta or None, restraints=devices)
+    mass = np.diag([1.0, FIG5.inertia + FIG5.height**2])
+    vertical = (40.0 * FIG5.p) ** 2
+    stiffness = np.diag([vertical, vertical * B**2 - FIG5.gravity * FIG5.height])
+    damping = 2.0 * zeta * 40.0 * FIG5.p * np.diag([1.0, B**2])
+    maxwell = 0.0
+    for law in elements(FIG5, base):
+        way = np.array([0.0, law.height] if law.height else [1.0, -law.offset])
+        if law.kind == MAXWELL:
+            maxwell, k = max(maxwell, law.stiffness / law.coefficient), law.stiffness
+        else:
+            k = law.stiffness * law.strength / (1.0 + law.give) if law.kind == HYSTERETIC else law.stiffness
+        stiffness += k * np.outer(way, way)
+        damping += (law.kind == VISCOUS) * law.coefficient * np.outer(way, way)
+    inverse = np.linalg.inv(mass)
+    system = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ stiffness, -inverse @ damping]])
+    greatest = max(np.abs(np.linalg.eigvals(system)).max(), maxwell)
+    assert greatest * (1.0 - 1e-9) <= fastest_rate(FIG5, base) <= 1.5 * greatest
+
+
+def test_a_change_of_what_governs_nothing_is_a_share_of_a_hundredth_of_its_scale():
+    """The scale of forces is the weight, of gaps what a heel rises by at α, of speeds that of a corner at α p, of a damper's
+    force 1."""
+    pier, rise = FIG5, 2.0 * B * FIG5.alpha
+    for quantity, scale in (("force", pier.gravity), ("moment", pier.gravity * B), ("share", 1.0), ("gap", rise),
+                            ("speed", pier.size * pier.alpha * pier.p), ("rotation", pier.alpha)):  # fmt: skip
+        one = {"it": Sized(("x", "y"), quantity)}
+        for value, expected in ((0.0, 1e-3), (0.005 * scale, 1e-3), (0.02 * scale, 5e-4)):
+            fine, coarse = SimpleNamespace(x=None, y=value), SimpleNamespace(x=None, y=value + 1e-5 * scale)
+            assert greatest_change(one, fine, coarse, pier) == ("it", pytest.approx(expected))
+
+
+@pytest.mark.parametrize(("kind", "alters"), [("results", False), ("counts", True), ("wanders", True)])
+def test_residuals_may_be_chaotic_where_counts_differ_or_they_come_nearer_too_slowly(kind, alters):
+    """Halving the step brings them nearer by a factor of 4 at least if they converge, unless they agree already."""
+    steps = {
+        "results": (0.0, 4e-4, 4.9e-4, 4.9e-4 + 1e-6),
+        "counts": (0.0, 4e-4, 4.9e-4),
+        "wanders": (0.0, 4e-4, 6e-4),
+    }[kind]
+    levels = [
+        trial(2**i, ok(0.1, 4 + (kind == "counts" and i == 2), theta_res=theta, settlement=0.0, theta_res_error=1e-9))
+        for i, theta in enumerate(steps)
+    ]
+    assert chaos.residuals_wander(levels, 1e-5, FIG5) == alters
+    assert not chaos.residuals_wander(levels, 1e-3, FIG5) or kind == "counts"

@@ -1,12 +1,14 @@
 """Histories: what simulate returns, and that it belongs to the row of the table."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.figures.description import Rule, Words
-from rockbatch.simulation.figures import of_one
+from rockbatch.common.figures.description import Look, Points, Polyline, Rule, Words, sign_of
+from rockbatch.simulation.figures import MOST_LANES, Drawn, History, of_one, reduced, together
 
 PIER = rb.Pier(0.2, 1.0)
 PULSE = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=6.0)
@@ -198,3 +200,103 @@ def test_histories_alone_say_where_there_is_a_row():
     assert "θ_max" not in repr(alone)
     with pytest.raises(rb.InputError, match="histories alone"):
         _ = alone.theta_max
+
+
+# Piers drawn together
+
+
+def one_of(
+    *, peak=(2.0, 0.5), moving=(1.0, 3.0), status="ok", end=10.0, impacts=(), separations=(), flights=(), look=1
+):
+    """A history to be drawn, of ten seconds, whose rotation over α has its peak at one moment and swings back at 5 s."""
+    t = np.linspace(0.0, 10.0, 101)
+    theta = np.where(np.isclose(t, peak[0]), peak[1], np.where(t == 5.0, -0.2 * np.sign(peak[1]), 0.0))
+    theta = np.where(np.isclose(t, peak[0] - 0.1) & (status != "ok"), 1.6, theta)
+    curves = [(t, theta), (t, 2.0 * theta), (t, 3.0 * theta), (t, moving[1] * np.sin(t))]
+    events = (np.array(times, dtype=float) for times in (impacts, separations, flights))
+    history = History(status, curves, *events, peak, (end, peak[1]), moving)
+    return Drawn(history, f"pier {look}", f"{look}", Look("curve", look), Look("", look, shape="up"))
+
+
+def test_piers_are_drawn_while_one_of_them_moves_and_a_short_rest_is_not_cut_off():
+    first, second = one_of(moving=(1.0, 3.5)), one_of(moving=(2.0, 4.0), look=2)
+    figure, whole = together([first, second], "a record")
+    assert [(panel.height, panel.width) for panel in figure.panels] == [(200.0, 900.0), (110.0, 900.0), (90.0, 900.0)]
+    assert [(panel.x.label, panel.x.numbered) for panel in figure.panels] == [("", False), ("", False), ("t [s]", True)]
+    shown = figure.panels[0].x
+    assert (shown.low, shown.high) == pytest.approx((1.0 - 0.03 * 3.0, 4.0 + 0.03 * 3.0))  # from the first to the last
+    assert (whole.low, whole.high) == (0.0, 10.0)
+    (ground,) = figure.panels[-1].marks  # once, of the pier that moves longest
+    assert ground.y is first.history.curves[3][1]
+    lines = [mark for mark in figure.panels[0].marks if isinstance(mark, Polyline)]
+    assert [line.label for line in lines] == ["pier 1: 0.5000 at 2.0 s", "pier 2: 0.5000 at 2.0 s"]
+    assert not any(mark.label for mark in figure.panels[1].marks)
+    for moving, ends in (((0.5, 8.9), (0.248, 9.152)), ((0.5, 9.4), (0.0, 10.0)), ((0.1, 8.0), (0.0, 8.237))):
+        x = together([one_of(moving=moving)], "a record")[0].panels[0].x
+        assert (x.low, x.high) == pytest.approx(ends)
+
+
+@pytest.mark.parametrize("count", [1, 2, 4, 5])
+def test_strokes_of_events_stand_in_lanes_of_their_piers_beyond_the_curves(count):
+    runs = [one_of(impacts=[1.0, 2.0], separations=[3.0], look=k + 1, peak=(2.0, 0.5 - k)) for k in range(count)]
+    panel = together(runs, "a record")[0].panels[0]
+    strokes = [mark for mark in panel.marks if isinstance(mark, Rule) and len(mark.at)]
+    assert len(strokes) == (2 * count if count <= MOST_LANES else 0)
+    assert {mark.label for mark in panel.marks if isinstance(mark, Rule) and not len(mark.at)} == (
+        {"impacts, at the foot", "separations, at the top"} if strokes else set()
+    )
+    drawn = np.concatenate([run.history.curves[0][1] for run in runs])
+    lowest, highest = (np.array([drawn.min(), drawn.max()]) - panel.y.low) / (panel.y.high - panel.y.low)
+    for at, times in ((0.0, [1.0, 2.0]), (1.0, [3.0])):
+        own = [stroke for stroke in strokes if stroke.at.tolist() == times]
+        assert [stroke.look.colour for stroke in own] == [k + 1 for k in range(len(own))]
+        ends = sorted((stroke.low, stroke.high) for stroke in own)
+        assert all(0.0 <= low < high <= 1.0 for low, high in ends)
+        assert all(before[1] < after[0] for before, after in pairwise(ends))
+        if own:
+            assert own[0].low == pytest.approx(0.0) if at == 0.0 else own[0].low > own[-1].low or count == 1
+            assert max(high for _, high in ends) < lowest if at == 0.0 else min(low for low, _ in ends) > highest
+
+
+def test_the_largest_peak_has_its_value_on_the_side_where_there_is_room_and_ends_stand_at_the_edge():
+    for t, side in ((7.4, 1), (7.6, -1)):
+        small, large = one_of(peak=(3.0, 0.4)), one_of(peak=(t, -0.6), look=2, moving=(0.0, 10.0))
+        marks = together([small, large], "a record")[0].panels[0].marks
+        (words,) = (mark for mark in marks if isinstance(mark, Words))
+        assert (words.x, words.y, words.text, words.side) == (t, -0.6, "0.6000", side)
+        points = [(mark.x.tolist(), mark.y.tolist()) for mark in marks if isinstance(mark, Points)]
+        assert points == [([3.0], [0.4]), ([t], [-0.6])]
+    fallen = one_of(peak=(6.0, 7.0), status="overturned", look=2)
+    panel = together([small, fallen], "a record")[0].panels[0]
+    assert 0.4 < panel.y.high < 0.7  # not stretched by the one that fell
+    (end,) = (mark for mark in panel.marks if isinstance(mark, Points) and mark.label == "overturned")
+    assert (end.x.tolist(), end.y.tolist(), end.look) == ([10.0], [panel.y.high], sign_of("overturned"))
+    (line,) = (mark for mark in panel.marks if isinstance(mark, Polyline) and "pier 2" in mark.label)
+    assert line.label == "pier 2: overturned at 10.0 s"
+    alone = together([fallen], "a record")[0].panels[0]
+    assert alone.y.high < 2.0  # nor by its own way down
+    flown = together([one_of(flights=[4.0]), one_of(flights=[5.0])], "a record")[0].panels[0].marks
+    assert [mark.at.tolist() for mark in flown if isinstance(mark, Rule) and mark.look.kind == "flown"] == [[4.0, 5.0]]
+
+
+def test_a_pier_moves_from_where_it_leaves_its_rest_to_where_it_stays(response):
+    """Away from rest is a fiftieth of the largest rotation; the drawn curve keeps the rows' extremes and ends."""
+    drawn = reduced(response, Look("curve"))
+    t, theta = response.t, response.theta / PIER.alpha
+    least = 0.02 * np.abs(theta).max()
+    assert drawn.moving == (t[np.abs(theta) > least][0], t[np.abs(theta - theta[-1]) > least][-1])
+    assert drawn.peak == (t[np.abs(theta).argmax()], theta[np.abs(theta).argmax()])
+    assert drawn.end == (t[-1], theta[-1])
+    assert drawn.outcome == f"{np.abs(theta).max():.4f} at {drawn.peak[0]:.1f} s"
+    omega = response.omega / (PIER.alpha * PIER.p)
+    for (x, y), values in zip(drawn.curves[:2], (theta, omega), strict=False):
+        assert (y.min(), y.max(), x[0], x[-1]) == (values.min(), values.max(), t[0], t[-1])
+        assert len(x) < 2 * 2 * 900
+    kinds = response.events["kind"]
+    for times, own in ((drawn.impacts, kinds == "impact"), (drawn.separations, kinds.isin(["separation", "lift-off"]))):
+        grain = (drawn.moving[1] - drawn.moving[0]) / 900
+        assert (
+            np.abs(times[:, None] - response.events["t"][own].to_numpy()).min(axis=1, initial=np.inf).max(initial=0.0)
+            <= 0.51 * grain
+        )
+        assert len(times) <= own.sum()

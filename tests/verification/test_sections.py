@@ -304,3 +304,27 @@ def test_sections_are_within_the_shaft_and_a_deck_above_it_is_none_of_it():
 def test_a_length_that_a_part_cannot_have_is_refused(length, message):
     with pytest.raises(rb.InputError, match=message):
         rb.Pier.of_parts(4.0, [(100.0, 5.0, 700.0, length)])
+
+
+def test_a_turn_within_a_step_is_sought_where_its_parabola_has_it():
+    """Of a(s − s₀)² + c with s₀ within the step the turn is at s₀, whichever way it bends; a turn beyond the step is none, nor is
+    one below what the ends have."""
+    for bend, turn in ((-3.0, 0.3), (2.0, 0.85), (4.0, 0.5)):
+        values = np.array([bend * (s - turn) ** 2 for s in (0.0, 1.0)])
+        half = np.array([bend * (0.5 - turn) ** 2])
+        flat, still = np.zeros(2), np.zeros(1)
+        for order in range(3):
+            ends, middles = [flat] * 3, [still] * 3
+            ends[order], middles[order] = values + 7.0, half + 7.0
+            numbers, shares = of_sections._promising(InSection(*ends), InSection(*middles), np.array([1]))
+            assert numbers.tolist() == [1]
+            assert shares == pytest.approx([turn], rel=1e-12)
+    for turn in (-0.1, 1.1):
+        values, half = np.array([turn**2, (1.0 - turn) ** 2]), np.array([(0.5 - turn) ** 2])
+        found = of_sections._promising(InSection(values, flat, flat), InSection(half, still, still), np.array([1]))
+        assert len(found[0]) == len(found[1]) == 0
+    later = np.array([0.0, 0.0, 9.0, -9.0])  # other rows are beyond the turn of the first step
+    hidden = of_sections._promising(
+        InSection(later, np.zeros(4), np.zeros(4)), InSection(np.array([1.0]), still, still), np.array([1])
+    )
+    assert len(hidden[0]) == 0

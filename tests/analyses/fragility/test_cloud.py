@@ -1,6 +1,7 @@
 """Cloud analysis: against other ways to the same line and share, closed forms, its own promises, and the mistakes of a file."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,10 @@ from studies import seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
+from rockbatch.analyses.fragility.cloud_tables import counts
+from rockbatch.analyses.fragility.curves import CloudPoint
 from rockbatch.analyses.fragility.figures import clouds
+from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import Points, Polyline, Rule
@@ -328,3 +332,26 @@ def test_a_share_that_is_never_small_or_never_large_has_no_bounded_dispersion(in
     curve = Cloud(1.0, None, share, 0.95, 0.0)
     assert curve.dispersion == math.inf
     assert curve.dispersion_interval == (math.inf, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("demand", "state", "status", "counted", "of_an_event"),
+    [
+        (0.2, WITHSTOOD, "ok", "line", "within"),
+        (0.0051, WITHSTOOD, "ok", "line", "within"),
+        (0.0049, WITHSTOOD, "ok", "below", "within"),
+        (0.7, EXCEEDED, "ok", "line", "exceeds"),
+        (0.51, UNDECIDED, "ok", "line", "within"),
+        (math.inf, EXCEEDED, "overturned", "overturned", "exceeds"),
+        (math.nan, UNDECIDED, "failed", "undecided", "undecided"),
+        (math.nan, UNDECIDED, "flight", "undecided", "undecided"),
+        (0.2, LEFT_OUT, "ok", "left out", "left out"),
+    ],
+)
+def test_how_a_run_counts_is_said_in_a_word(tmp_path, demand, state, status, counted, of_an_event):
+    """A limit of 0.5, of which demands up to a hundredth are censored; and an event, to which no demand matters."""
+    loaded = load_study(study(tmp_path))
+    spec = read_fragility(loaded)
+    run = CloudPoint(0, 0.3, demand, status, state)
+    found = {rule.name: counts(run, SimpleNamespace(limit=rule), spec) for rule in spec.limits}
+    assert found == {"overturning": of_an_event, "rotation": counted}

@@ -220,3 +220,39 @@ def test_records_that_differ_from_level_to_level_are_said_as_a_range():
     fewer["points"][3]["records"] = 9
     (line,), _ = said(fewer)
     assert "(95 % from 9 to 10 records a level: " in line
+
+
+def test_of_several_cases_that_may_be_weaker_the_one_that_may_be_weakest_is_named():
+    open_ = [
+        {"says_little": True, "median_undecided": bounds, "undecided": (0, 5, 5, 0)}
+        for bounds in ([0.5, 0.6], [0.3, 1.1])
+    ]
+    (line, _), _ = said(
+        curve("rock", median=0.8), curve("mats", median=1.0, **open_[0]), curve("pads", median=1.0, **open_[1])
+    )
+    assert line.endswith("; pads may be weaker, down to 0.3, as runs of it are undecided.")
+    (line, _), _ = said(curve("rock", median=0.25), curve("pads", median=1.0, **open_[1]))
+    assert "weaker" not in line
+
+
+@pytest.mark.parametrize(
+    ("interval", "overlaps"),
+    [((0.78, 2.0), True), ((0.8, 2.0), True), ((0.82, 2.0), False), ((None, 2.0), True), ((0.0, None), True)],
+)
+def test_intervals_overlap_where_another_median_may_be_as_low(interval, overlaps):
+    for cases in ((interval,), ((1.5, 2.0), interval)):
+        others = [curve(f"case {n}", median=1.0, interval=bounds) for n, bounds in enumerate(cases)]
+        (line,), _ = said(curve("rock", median=0.6, interval=(0.4, 0.8)), *others)
+        assert line.endswith(", whose intervals overlap.") == overlaps
+    (line,), _ = said(curve("rock", median=0.6, interval=(0.4, None)), curve("pads", median=1.0, interval=(0.9, 2.0)))
+    assert line.endswith(", whose intervals overlap.")
+
+
+def test_a_rate_of_zero_rests_on_nothing_and_a_fifth_of_one_is_not_worth_a_word():
+    (line,), marked = said(curve(median=0.7, risk=rate(0.0)), by=of_rates, hazard=HAZARD)
+    assert line.startswith("Overturning has a probability of 0")
+    assert not marked
+    for share, named in ((0.19, False), (0.21, True)):
+        for where in ("rate_below_points", "rate_above_points", "rate_below_levels", "rate_above_levels"):
+            _, marked = said(curve(median=0.7, risk=rate(1e-4, **{where: share * 1e-4})), by=of_rates, hazard=HAZARD)
+            assert len(marked) == named

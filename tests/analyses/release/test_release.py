@@ -8,10 +8,12 @@ import pytest
 from figure_makers import makers
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicSpline
+from scipy.linalg import null_space
 from scipy.stats import linregress
+from scipy.stats import t as student
 
 import rockbatch as rb
-from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, fitted
+from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _Posterior, fitted
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import read_table
@@ -302,3 +304,47 @@ def test_the_page_opens_with_the_value_and_marks_what_puts_it_in_doubt(tmp_path)
         assert f'<p class="lead">rigid: restitution = {row["value"]:.4g} {ends}, ' in first
         assert ('<span class="undecided">' + doubt in first) == bool(doubt)
         assert ("undecided" in first) == bool(doubt)
+
+
+def test_the_density_of_ratios_and_the_parts_of_the_posterior_are_those_of_residuals_without_the_parameters():
+    """Given the ratios, whitened least squares; their density is that of contrasts to which the parameters do not matter, times
+    the root of its Fisher information (Jeffreys)."""
+    random = np.random.default_rng(2)
+    kinds, shared = np.repeat([0, 1], 5), True
+    by_impact, slopes = random.standard_normal((10, 5)), random.standard_normal((10, 2))
+    misses = random.standard_normal(10)
+    ratios = np.array([[-3.0, 2.0], [0.5, 0.0], [4.0, -1.0]])
+    linear = _Linear(misses, slopes, by_impact, kinds, shared)
+    found, centres, scales, freedom, spread = _evaluated(linear, np.array([0, 1]), ratios)
+    of_impacts = by_impact @ by_impact.T
+    times, contrasts = (kinds == 0).astype(float), null_space(slopes.T)
+    read = [np.diag(times) + np.outer(times, times), np.diag(1.0 - times)]
+    read = [own * np.diag(of_impacts)[kinds == kind].mean() for kind, own in enumerate(read)]
+    logs = []
+    for i, ratio in enumerate(ratios):
+        parts = [of_impacts, *(math.exp(r) * own for r, own in zip(ratio, read, strict=True))]
+        root = np.linalg.cholesky(sum(parts))
+        white, seen = np.linalg.solve(root, slopes), np.linalg.solve(root, misses)
+        value, (squares,), *_ = np.linalg.lstsq(white, seen, rcond=None)
+        assert centres[i] == pytest.approx(value, rel=1e-9)
+        errors = np.sqrt(np.diag(np.linalg.inv(white.T @ white)) * squares / 8)
+        assert scales[i] == pytest.approx(errors, rel=1e-9)
+        assert spread[i] == pytest.approx(math.sqrt(squares / 8), rel=1e-9)  # of the impacts, whose share is 1
+        inner = [contrasts.T @ part @ contrasts for part in parts]
+        each = [np.linalg.solve(sum(inner), part) for part in inner]
+        information = np.array([[np.trace(a @ b) for b in each] for a in each])
+        likelihood = -0.5 * np.linalg.slogdet(sum(inner))[1] - 4.0 * math.log(squares)
+        logs.append(likelihood + 0.5 * np.linalg.slogdet(information)[1])
+    assert freedom == 8
+    assert np.diff(found) == pytest.approx(np.diff(logs), rel=1e-8)
+
+
+def test_a_quantile_is_that_of_the_mixture():
+    posterior = _Posterior(
+        np.array([0.3, 0.7]), np.array([[0.0, 5.0], [1.0, -5.0]]), np.array([[0.5, 0.1], [0.2, 3.0]]), 7, np.zeros(2)
+    )
+    for parameter in (0, 1):
+        for share in (0.001, 0.025, 0.5, 0.9, 0.999):
+            at = posterior.quantile(share, parameter)
+            parts = (at - posterior.centres[:, parameter]) / posterior.scales[:, parameter]
+            assert posterior.weights @ student.cdf(parts, 7) == pytest.approx(share, abs=1e-6)

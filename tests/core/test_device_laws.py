@@ -1,0 +1,137 @@
+"""Laws of devices one by one: what is stored and lost is what their force does, and forces by hand."""
+
+import math
+
+import pytest
+
+from rockbatch.core.devices.laws import (
+    CLOSES,
+    CONTACT,
+    FRICTION,
+    HYSTERETIC,
+    MAXWELL,
+    OPENS,
+    SLACK,
+    SPRING,
+    STICKS,
+    TAUT,
+    TENDON,
+    VISCOUS,
+    YIELDING,
+    force,
+    mode_of,
+    past_release,
+    response,
+    slip_rate,
+    stop_force,
+    stored,
+)
+from rockbatch.simulation.models import IDLE
+
+INF = math.inf
+DAMPER = IDLE._replace(kind=VISCOUS, coefficient=3.0, exponent=0.5, linear_below=0.01, slope=3.0 * 0.01**-0.5)
+STEEL = IDLE._replace(kind=HYSTERETIC, strength=2.0, stiffness=50.0)
+TIE = IDLE._replace(kind=TENDON, strength=4.0, stiffness=30.0, prestress=1.0)
+HUNG = IDLE._replace(kind=MAXWELL, stiffness=40.0, coefficient=3.0, exponent=0.5)
+STOP = IDLE._replace(kind=CONTACT, stiffness=80.0, start=0.05, returned=0.36)
+BAND = IDLE._replace(kind=SPRING, stiffness=25.0)
+RUBS = IDLE._replace(kind=FRICTION, strength=2.0)
+
+
+@pytest.mark.parametrize(
+    ("of", "elongation", "speed", "state", "mode", "goes"),
+    [
+        (DAMPER, 0.1, 0.3, 0.0, TAUT, OPENS), (DAMPER, 0.1, -0.3, 0.0, TAUT, CLOSES), (DAMPER, 0.1, 0.004, 0.0, TAUT, OPENS),
+        (RUBS, 0.1, 0.3, 0.0, TAUT, OPENS), (RUBS, 0.1, -0.3, 0.0, TAUT, CLOSES), (BAND, -0.2, 0.3, 0.0, TAUT, OPENS),
+        (TIE, 0.05, 0.3, 0.0, TAUT, OPENS), (TIE, 0.05, -0.3, 0.01, TAUT, CLOSES), (TIE, -0.2, 0.3, 0.0, SLACK, OPENS),
+        (TIE, 0.12, 0.3, 0.02, YIELDING, OPENS), (HUNG, 0.1, 0.3, 1.2, TAUT, OPENS), (HUNG, 0.1, 0.3, -1.2, TAUT, OPENS),
+        (STOP, 0.07, -0.3, 0.03, TAUT, CLOSES), (STOP, 0.02, 0.3, 0.0, SLACK, OPENS),
+    ],
+)  # fmt: skip
+def test_what_a_force_does_is_stored_or_lost(of, elongation, speed, state, mode, goes):
+    """Ė = F ė − loss, by a difference of the energy along the motion and the rate of the state."""
+    found, short = response(of, elongation, speed, state, mode, goes), 1e-6
+    ends = [
+        stored(of, elongation + sign * short * speed, state + sign * short * found.state_rate) for sign in (-1.0, 1.0)
+    ]
+    gain = (ends[1] - ends[0]) / (2.0 * short)
+    assert gain == pytest.approx(found.force * speed - found.loss_rate, rel=1e-5, abs=1e-8)
+    assert force(of, elongation, speed, state, mode, goes) == found.force
+    assert found.loss_rate >= 0.0
+    lasts = of.kind in (HYSTERETIC, MAXWELL) or mode == YIELDING
+    assert lasts or found.state_rate == 0.0
+    assert found.force == 0.0 or mode != SLACK
+
+
+def test_forces_of_dampers_are_those_of_their_laws():
+    assert force(DAMPER, 0.0, 0.25, 0.0, TAUT, OPENS) == pytest.approx(3.0 * 0.25**0.5)
+    assert force(DAMPER, 0.0, -0.25, 0.0, TAUT, CLOSES) == pytest.approx(-3.0 * 0.25**0.5)
+    assert force(DAMPER, 0.0, 0.005, 0.0, TAUT, OPENS) == pytest.approx(0.5 * 3.0 * 0.01**0.5)  # linear below 0.01 m/s
+    assert force(DAMPER._replace(linear_below=0.0), 0.0, 0.0, 0.0, TAUT, OPENS) == 0.0
+    assert [force(RUBS, 0.3, 0.0, 0.0, TAUT, goes) for goes in (OPENS, CLOSES, STICKS)] == [2.0, -2.0, 0.0]
+    assert slip_rate(HUNG, 1.5) == pytest.approx(0.25)
+    assert slip_rate(HUNG, -1.5) == pytest.approx(-0.25)
+    assert response(HUNG, 0.0, 0.3, 1.5, TAUT, OPENS).state_rate == pytest.approx(40.0 * (0.3 - 0.25))
+
+
+@pytest.mark.parametrize("give", [0.0, 0.5])
+def test_a_hysteretic_damper_yields_as_it_goes_on_and_springs_back_at_once(give):
+    """ż = (u̇/u_y)(1 − |z|⁵) of the steel, whose brace takes give times its elastic way."""
+    steel = STEEL._replace(give=give)
+    for z, speed, goes in (
+        (0.8, 0.3, OPENS),
+        (-0.8, -0.3, CLOSES),
+        (0.8, -0.3, CLOSES),
+        (-0.8, 0.3, OPENS),
+        (1.2, 0.3, OPENS),
+    ):
+        share = 1.0 - min(abs(z), 1.0) ** 5 if goes * z > 0.0 else 1.0
+        found = response(steel, 0.0, speed, z, TAUT, goes)
+        assert found.force == pytest.approx(2.0 * z)
+        assert found.state_rate == pytest.approx(speed * 50.0 * share / (1.0 + give * share), abs=1e-12)
+        assert found.loss_rate == pytest.approx(2.0 * z * speed)
+    assert stored(steel, 0.1, 0.5) == 0.0
+
+
+def test_a_tendon_is_taut_between_slack_and_yield():
+    """Taut from u₀ − P0/k = u₀ − 1/30 on, with strength 4 up to u₀ + 0.1."""
+    for permanent in (0.0, 0.02):
+        slack, most = permanent - 1.0 / 30.0, permanent + 0.1
+        for off, goes, mode in ((-0.01, OPENS, SLACK), (0.01, CLOSES, TAUT)):
+            assert mode_of(TIE, slack + off, permanent, goes) == mode
+        for off, goes, mode in ((-0.01, OPENS, TAUT), (0.01, OPENS, YIELDING), (0.01, CLOSES, TAUT)):
+            assert mode_of(TIE, most + off, permanent, goes) == mode
+        assert force(TIE, permanent + 0.05, 0.3, permanent, TAUT, OPENS) == pytest.approx(1.0 + 30.0 * 0.05)
+        assert force(TIE, most, 0.3, permanent, YIELDING, OPENS) == 4.0
+        assert stored(TIE, permanent + 0.05, permanent) == pytest.approx(0.5 * 2.5**2 / 30.0)
+        assert stored(TIE, slack - 0.1, permanent) == 0.0
+        assert stored(TIE, most + 0.1, permanent) == pytest.approx(0.5 * 4.0**2 / 30.0)
+    free = TIE._replace(prestress=0.0)
+    assert (mode_of(free, 0.0, 0.0, OPENS), mode_of(free, 0.0, 0.0, CLOSES)) == (TAUT, SLACK)
+    assert mode_of(TIE._replace(prestress=4.0), 0.0, 0.0, OPENS) == YIELDING
+    dead = TIE._replace(stiffness=0.0, strength=INF)
+    assert stored(dead, 0.3, 0.0) == pytest.approx(0.3)  # a weight on a rope
+
+
+def test_a_stop_is_loaded_along_k_and_lets_go_along_a_steeper_line():
+    """k δ on the way in, k/e² from (1 − e²) of the deepest on on the way out: e² of the work comes back."""
+    deepest = 0.03
+    for depth in (0.005, 0.02, 0.03, 0.04):
+        back = max(80.0 / 0.36 * (depth - 0.64 * deepest), 0.0)
+        assert past_release(STOP, 0.05 + depth, deepest) == pytest.approx(depth - 0.64 * deepest)
+        assert stop_force(STOP, 0.05 + depth, deepest) == pytest.approx(min(80.0 * depth, back))
+        assert force(STOP, 0.05 + depth, -0.3, deepest, TAUT, CLOSES) == pytest.approx(
+            80.0 / 0.36 * (depth - 0.64 * deepest)
+        )
+        first = response(STOP, 0.05 + depth, 0.3, depth, YIELDING, OPENS)
+        assert first.force == pytest.approx(80.0 * depth)
+        assert first.loss_rate == pytest.approx(0.64 * 80.0 * depth * 0.3)
+        assert stored(STOP, 0.05 + depth, depth) == pytest.approx(0.36 * 0.5 * 80.0 * depth**2)
+    assert stop_force(STOP, 0.01, 0.0) == force(STOP, 0.01, 0.3, 0.0, SLACK, OPENS) == 0.0
+    assert [mode_of(STOP, at, 0.0, OPENS) for at in (0.04, 0.05, 0.06)] == [SLACK, YIELDING, YIELDING]
+    assert (mode_of(STOP, 0.05, 0.0, CLOSES), mode_of(STOP, 0.06, 0.0, CLOSES)) == (SLACK, YIELDING)
+    assert (
+        response(STOP, 0.06, 0.3, 0.01, YIELDING, OPENS).state_rate == 0.0
+    )  # how deep it is pressed is noted as it turns
+    assert mode_of(BAND, -0.1, 0.0, OPENS) == mode_of(DAMPER, 0.1, 0.0, CLOSES) == TAUT
+    assert force(BAND, -0.2, 0.3, 0.0, TAUT, OPENS) == pytest.approx(-5.0)

@@ -1,0 +1,107 @@
+"""Laws of springs one by one: branches, switching points, deflection and work, against quadrature and by hand."""
+
+import pytest
+from core_samples import FIG5
+from scipy.integrate import quad
+
+from rockbatch.core.springs import laws
+from rockbatch.core.springs.events import Side
+from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING
+from rockbatch.pier import ElasticBase, YieldingBase
+from rockbatch.simulation import springs
+
+LAWS = {"elastic": ELASTIC, "bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
+
+
+def model(law="bouc-wen", **more):
+    return springs(
+        FIG5, ElasticBase(50.0, **more) if law == "elastic" else YieldingBase(50.0, eta=2.5, spring=law, **more)
+    )
+
+
+def test_a_spring_that_yields_loses_the_share_z_to_the_n_of_its_stiffness():
+    for n in (5.0, 3.0, 2.5):
+        m = model(n=n)
+        for z in (-0.2, -0.7, -1.0):
+            assert laws.z_rate(m, z, -0.3, 1.0) == pytest.approx(-0.3 * m.stiffness * (1.0 - (-z) ** n), abs=1e-15)
+            assert laws.z_rate(m, z, -0.3, 0.0) == pytest.approx(-0.3 * m.stiffness)
+        assert laws.z_rate(m, -1.2, -0.3, 1.0) == 0.0  # it ends at its capacity
+        assert laws.z_rate(m, 0.1, 0.3, 1.0) == pytest.approx(0.3 * m.stiffness)
+    assert (laws.within_yield(-1.2, 1.0), laws.within_yield(-1.2, 0.0), laws.within_yield(-0.4, 1.0)) == (
+        -1.0,
+        -1.2,
+        -0.4,
+    )
+
+
+@pytest.mark.parametrize(
+    ("law", "pressed", "curved", "creeps", "signs", "leaves"),
+    [
+        ("elastic", 0.0, False, False, (0.0, -1.0), False), ("bouc-wen", 1.0, True, True, (1.0, -1.0), False),
+        ("epp", 0.0, False, False, (0.0, -1.0), True), ("hardening", 0.0, True, False, (0.0, -1.0), True),
+    ],
+)  # fmt: skip
+def test_what_each_law_does(law, pressed, curved, creeps, signs, leaves):
+    """Bouc–Wen is on the branch of its velocity's sign; the two with a yield point leave the elastic one there."""
+    code = LAWS[law]
+    assert laws.branch_when_pressed(code) == pressed
+    assert (laws.curved(code), laws.ratchets(code)) == (curved, creeps)
+    assert tuple(laws.kept_sign(code, 1.0, yields) for yields in (0.0, 1.0)) == signs
+    assert laws.kept_sign(code, 0.0, 1.0) == laws.kept_sign(code, 0.0, 0.0) == 0.0  # off its spring
+    assert (laws.may_yield(code, 0.0), laws.may_yield(code, 1.0)) == (leaves, False)
+    assert laws.yield_point(code, -0.6, -0.8) == (-0.8 if law == "hardening" else -1.0)
+    assert laws.yield_point(code, -0.6, -0.4) == (-0.6 if law == "hardening" else -1.0)
+    assert laws.after_switch(code, 0.0, -0.6, -0.59) == (1.0, -0.6 if leaves else -0.59)
+    assert laws.after_switch(code, 1.0, -0.6, -0.7) == (0.0, -0.7)
+
+
+@pytest.mark.parametrize(
+    ("law", "fast", "below"),
+    [("elastic", 0.5, 0.5), ("bouc-wen", 1.0, 1.0), ("epp", 0.5, 1.0), ("hardening", 0.5, 1.0)],
+)
+def test_a_jump_of_the_velocity_unloads_a_spring_or_presses_it_along_its_law(law, fast, below):
+    """0.5 stands for the branch it was on: upwards it unloads, downwards it yields at once or from its yield point on."""
+    code = LAWS[law]
+    unloads = 0.5 if law == "elastic" else 0.0
+    assert laws.branch_after_jump(code, 0.5, -0.6, -0.5, 1.0, 1e-3) == unloads
+    assert laws.branch_after_jump(code, 0.5, -0.6, -0.5, -1.0, 1e-3) == fast
+    assert laws.branch_after_jump(code, 0.5, -0.6, -0.6, -1.0, 1e-3) == below
+    for still in (1e-3, -1e-3, 0.0):
+        assert laws.branch_after_jump(code, 0.5, -0.6, -0.7, still, 1e-3) == 0.5
+    plain, damped = model(law), model(law, zeta=0.05)
+    for velocity in (-1.0, 1.0):
+        assert laws.branch_of_landing(plain, velocity) == laws.branch_when_pressed(code)
+        assert laws.branch_of_landing(damped, velocity) == (laws.branch_when_pressed(code) if velocity < 0.0 else 0.0)
+
+
+@pytest.mark.parametrize("n", [5.0, 3.0, 2.5])
+@pytest.mark.parametrize("law", LAWS)
+def test_deflection_and_plastic_work_of_first_loading_are_integrals(law, n):
+    """δ = ∫ ds/(1 − sⁿ) of the curved laws, s of the others; what is dissipated ∫ x d(u − x) along the inelastic branch."""
+    m = model(law, **({"n": n} if law in ("bouc-wen", "hardening") else {}))
+    for force in (0.1, 0.6, 0.95):
+        curve = quad(lambda s: 1.0 / (1.0 - s**n), 0.0, force, epsabs=1e-14, epsrel=1e-13)[0]
+        assert laws.deflection(m, force) == pytest.approx(curve if laws.curved(LAWS[law]) else force, rel=1e-11)
+        soft = 1.0 / (1.0 - force**n)
+        assert laws.give(m, force, -0.5) == pytest.approx(
+            soft if law == "bouc-wen" or (law == "hardening" and force > 0.5) else 1.0
+        )
+    if laws.curved(LAWS[law]):
+        for start, end in ((0.0, 0.3), (0.3, 0.9), (0.5, 0.55), (0.1, 0.99)):
+            plastic = quad(lambda x: x**n / (1.0 - x**n), start, end, epsabs=1e-14)[0] * m.yield_deflection
+            work = quad(lambda x: x * x**n / (1.0 - x**n), start, end, epsabs=1e-14)[0] * m.yield_deflection
+            assert laws.plastic_work(m, -start, -end, plastic) == pytest.approx(work, rel=1e-8)
+        assert laws.plastic_work(m, -1.0, -1.0, 0.02) == 0.02  # at its capacity all of it
+        assert laws._elastic_share(1.0, m.exponent) == pytest.approx(1.0 / n)
+
+
+def test_a_switching_point_is_where_the_velocity_reverses_or_at_the_yield_point():
+    """Positive on the branch: of a spring that keeps the sign of its velocity that velocity, of others what is left to yield."""
+    side = Side(0.0, 0.3, 5.0, -0.4, 0.7, 0.0, 0.0, -0.6)
+    unloading, yielding = side, side._replace(yields=1.0)
+    assert laws.switching_point(BOUC_WEN, unloading, 0.7, 5.0) == (0.3, 5.0)
+    assert laws.switching_point(BOUC_WEN, yielding, 0.7, 5.0) == (-0.3, -5.0)
+    assert laws.switching_point(ELASTIC, unloading, 0.7, 5.0) == (1.0, 0.0)
+    for law in (EPP, HARDENING):
+        assert laws.switching_point(law, unloading, 0.7, 5.0) == pytest.approx((0.2, 0.7))
+        assert laws.switching_point(law, yielding, 0.7, 5.0) == (-0.3, -5.0)
