@@ -552,7 +552,9 @@ def test_a_probe_raises_the_errors_that_it_shows_to_be_too_small_or_withdraws_th
     damped = {"damper_force": 0.2, "devices_error": 1e-4}
     assert probed({"damper_force": 0.2}, **damped).devices_error == 1e-4
     assert probed({"damper_force": 0.202}, **damped).devices_error == pytest.approx(2.0 * 0.002 / 0.202)
-    assert probed({"damper_force": 0.202}, **damped | {"devices_error": None}).devices_error == pytest.approx(2.0 * 0.002 / 0.202)
+    assert probed({"damper_force": 0.202}, **damped | {"devices_error": None}).devices_error == pytest.approx(
+        2.0 * 0.002 / 0.202
+    )
     assert probed({}).devices_error is None
     for status, words in (("flight", "ends it in flight"), ("failed", "is not decided"), ("overturned", OVERTURNS)):
         found = probed({"status": status})
