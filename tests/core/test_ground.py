@@ -10,6 +10,7 @@ from rockbatch.core.ground import ground_rows, later
 from rockbatch.core.observe.rows import cubic, ground_at
 from rockbatch.core.powers import power
 from rockbatch.core.springs import recovery
+from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.model import Contact, State
 from rockbatch.core.types import Ground
 from rockbatch.pier import ElasticBase
@@ -75,3 +76,13 @@ def test_a_damped_spring_without_its_pivot_recovers_as_an_exponential():
     assert recovery.recovery_rate(plain, 7.0, z, 0.0) == 7.0
     assert recovery.share_left(plain, 0.3) == 1.0
     assert recovery.with_recovery(plain, y, start, Contact(0.0, 0.0, 0.0, 0.0, 0.0), 0.25) == y
+
+
+def test_a_support_bears_what_its_spring_and_its_dashpot_do_while_its_pivot_is_there():
+    """F = F_y z + C v̇ of each pivot, which moves at v̇ ± b θ̇; without a dashpot z alone says it."""
+    y, b = State(0.0, 0.0, 0.03, 0.02, -0.5, -0.6), FIG5.half_width
+    for zeta, left, right in ((None, 1.0, 1.0), (0.05, 1.0, 1.0), (0.05, 0.0, 1.0), (0.05, 1.0, 0.0)):
+        m = springs(FIG5, ElasticBase(50.0, zeta=zeta))
+        found = recovery.forces(m, y, Contact(left, right, 0.0, 0.0, 0.0), geometry(m, 0.0))
+        expected = [m.yield_force * z + m.damping * (0.03 + way * b * 0.02) for z, way in ((-0.5, 1.0), (-0.6, -1.0))]
+        assert found == pytest.approx((left * expected[0], right * expected[1]), rel=1e-12)

@@ -191,3 +191,21 @@ def test_neither_is_better_where_one_response_grows_and_another_shrinks_or_nothi
 def test_a_study_in_which_the_pier_overturns_is_never_the_better_one(tmp_path):
     answer = answered(two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}}))
     assert answer.startswith("B is better: of 30 runs 0 do not end standing, of A 1.")
+
+
+def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_path):
+    a, b = two(tmp_path, second={"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.9}}})
+    _, head, rotation, *_ = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
+    assert head == ["worst of the runs in common", "value", "record and case", "value", "record and case", "B / A"]
+    with (a / "peaks.csv").open(encoding="utf-8", newline="") as file:
+        worst = max(
+            (row for row in csv.DictReader(file) if row["status"] == "ok"),
+            key=lambda row: float(row["theta_max_over_alpha"]),
+        )
+    theta = float(worst["theta_max_over_alpha"])
+    _, first, at_first, second, at_second, ratio = rotation
+    assert first.startswith(f"{theta:.4g} α = ")
+    assert at_first.startswith(f"{worst['record']}, {worst['case']}: ")
+    assert second.startswith(f"0.9 α = {0.9 * 0.13 * 180.0 / 3.14159265:.3g}°".rstrip("0"))
+    assert at_second.startswith("SYL360, 2: ")
+    assert float(ratio) == pytest.approx(0.9 / theta, abs=6e-4)

@@ -16,6 +16,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import (
     Run,
+    agreement,
     chaos,
     error_control,
     first_substeps,
@@ -490,3 +491,87 @@ def test_residuals_may_be_chaotic_where_counts_differ_or_they_come_nearer_too_sl
     ]
     assert chaos.residuals_wander(levels, 1e-5, FIG5) == alters
     assert not chaos.residuals_wander(levels, 1e-3, FIG5) or kind == "counts"
+
+
+QUICK = Pier(0.2, 2.0)
+"""Of which the units of time, 1/p, are half a second, in which 0.01 are 5 ms."""
+
+
+def extent(first, second, tolerance=1e-4):
+    return agreement.agreement(trial(4, second), trial(2, first), tolerance, QUICK).name
+
+
+@pytest.mark.parametrize(
+    ("kind", "apart", "together"),
+    [
+        ({"t_max": 1.0}, {"t_max": 1.006}, {"t_max": 1.004}),
+        ({"status": "flight", "t_flight": 1.0}, {"t_flight": 1.006}, {"t_flight": 1.004}),
+        ({"status": "overturned", "t_end": 3.0}, {"t_end": 3.006}, {"t_end": 3.004}),
+        ({"status": "overturned", "windows": [0.1, 1.5]}, {"windows": [0.1041, 0.7]}, {"windows": [0.1039, 0.7]}),
+        ({"status": "failed", "reason": LEFT_ALONE[0]}, {"reason": LEFT_ALONE[1]}, {}),
+        (
+            {"status": "failed", "reason": LEFT_ALONE[0]},
+            {"theta_max_in_motion": 0.10011},
+            {"theta_max_in_motion": 0.10009},
+        ),
+        ({"windows": [0.1, 0.05]}, {"windows": [0.1, 0.06]}, {"windows": [0.1, 0.05009]}),
+    ],
+)
+def test_two_runs_agree_in_times_to_a_hundredth_of_1_over_p_and_in_how_they_end(kind, apart, together):
+    first = ok(0.1) | kind
+    assert extent(first, first) == extent(first, first | together) == "THROUGHOUT"
+    of_one_that_stood = {"t_max": "RESULTS", "windows": "APART"}.get(next(iter(apart)), "NONE")
+    assert extent(first, first | apart) == (of_one_that_stood if first["status"] == "ok" else "NONE")
+    unsettled = first | {"status": "failed", "reason": "not settled"}
+    assert extent(unsettled, unsettled) == "NONE"
+
+
+def test_what_differs_is_harmless_three_times_its_change_below_the_peak_and_counts_in_the_same_course():
+    for below, name in ((0.0029, "RESULTS"), (0.0031, "APART")):
+        lower = 0.1 - below
+        assert extent(ok(0.1, windows=[0.1, lower - 0.001]), ok(0.1, windows=[0.1, lower])) == name
+    for change, name in ((0.9e-4, "THROUGHOUT"), (1.1e-4, "APART")):
+        assert extent(ok(0.1, 4, windows=[0.1, 0.05]), ok(0.1, 5, windows=[0.1, 0.05 + change]), 1e-3) == name
+    for error, name in ((0.9e-4, "THROUGHOUT"), (1.1e-4, "NONE")):
+        for which in ("theta_max_error", "theta_res_error"):
+            assert extent(ok(0.1), ok(0.1, **{which: error})) == name
+
+
+def probed(probe, **own):
+    """What is left of an outcome that claims 1e-6 rad, after a probe."""
+    fine = trial(8, ok(0.1, theta_max_error=1e-6, change_in_motion=2e-6) | own)
+    return chaos._with_peak_of(trial(8, ok(0.1) | probe), fine, fine.outcome, 1e-4, QUICK, "1e-08 stronger")
+
+
+def test_a_probe_raises_the_errors_that_it_shows_to_be_too_small_or_withdraws_them():
+    """The tolerance is 2e-5 rad: twice what the motion a hair off moves is claimed, up to it."""
+    assert probed({}).change_in_motion == 2e-6
+    assert probed({"theta_max_in_motion": 0.1 + 4e-6}).change_in_motion == pytest.approx(8e-6)
+    assert probed({"theta_max_in_motion": 0.1 - 1.1e-5}).change_in_motion is None
+    assert probed({}, change_in_motion=None).change_in_motion is None
+    damped = {"damper_force": 0.2, "devices_error": 1e-4}
+    assert probed({"damper_force": 0.2}, **damped).devices_error == 1e-4
+    assert probed({"damper_force": 0.202}, **damped).devices_error == pytest.approx(2.0 * 0.002 / 0.202)
+    assert probed({"damper_force": 0.202}, **damped | {"devices_error": None}).devices_error == pytest.approx(
+        2.0 * 0.002 / 0.202
+    )
+    assert probed({}).devices_error is None
+    for status, words in (("flight", "ends it in flight"), ("failed", "is not decided"), ("overturned", OVERTURNS)):
+        found = probed({"status": status})
+        assert (found.theta_max_error, f"a motion 1e-08 stronger {words}" in found.note) == (None, True)
+    assert probed({}, theta_max_error=None).note == ""
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "apart"),
+    [(0.1, 0.3, 0.2), (0.3, 0.1, 0.2), (None, None, 0.0), (0.1, None, math.inf), (None, 0.1, math.inf)],
+)
+def test_residuals_lie_apart_by_their_difference_and_settlements_by_theirs_over_half_the_width(one, other, apart):
+    tilted = [
+        Outcome(**vars(trial(2, ok(0.1)).outcome) | {"theta_res": value, "settlement": None}) for value in (one, other)
+    ]
+    sunk = [
+        outcome.changed(theta_res=None, settlement=value) for outcome, value in zip(tilted, (one, other), strict=True)
+    ]
+    assert chaos._residuals_apart(*tilted, QUICK) == pytest.approx(apart)
+    assert chaos._residuals_apart(*sunk, QUICK) == pytest.approx(apart / QUICK.half_width)
