@@ -155,7 +155,7 @@ def test_forces_in_sections_during_flight(name):
     assert flew >= 3
 
 
-@pytest.mark.parametrize("name", ["rigid", pytest.param("finite", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["rigid", pytest.param("finite", marks=pytest.mark.thorough)])
 def test_springs_at_the_deck_act_in_all_sections_below_it(name):
     for seed in range(40, 44):
         check_against_points(seed, BASES[name], vertical=0.3, k_deck=0.3)
