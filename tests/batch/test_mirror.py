@@ -83,12 +83,22 @@ PIER = Pier(0.2, 1.0)
     ("base", "amplitude"),
     [
         (ElasticBase(beta=40.0, epsilon=0.1), 6.0),
-        (ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite", flight="stop"), 6.0),  # flights let last bits grow
+        pytest.param(
+            ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite", flight="stop"), 6.0, marks=pytest.mark.slow
+        ),  # flights let last bits grow
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 6.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1, spring="epp"), 6.0),
-        (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"), 4.0),
+        pytest.param(
+            YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"),
+            4.0,
+            marks=pytest.mark.slow,
+        ),
         (YieldingBase(beta=40.0, eta=2.0, zeta=0.05, spring="hardening"), 6.0),
-        (YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="hardening", kinematics="finite", flight="stop"), 4.0),
+        pytest.param(
+            YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="hardening", kinematics="finite", flight="stop"),
+            4.0,
+            marks=pytest.mark.slow,
+        ),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 15.0),
         (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 30.0),
     ],

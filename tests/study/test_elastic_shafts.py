@@ -39,6 +39,7 @@ def test_what_cannot_be_is_refused_with_a_remedy(tmp_path, tables, message):
     assert message in messages(tmp_path, **tables)
 
 
+@pytest.mark.slow  # the kernel of an elastic shaft
 def test_a_rigid_and_a_bending_shaft_are_compared_in_one_study(tmp_path):
     """Drift of the bending one is its own way, not height times rotation; its checks and histories know it."""
     rules = [

@@ -281,6 +281,7 @@ def test_half_cycles_of_a_block_are_those_in_closed_form():
     np.testing.assert_allclose(cycles.omega_after[1:20] / cycles.omega_before[1:20], 0.9, rtol=1e-12)
 
 
+@pytest.mark.slow  # the kernel of finite kinematics
 def test_half_cycles_on_stiff_springs_tend_to_those_of_the_block():
     stiff = rb.simulate(
         BLOCK, rb.ElasticBase(400, kinematics="finite"), rb.Motion.still(1.0), initial_rotation_rad=START
