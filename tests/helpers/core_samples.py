@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from rockbatch.common.units import GRAVITY
+from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
+from rockbatch.simulation.models import springs
 
 FIG5 = Pier(alpha=0.20, p=1.0)
 FIG6 = Pier(alpha=0.15, p=1.0)
@@ -94,3 +97,10 @@ def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:
     horizontal = broadband(rng, dt, npts, GRAVITY * math.tan(pier.alpha) * rng.uniform(0.8, 4.0))
     vertical = broadband(rng, dt, npts, GRAVITY * rng.uniform(0.0, 1.2)) if rng.uniform() < 0.7 else None
     return pier, base, Motion(f"hard-{seed}", dt, horizontal, vertical)
+
+
+def gaps_of(pier, base, devices, states):
+    """Return the Gap of each device in each state of a pier on springs."""
+    m = springs(pier, base)
+    at = [attitude(m, y, SimpleNamespace(top=0.0), 0.0) for y in states]
+    return [[gap_of(m, of, *each) for each in zip(at, states, strict=True)] for of in devices]

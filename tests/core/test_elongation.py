@@ -1,0 +1,54 @@
+"""Elongations of devices and their derivatives, by closed forms and differences."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from core_samples import gaps_of
+
+from rockbatch.pier import ElasticBase, Pier
+from rockbatch.simulation.models import IDLE, springs
+
+PIER = Pier(0.3, 1.2)
+AT_FOOT, AT_DECK = IDLE._replace(offset=0.7), IDLE._replace(height=9.0, swing=1.5, way=-1.0)
+
+
+def elongation(m, of, theta, v):
+    """Return e [m] of THEORY.md: u/cos(θ/2) at the foot, the way of the deck over the ground above."""
+    if of.height:
+        return of.way * (of.height * math.sin(theta) + math.copysign(of.swing, theta) * (1.0 - math.cos(theta)))
+    rise = v + m.height * (1.0 - math.cos(theta)) - of.offset * math.sin(theta)
+    return rise / math.cos(0.5 * theta)
+
+
+LOW, HIGH = (-0.5, -1.0, -0.2, -1.0), (0.5, 1.0, 0.2, 1.0)
+STATES = [
+    SimpleNamespace(theta=theta, omega=omega, v=v, v_rate=v_rate)
+    for theta, omega, v, v_rate in np.random.default_rng(5).uniform(LOW, HIGH, (20, 4)).tolist()
+]
+
+
+def test_in_finite_kinematics_an_elongation_and_its_derivatives_are_those_of_the_motion(uncompiled):
+    base, short = ElasticBase(50.0, kinematics="finite"), 1e-4
+    m, found = springs(PIER, base), uncompiled(gaps_of, PIER, base, (AT_FOOT, AT_DECK), STATES)
+    for of, each in zip((AT_FOOT, AT_DECK), found, strict=True):
+        for y, gap in zip(STATES, each, strict=True):
+            by_theta, by_v, along = (
+                [elongation(m, of, y.theta + t * theta, y.v + t * v) for t in (-short, 0.0, short)]
+                for theta, v in ((1.0, 0.0), (0.0, 1.0), (y.omega, y.v_rate))
+            )
+            assert gap.elongation == pytest.approx(along[1], rel=1e-12)
+            assert gap.by_theta == gap.arm == pytest.approx((by_theta[2] - by_theta[0]) / (2.0 * short), rel=1e-6)
+            assert gap.by_v == pytest.approx((by_v[2] - by_v[0]) / (2.0 * short), abs=1e-9)
+            assert gap.speed == pytest.approx((along[2] - along[0]) / (2.0 * short), abs=1e-7)
+            assert gap.bend == pytest.approx((along[0] - 2.0 * along[1] + along[2]) / short**2, abs=1e-5)
+
+
+def test_in_first_order_kinematics_an_elongation_is_linear_and_arms_keep_p_delta(uncompiled):
+    base = ElasticBase(50.0)
+    m, found = springs(PIER, base), uncompiled(gaps_of, PIER, base, (AT_FOOT, AT_DECK), STATES)
+    for y, foot, deck in zip(STATES, *found, strict=True):
+        assert foot[:5] == pytest.approx((y.v - 0.7 * y.theta, y.v_rate - 0.7 * y.omega, 1.0, -0.7, 0.0), rel=1e-12)
+        assert foot.arm == pytest.approx(m.height * y.theta - 0.7, rel=1e-12)
+        assert deck == pytest.approx((-9.0 * y.theta, -9.0 * y.omega, 0.0, -9.0, 0.0, -9.0), rel=1e-12)
