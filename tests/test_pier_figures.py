@@ -48,6 +48,16 @@ def test_the_deck_and_the_devices_are_to_scale():
     assert {"h = 20 m", "2b = 8 m", "deck, 33 m"} <= {mark.text for mark in marks(figure, "", Words)}
 
 
+def test_the_slenderness_is_an_arc_about_the_toe_from_the_edge_to_the_radius():
+    (figure,) = sketches([PIER], {"rigid"})
+    (shaft,) = marks(figure, "band", Area)
+    (arc,) = (mark for mark in marks(figure, "edge") if len(mark.x) > 2)
+    toe = shaft.x.max()
+    assert np.ptp(np.hypot(arc.x - toe, arc.y)) < 1e-9
+    turned = np.arctan2(toe - arc.x, arc.y)
+    assert (turned.min(), turned.max()) == pytest.approx((0.0, PIER["alpha"]))
+
+
 def test_no_more_piers_are_drawn_than_can_be_taken_in():
     assert len(sketches([PIER] * 20, {"rigid"})) == MOST_PIERS
 

@@ -60,7 +60,14 @@ TESTS = {
     "checks": ("checks", "results", "report"),
     "toml": ("test_toml.py", "test_units.py", "study"),
     "rockbatch": ("test_python_doors.py", "test_python_pieces.py", "test_doors.py"),
-    "commands": ("test_cli.py", "test_arguments.py", "test_doors.py", "test_outputs.py", "test_hostile_calls.py"),
+    "commands": (
+        "test_cli.py",
+        "test_arguments.py",
+        "test_doors.py",
+        "test_outputs.py",
+        "test_hostile_calls.py",
+        "checks",
+    ),
     "common": (
         *(
             "test_f*.py",
