@@ -63,6 +63,9 @@ def test_all_screenshots_are_made_anew(script, tmp_path):
     if script.browser() is None:
         pytest.skip("needs Chromium")
     script.main(tmp_path)
-    made = {path.stem: Image.open(path).width for path in tmp_path.iterdir()}
+    made = {}
+    for path in tmp_path.iterdir():
+        with Image.open(path) as picture:
+            made[path.stem] = picture.width
     assert set(script.SHOTS) - {"report-printed"} <= set(made)
     assert made == pytest.approx({name: script.SHOTS[name].width for name in made}, abs=1)
