@@ -7,6 +7,7 @@ probability in T years 1 − exp(−λT), as of a Poisson process.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ NOTABLE = 0.05
 MIDDLE = (0.05, 0.95)
 """Shares of a rate between which the intensities lie that are named as those that contribute."""
 
-BINS_PER_DECADE = 10
+BINS_PER_DECADE, POINTS_PER_BIN = 10, 50
 
 
 @dataclass(frozen=True)
@@ -228,22 +229,22 @@ def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, st
     if spec.hazard is None:
         return []
     x, rates = spec.hazard.curve.quadrature()
-    passed = np.concatenate(([0.0], np.cumsum(risk.total.probability(x) * rates)))
+    passed = np.cumsum(risk.total.probability(x) * rates)
     ends = spec.hazard.curve.ends
-    low, high = (float(np.exp(np.interp(share * risk.rate, passed[1:], np.log(x)))) for share in (1e-3, 1.0 - 1e-3))
-    decades = np.arange(
-        math.floor(BINS_PER_DECADE * math.log10(low)), math.ceil(BINS_PER_DECADE * math.log10(high)) + 1
-    )
-    grid = 10.0 ** (decades / BINS_PER_DECADE)
+    low, high = (float(np.exp(np.interp(share * risk.rate, passed, np.log(x)))) for share in (1e-3, 1.0 - 1e-3))
+    first = math.floor(BINS_PER_DECADE * math.log10(low))
+    last = max(math.ceil(BINS_PER_DECADE * math.log10(high)), first + 1)
+    grid = 10.0 ** (np.arange(first, last + 1) / BINS_PER_DECADE)
     edges = np.unique(np.concatenate((grid, [end for end in ends if grid[0] < end < grid[-1]])))
-    upto = np.interp(np.log(edges), np.log(x), passed[1:])
-    upto[0], upto[-1] = 0.0, passed[-1]
-    bins = []
-    for i, part in enumerate(np.diff(upto)):
-        middle = math.sqrt(edges[i] * edges[i + 1])
-        position = "below" if middle < ends[0] else "above" if middle > ends[1] else "within"
-        bins.append((float(edges[i]), float(edges[i + 1]), position, float(part)))
-    return bins
+    parts = []
+    for points in (np.geomspace(*between, POINTS_PER_BIN) for between in pairwise(edges)):
+        probability = risk.total.probability(np.sqrt(points[1:] * points[:-1]))
+        parts.append(float(probability @ -np.diff(spec.hazard.curve.rate(points))))
+    parts[0] += float(np.interp(math.log(edges[0]), np.log(x), passed))
+    parts[-1] = risk.rate - sum(parts[:-1])
+    middles = np.sqrt(edges[1:] * edges[:-1])
+    positions = ("below" if m < ends[0] else "above" if m > ends[1] else "within" for m in middles)
+    return list(zip(edges[:-1].tolist(), edges[1:].tolist(), positions, parts, strict=True))
 
 
 def described_hazard(spec: FragilitySpec) -> dict[str, Any] | None:

@@ -225,6 +225,11 @@ def test_the_command_writes_rates_and_what_they_come_from(tmp_path, capsys):
     bins = pd.read_csv(out / "fragility_deaggregation.csv")
     assert bins["rate_per_year"].sum() == pytest.approx(rate, rel=1e-8)
     assert bins["share"].sum() == pytest.approx(1.0)
+    for low, high, part in zip(bins["above"], bins["up_to"], bins["rate_per_year"], strict=True):
+        x = np.geomspace(low, high, 500)
+        own = float((total.probability(np.sqrt(x[1:] * x[:-1])) * -np.diff(hazard.rate(x))).sum())
+        ends = 1e-3 * rate * ((low == bins["above"].min()) + (high == bins["up_to"].max()))  # what is joined there
+        assert own * (1.0 - 1e-3) < part < own * (1.0 + 1e-3) + 1.1 * ends
     for where, name in (("above", "rate_above_points"), ("below", "rate_below_points")):
         assert bins[bins["hazard"] == where]["rate_per_year"].sum() == pytest.approx(float(row[name]), rel=0.02)
     points = pd.read_csv(out / "fragility.csv")
