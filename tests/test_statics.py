@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,15 @@ def test_friction_at_both_pivots_and_a_tendon_on_the_axis_raise_the_lift_off():
     others = on_rigid(rb.Damper("viscous", nu=1.0), rb.Damper("hysteretic", f=0.1, yield_m=0.01))
     assert others.lift_off_g == pytest.approx(math.tan(0.2))
     assert others.strength_g > 1.1 * math.tan(0.2)  # the hysteretic one has yielded by then
+
+
+@pytest.mark.parametrize("base", [RigidBase, partial(ElasticBase, 30.0, kinematics="finite")])
+def test_supports_bear_the_weight_and_what_tendons_press_down(base):
+    """A tendon on the axis pulls along e = u/cos(θ/2), so that it presses with P ∂e/∂u = P/cos(θ/2)."""
+    turn, theta = SlowTurn(PIER, base(restraints=(TENDON,))), np.array([0.05, 0.3, 0.6])
+    (place,), at = turn.places, turn.at(theta)
+    pull = place.pull(turn.elongation(place, theta, at.depth), 0.0)
+    assert at.toe + at.heel == pytest.approx(1.0 + pull / np.cos(0.5 * theta), rel=1e-9)
 
 
 def test_dampers_are_held_against_what_rights_the_pier():
