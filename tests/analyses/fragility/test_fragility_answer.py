@@ -256,3 +256,12 @@ def test_a_rate_of_zero_rests_on_nothing_and_a_fifth_of_one_is_not_worth_a_word(
         for where in ("rate_below_points", "rate_above_points", "rate_below_levels", "rate_above_levels"):
             _, marked = said(curve(median=0.7, risk=rate(1e-4, **{where: share * 1e-4})), by=of_rates, hazard=HAZARD)
             assert len(marked) == named
+
+
+@pytest.mark.parametrize("others", [[], [{"median_undecided": [0.5, 0.6]}]], ids=["alone", "beside one with bounds"])
+def test_a_case_of_which_nothing_is_known_may_be_weaker_down_to_0(others):
+    open_ = {"says_little": True, "undecided": (0, 5, 5, 0)}
+    several = [curve(f"mats {i}", median=1.0, **(open_ | each)) for i, each in enumerate(others)]
+    unknown = curve("pads", median=1.0, **open_, median_undecided=[None, 1.1])
+    (line, _), _ = said(curve("rock", median=0.8), *several, unknown)
+    assert line.endswith("; pads may be weaker, down to 0, as runs of it are undecided.")
