@@ -64,6 +64,8 @@ def test_marks_and_lines_are_the_rows_of_the_table(results):
             assert mark.x == pytest.approx([place + (0.16 if is_open else -0.16)])
     rigid = sorted(float(mark.at[0]) for mark in panel.marks if isinstance(mark, Rule))
     assert rigid == pytest.approx(sorted(rows[rows["case"] == "rock"]["theta_max_over_alpha"]))
+    (second,) = (float(mark.at[0]) for mark in panel.marks if isinstance(mark, Rule) and mark.look.open)
+    assert second == pytest.approx(rows[(rows["case"] == "rock") & (rows["p"] == 2.0)]["theta_max_over_alpha"].item())
 
 
 def test_runs_without_a_peak_stand_above_the_axis_values(results):
