@@ -183,17 +183,26 @@ def hook(stub: Callable[..., Any]) -> Any:
     its machine code is that of the implementation written out. Implementations become part of their callers, so that loops
     over lanes can be turned into vector code.
     """
+    return _hook(stub, None)
+
+
+def optional_hook(default: Callable[..., Any]) -> Any:
+    """Let systems implement a function as those of :func:`hook`; ``default`` serves the others."""
+    return _hook(default, default)
+
+
+def _hook(stub: Callable[..., Any], default: Any) -> Any:
     implementations: dict[type, Callable[..., Any]] = {}
 
     @functools.wraps(stub)
     def call(system: Any, *rest: Any) -> Any:
-        return implementations[type(system)](system, *rest)
+        return implementations.get(type(system), default)(system, *rest)
 
     def choose(system: Any, *rest: Any) -> Any:
         described_by = (
             type(None) if isinstance(system, numba.types.NoneType) else getattr(system, "instance_class", object)
         )
-        return implementations.get(described_by)
+        return implementations.get(described_by, default)
 
     def of(described_by: type) -> Callable[[Callable[..., Any]], Any]:
         def register(implementation: Callable[..., Any]) -> Any:

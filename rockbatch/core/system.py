@@ -1,14 +1,16 @@
 """Hooks by which the driver calls a system: each pier implements them in its own package (``springs``, ``block``).
 
 The first group takes a model ``m`` (Springs, Block), the second the traits that kernels are compiled for, and a lane of a
-table. ``contact`` and ``supports`` hold what is constant between events; ``devices`` are None where there are none.
+table. ``contact`` and ``supports`` hold what is constant between events; ``devices`` are None where there are none. Optional
+ones do here what a system needs least: nothing decays, all lanes are taken event by event, nothing more is written.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.core.kernel import hook
+from rockbatch.core.clock import EVENTFUL
+from rockbatch.core.kernel import hook, optional_hook
 
 
 class System(NamedTuple):
@@ -25,19 +27,22 @@ def rates(m, y, contact, ground):
     """Return the rates of state ``y``: the right-hand side."""
 
 
-@hook
+@optional_hook
 def share(m, h):
     """Return the share that remains after ``h`` [s] of what decays in closed form."""
+    return 1.0
 
 
-@hook
+@optional_hook
 def stage(m, y, start, contact, remaining):
     """Return a stage ``y`` of a step from ``start``, with the share ``remaining`` of what decays in closed form."""
+    return y
 
 
-@hook
+@optional_hook
 def end_step(m, y, start, contact, remaining):
     """Return the end ``y`` of a step from ``start``, on what constrains it."""
+    return y
 
 
 @hook
@@ -45,9 +50,10 @@ def ground_power(m, y, contact, ground):
     """Return the power of the ground's inertia forces on the pier [W/kg]."""
 
 
-@hook
+@optional_hook
 def shift(m, contact):
     """Return by how far devices are right of their offsets from the middle of the base [m]."""
+    return 0.0
 
 
 @hook
@@ -60,14 +66,16 @@ def transition(m, devices, now, which, ground, dt):
     """Return the Transition by event ``which`` of the Moment ``now``; ``dt`` [s] is the sampling interval."""
 
 
-@hook
+@optional_hook
 def longest_step(m, start, h):
     """Return the length [s], ``h`` at most, of a sub-step from the Instant ``start`` in which event functions show all events."""
+    return h
 
 
-@hook
+@optional_hook
 def airborne(m, contact):
     """Return whether both pivots are in the air."""
+    return contact.left == 0.0 and contact.right == 0.0
 
 
 @hook
@@ -80,16 +88,18 @@ def begin(traits, lanes, i, run):
     """Put what only this system has of a ``run`` into lane ``i``, whose clock and ground are set, and set its deadline."""
 
 
-@hook
+@optional_hook
 def one_pass(traits, lanes, count, substep, settings):
     """Take the first ``count`` lanes through a sub-step, from ``now`` to ``end``.
 
     One that is calm goes on from the end, its extremes brought up to it. Of others ``step_status`` says whether their sub-step
     stands (STANDS) or has to be taken event by event (EVENTFUL).
     """
+    for i in range(count):
+        lanes.step_status.kind[i] = EVENTFUL
 
 
-@hook
+@optional_hook
 def take_in_step(traits, lanes, i, substep, history):
     """Take in what the pass could not, of a sub-step of lane ``i`` that stands, and let the lane go on from its end."""
 
@@ -104,6 +114,6 @@ def status_at_sample(traits, lanes, i, devices):
     """Return how the run in lane ``i`` has ended, RUNNING if it goes on; and the number of the next sample to look at it."""
 
 
-@hook
+@optional_hook
 def finish(traits, lanes, i, t, result):
     """Write what only this system has of the run in lane ``i`` into its ``result``."""

@@ -14,7 +14,7 @@ from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Springs
+from rockbatch.core.springs.model import ELASTIC, LAWS, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -28,7 +28,6 @@ from rockbatch.pier import (
     Place,
     Restraint,
     RigidBase,
-    SpringLaw,
     Tendon,
     YieldingBase,
     fastest,
@@ -63,9 +62,6 @@ STEEP = 100.0
 READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
 
-
-LAWS: dict[SpringLaw, float] = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
-"""The core's codes of the laws of yielding springs."""
 
 DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
 """The core's codes of dampers."""

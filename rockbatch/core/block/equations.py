@@ -30,24 +30,6 @@ def rocker_rates(m, y, side, ground):
     return Tilt(y.omega, abs(side) * tilt_acceleration(m, slope, arm, ground))
 
 
-@system.share.of(Rocker)
-def rocker_share(m, h):
-    """Return 1: nothing decays."""
-    return 1.0
-
-
-@system.stage.of(Rocker)
-def rocker_stage(m, y, start, side, remaining):
-    """Return the stage as it is."""
-    return y
-
-
-@system.end_step.of(Rocker)
-def rocker_end_step(m, y, start, side, remaining):
-    """Return the end as it is."""
-    return y
-
-
 @inlined
 def side_of(contact):
     """Return the pivot about which the block rocks, or NEITHER."""
@@ -129,18 +111,6 @@ def rates(m, y, contact, ground):
     return Rocking(y.v_rate, y.omega, v_acceleration, theta_acceleration)
 
 
-@system.share.of(Block)
-def share(m, h):
-    """Return 1: nothing decays."""
-    return 1.0
-
-
-@system.stage.of(Block)
-def stage(m, y, start, contact, remaining):
-    """Return the stage as it is."""
-    return y
-
-
 @hook
 def constrained(m, y, contact):
     """Return ``y`` with v and v̇ as the pivot that is on the ground has them."""
@@ -182,12 +152,6 @@ def normal_force(m, y, k, vertical):
 @normal_force.of(Block)
 def _normal_of_block(m, y, k, vertical):
     return m.gravity + vertical + k.v_rate + pull_down(m.pull)[0]
-
-
-@system.airborne.of(Block)
-def airborne(m, contact):
-    """Return whether both pivots are in the air."""
-    return contact.left == 0.0 and contact.right == 0.0
 
 
 @inlined

@@ -4,7 +4,6 @@ import math
 
 from rockbatch.core import system
 from rockbatch.core.block.equations import (
-    airborne,
     arms,
     clearances,
     constrained,
@@ -22,7 +21,7 @@ from rockbatch.core.devices.pull import about_to_turn
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
-from rockbatch.core.system import rates
+from rockbatch.core.system import airborne, rates
 from rockbatch.core.table import along
 from rockbatch.core.types import (
     CONTACT_LEFT,

@@ -104,11 +104,6 @@ def take_in_part(traits, lanes, i, m, part, after):
         lanes.contact.top[i] = RIGHT if after.y.theta > 0.0 else LEFT  # the deck lay on both corners
 
 
-@system.finish.of(BlockTraits)
-def finish(traits, lanes, i, t, result):
-    """Write nothing more: a block on rigid ground leaves no residuals."""
-
-
 def system_of(m):
     """Return the System of the pier ``m`` (Block)."""
     return System(BlockTraits(), Line, LANE, Rocking._fields + Stance._fields)

@@ -77,18 +77,6 @@ def rates(m, y, contact, ground):
     return Flexing(y.v_rate, y.omega, v_acceleration, theta_acceleration, y.u_rate, u_acceleration)
 
 
-@system.share.of(FlexibleBlock)
-def share(m, h):
-    """Return 1: nothing decays in closed form."""
-    return 1.0
-
-
-@system.stage.of(FlexibleBlock)
-def stage(m, y, start, contact, remaining):
-    """Return the stage as it is."""
-    return y
-
-
 @constrained.of(FlexibleBlock)
 def _constrained(m, y, contact):
     side = side_of(contact)
@@ -119,18 +107,6 @@ def ground_power(m, y, contact, ground):
     """Return the power of the ground's inertia forces [W/kg]."""
     along, up = velocity_of_centre(m, y, contact)
     return -ground.horizontal * along - ground.vertical * up
-
-
-@system.shift.of(FlexibleBlock)
-def shift(m, contact):
-    """Return 0: it is no frame."""
-    return 0.0
-
-
-@system.airborne.of(FlexibleBlock)
-def airborne(m, contact):
-    """Return whether both pivots are in the air."""
-    return contact.left == 0.0 and contact.right == 0.0
 
 
 @inlined

@@ -1,7 +1,7 @@
 """Events of a pier whose shaft bends; those at which nothing jumps are a rigid block's (THEORY.md, A shaft that bends)."""
 
 from rockbatch.core import system
-from rockbatch.core.block.equations import airborne, clearances, constrained, key_of, on_pivot, on_side, side_of
+from rockbatch.core.block.equations import clearances, constrained, key_of, on_pivot, on_side, side_of
 from rockbatch.core.block.events import (
     NEARBY,
     NEGLIGIBLE,
@@ -20,7 +20,7 @@ from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import kernel
 from rockbatch.core.roots import NO_ACCELERATION
-from rockbatch.core.system import rates
+from rockbatch.core.system import airborne, rates
 from rockbatch.core.table import along
 from rockbatch.core.trigonometry import sine_and_cosine
 from rockbatch.core.types import (

@@ -7,7 +7,7 @@ from rockbatch.core import system
 from rockbatch.core.block.equations import clearances, constrained, on_side
 from rockbatch.core.block.model import Stance, Tilt
 from rockbatch.core.clock import COMMON, TIMING, include_height
-from rockbatch.core.flexure import ending, events, passing  # noqa: F401  hooks of the flexible block
+from rockbatch.core.flexure import ending, events  # noqa: F401  hooks of the flexible block
 from rockbatch.core.flexure.model import NUMBERS, FlexibleBlock, FlexibleTraits, Flexing, Numbers
 from rockbatch.core.kernel import inlined, kernel
 from rockbatch.core.roots import largest_within

@@ -122,12 +122,6 @@ def ground_power(m, y, contact, ground):
     return -ground.horizontal * lever * y.omega - ground.vertical * y.v_rate
 
 
-@system.shift.of(Springs)
-def shift(m, contact):
-    """Return 0: no frame stands on springs."""
-    return 0.0
-
-
 @system.airborne.of(Springs)
 def airborne(m, contact):
     """Return whether both pivots are in the air."""

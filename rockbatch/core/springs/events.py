@@ -83,12 +83,6 @@ def _held(m, y, contact, side, ground):
     return lifted, pressed
 
 
-@system.longest_step.of(Springs)
-def longest_step(m, start, h):
-    """Return all of ``h`` [s]: steps that resolve the springs show what happens."""
-    return h
-
-
 @inlined
 def _sides(m, y, k, contact, supports):
     """Return both sides in state ``y`` with rates ``k``."""

@@ -12,6 +12,9 @@ BOUC_WEN = 1.0
 EPP = 2.0
 HARDENING = 3.0
 
+LAWS = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
+"""Constitutive models of yielding springs by the names that users write."""
+
 
 class Springs(NamedTuple):
     """A pier on two springs, per unit mass.
