@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.core.block import lanes as block_lanes
 from rockbatch.core.block.model import Block
-from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
+from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import lanes as flexible_lanes
 from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.ground import ground_rows
@@ -20,7 +20,6 @@ from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
     Base,
     Damper,
-    DamperKind,
     DeckSpring,
     ElasticBase,
     Mode,
@@ -62,9 +61,6 @@ STEEP = 100.0
 READ_AFTER = 5.0
 """Periods 2π/ω_v of the vertical vibration from the end of the record to the moment at which residuals are read."""
 
-
-DAMPERS: dict[DamperKind, float] = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
-"""The core's codes of dampers."""
 
 IDLE = Element(
     kind=VISCOUS, strength=0.0, stiffness=0.0, coefficient=0.0, exponent=1.0, prestress=0.0, offset=0.0, linear_below=0.0,

@@ -19,6 +19,9 @@ MAXWELL = 4.0  # a viscous damper behind a spring, its brace
 CONTACT = 5.0  # a stop
 SPRING = 6.0
 
+DAMPERS = {"friction": FRICTION, "viscous": VISCOUS, "hysteretic": HYSTERETIC}
+"""Kinds of dampers without a brace by the names that users write."""
+
 # Modes of a tendon; of a stop: on its elastic line, open, on its first-loading line
 TAUT = 0.0
 SLACK = 1.0
