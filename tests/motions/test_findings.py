@@ -262,6 +262,7 @@ def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
     assert max(ratios) == pytest.approx(2.75, abs=0.01)  # TCU084
 
 
+@pytest.mark.slow
 @needs_records
 def test_lasting_displacements_of_real_records_do_not_count_as_running_away():
     """Lucerne moved for good, by 2.4 m; straight lines take a third off that, and three fifths off what runs away."""
@@ -272,6 +273,7 @@ def test_lasting_displacements_of_real_records_do_not_count_as_running_away():
     assert away == {True: 2, False: 15, None: 1}  # True: 0111b and 0111c
 
 
+@pytest.mark.slow
 @needs_records
 def test_no_corrected_real_record_is_doubted_and_all_have_a_pgd():
     pytest.importorskip("hdf5plugin")

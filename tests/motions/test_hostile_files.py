@@ -31,7 +31,7 @@ def sac_with(word: int, value: float) -> bytes:
     return bytes(data)
 
 
-@pytest.mark.parametrize("value", [-1e30, np.inf, np.nan])
+@pytest.mark.parametrize("value", [-1e30, pytest.param(np.inf, marks=pytest.mark.slow), np.nan])
 def test_no_word_of_a_sac_header_keeps_its_reader_for_ever(tmp_path, value):
     """As other readers bring the event's longitude below 180° by subtracting 360° as often as that takes."""
     for word in range(70):  # in folders of ten: each file is compared with all others in its folder
@@ -289,7 +289,7 @@ def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
     (tmp_path / "a.xml").write_text('<?xml version="1.0" encoding="no-such-thing"?><a/>')
     (tmp_path / "b.xml").write_bytes(b"\xff\xfe\x00")
     (tmp_path / "c.xml").write_text('<?xml version="1.0" encoding="utf-32"?><a/>')
-    (tmp_path / "d.xml").write_text("<FDSNStationXML>" + "<a>" * 50_000)
+    (tmp_path / "d.xml").write_text("<FDSNStationXML>" + "<a>" * 20_000)
     entities = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 12))
     (tmp_path / "e.xml").write_text(f'<!DOCTYPE a [<!ENTITY e0 "ha">{entities}]><FDSNStationXML>&e11;</FDSNStationXML>')
     with bounds(10, 500):
@@ -300,11 +300,11 @@ def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, 
     from rockbatch.motions.formats import stationxml
 
     write_mseed(tmp_path / "x.mseed", trace("HNN"))
-    station_xml(tmp_path, "<abc/>" * 60_000, channel_xml("HNN"))
+    station_xml(tmp_path, "<abc/>" * 30_000, channel_xml("HNN"))
     tracemalloc.start()
     try:
         assert len(stationxml.channels_beside(tmp_path)[0]) == 1
-        assert tracemalloc.get_traced_memory()[1] < 2 * 2**20  # of a file of 0.4 MB, whose tree would take 5
+        assert tracemalloc.get_traced_memory()[1] < 2**20  # of a file of 0.2 MB, whose tree would take 2.5
     finally:
         tracemalloc.stop()
     assert names(read_motions(tmp_path)) == ["x"]
