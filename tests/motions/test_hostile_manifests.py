@@ -54,6 +54,7 @@ def problems(folder, name: str, text: str | bytes) -> list[str]:
         ("".join(f"[t{i}]\n" for i in range(10_000)), "unknown section"),
         ("x = '''" + "''x" * 300_000, "not valid TOML"),
         ("#" * 4_000_000 + "\nx", "not valid TOML"),
+        (b"\xff\xfe", "not UTF-8"),
         (" " * LARGEST + "x", "larger than 4 MiB"),
         ('[[record]]\nfile = "a\\u0000"\n', "the name of a file"),
         (f'[[record]]\nfile = "{"a/" * 400_000}"\n', "the name of a file"),
