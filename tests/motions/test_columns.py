@@ -146,6 +146,12 @@ def test_what_the_header_does_not_say_the_study_can_state(tmp_path):
     assert motion.vertical is not None
 
 
+def test_time_may_stand_behind_what_was_recorded(tmp_path):
+    write(tmp_path, "# NS EW time", NS, EW, T)
+    motions = read_motions(tmp_path, options=ReadOptions(unit="cm/s2")).motions
+    assert [(motion.name, motion.dt) for motion in motions] == [("REC.NS", 0.005), ("REC.EW", 0.005)]
+
+
 def test_one_column_takes_step_and_unit_from_the_study_and_direction_from_its_name(tmp_path):
     write(tmp_path, "", NS, name="STA_N.dat")
     write(tmp_path, "", UD, name="STA_Z.dat")
