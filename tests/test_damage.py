@@ -24,7 +24,7 @@ def small(tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize(("what", "times"), [("study", 25), ("journal", 40), ("folder", 3), ("rules", 20)])
+@pytest.mark.parametrize(("what", "times"), [("study", 12), ("journal", 20), ("folder", 1), ("rules", 10)])
 def test_a_damaged_one_ends_in_words_or_in_what_is_right(small, what, times):
     ends, bad = damage.repeated(getattr(small, f"damage_{what}"), times, seed=3)
     assert bad == []
@@ -54,7 +54,7 @@ def test_a_row_that_was_changed_with_its_checksum_would_be_seen(small):
 
 
 def test_what_never_ends_is_seen(monkeypatch):
-    monkeypatch.setattr(damage, "SECONDS", 0.2)
+    monkeypatch.setattr(damage, "SECONDS", 0.05)
 
     def endless(_):
         while True:

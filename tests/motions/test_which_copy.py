@@ -168,15 +168,13 @@ def test_records_that_only_look_alike_stay_two(tmp_path):
 
 
 @pytest.mark.parametrize("seconds", [4, 40])
-def test_waves_of_a_few_long_periods_are_no_copies_of_each_other(tmp_path, seconds):
+def test_waves_of_a_few_long_periods_are_no_copies_of_each_other(seconds):
     """Random walks have four independent values, whatever their length: of 120, several correlate by 0.95 and more."""
-    rng, t = np.random.default_rng(5), np.linspace(0.0, seconds, 401)[:-1]
-    walks = np.cumsum(rng.standard_normal((120, len(t))), axis=1)
+    walks = np.cumsum(np.random.default_rng(5).standard_normal((120, 400)), axis=1)
     walks -= walks.mean(axis=1, keepdims=True)
-    for i, walk in enumerate(walks):
-        rows = "".join(f"{x:.2f} {a:.6f}\n" for x, a in zip(t, walk / np.abs(walk).max(), strict=True))
-        (tmp_path / f"r{i}_NS.txt").write_text("time(s) a(m/s2)\n" + rows)
-    assert len(read_motions(tmp_path, confirmed=["*"]).motions) == 120
+    north = Orientation("NS", azimuth=0.0)
+    components = [Component(f"r{i}", seconds / 400, walk, north, source=f"r{i}") for i, walk in enumerate(walks)]
+    assert len(doubles.without_doubles(components)[0]) == 120
 
 
 def test_a_copy_of_a_record_of_one_period_is_found_without_a_header(tmp_path):
@@ -336,6 +334,29 @@ def test_a_copy_without_a_vertical_of_which_no_component_is_alike_is_left_out_wh
     for double in found.left_out:
         assert double.source.partition("/")[0] != used
         assert double.reason.startswith(f"the same recording as {used}/")
+
+
+def test_the_likeness_of_two_sets_is_the_greatest_of_all_shifts_rotations_and_reflections():
+    """By trying them: half a degree apart, of which the cosine costs 1e-5."""
+    rng = np.random.default_rng(4)
+    a, b = rng.standard_normal((2, 2, 400)) * np.hanning(400) ** 2
+    b[:, :350] += 2.0 * np.array(turned(a[1], a[0], 37.0))[:, 50:]
+    a, b = (x - x.mean(axis=1, keepdims=True) for x in (a, b))
+    north = Orientation("000", azimuth=0.0)
+    sets = ([Component(str(k), 0.01, x, north) for k, x in enumerate(side)] for side in (a, b))
+    angles, tried = np.radians(np.arange(0.0, 360.0, 0.5)), []
+    for shift in range(-100, 101):
+        x, y = a[:, max(0, shift) : 400 + min(0, shift)], b[:, max(0, -shift) : 400 - max(0, shift)]
+        (xx, xy), (yx, yy) = each = x @ y.T
+        turning = np.cos(angles) * (xx + yy) + np.sin(angles) * (xy - yx)
+        mirrored = np.cos(angles) * (xx - yy) + np.sin(angles) * (xy + yx)
+        best = max(turning.max(), mirrored.max()) / np.sqrt((x * x).sum() * (y * y).sum())
+        tried.append((best, shift, each))
+    best, shift, each = max(tried, key=lambda one: one[0])
+    found = likeness._in_any_frame(*sets, 1)
+    assert shift == 50
+    assert found.correlation == pytest.approx(best, rel=2e-5)
+    np.testing.assert_allclose(found.each, np.abs(each))
 
 
 def test_a_decimated_and_turned_copy_is_left_out_whole(tmp_path):
