@@ -13,6 +13,7 @@ from scipy.stats import linregress
 from scipy.stats import t as student
 
 import rockbatch as rb
+from rockbatch.analyses.release.analysis import GRIDS
 from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _Posterior, fitted
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -20,6 +21,8 @@ from rockbatch.common.files import read_table
 
 BLOCK = rb.Pier.rectangle(0.3, 1.2)
 START, IMPACTS = 0.1, 10
+FEW = 5
+"""Impacts of tests whose claim does not depend on their number: the work of a fit grows as their third power."""
 GRID = np.linspace(0.05, 1.0, 39)
 _NODES, _WEIGHTS = leggauss(60)
 
@@ -61,12 +64,19 @@ def lists(measured: Passages) -> dict[str, list[float]]:
     return {"impact_s": measured.t.tolist(), "amplitude_rad": measured.amplitude.tolist()}
 
 
+@pytest.fixture(autouse=True)
+def few_values(monkeypatch):
+    """Let fits begin at every third value, between the same bounds: each begins with a run of the core at all of them."""
+    for parameter, values in GRIDS.items():
+        monkeypatch.setitem(GRIDS, parameter, np.unique([*values[::3], values[-1]]))
+
+
 @pytest.mark.parametrize(
     ("e", "keys"), [(0.75, ("impact_s",)), (0.9, ("amplitude_rad",)), (0.98, ("impact_s", "amplitude_rad"))]
 )
 def test_exact_values_give_the_restitution_that_made_them(e, keys):
     """1e-6: the runs of a fit have some 1e-8 of θ0 left."""
-    exact = lists(passages([e] * IMPACTS))
+    exact = lists(passages([e] * FEW))
     (row,) = rb.release(study_of({key: exact[key] for key in keys})).release.to_dict("records")
     assert row["parameter"] == "restitution"
     assert row["value"] == pytest.approx(e, abs=1e-6)
@@ -115,16 +125,16 @@ KINDS = [
 """Scatter of the restitution, errors of reading of times [s] and amplitudes [rad]; NaN where nothing is measured."""
 
 
-@pytest.mark.parametrize(("spread", "reading"), KINDS[2:3])
+@pytest.mark.parametrize(("spread", "reading"), KINDS[4:])
 def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
-    """Of 8 tests 7.6 are expected, and fewer than 7 in one of 17 suites.
+    """Of 24 tests 22.8 are expected, and fewer than 21 in one of 17 suites.
 
-    Nor are they wider than the values scatter: Student's t of ten impacts makes 1.2 of the normal width, to 2 deviations of 27 %.
+    Nor are they wider than the values scatter: Student's t of ten impacts makes 1.2 of the normal width, to 2 deviations of 15 %.
     """
-    tests = fits(block, spread, reading, 8)
-    assert covered(tests) >= 0.85
+    tests = fits(block, spread, reading, 24)
+    assert covered(tests) >= 0.87
     scatter = np.std([fit.value for fit in tests])
-    assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.6)
+    assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.3)
 
 
 def test_times_that_share_the_error_of_the_first_are_fitted_as_a_line_whose_start_was_measured_too():
@@ -154,13 +164,13 @@ def test_intervals_hold_the_truth_in_many_tests(block, spread, reading):
 
 
 def test_scatter_of_the_restitution_is_distinguished_from_errors_of_reading():
-    exact = passages(0.9 + 0.02 * np.array([1, -1, 0.5, -0.5, 1.5, -1.5, 0.2, -0.2, 0.8, -0.8]))
+    exact = passages(0.9 + 0.02 * np.array([1, -1, 0.5, -0.5, 1.5, -1.5, 0.2, -0.2]))
     (row,) = rb.release(study_of(lists(exact))).release.to_dict("records")
     assert row["scatter"] == pytest.approx(0.02, rel=0.2)
 
 
 def test_times_may_count_from_the_first_impact():
-    exact = passages([0.9] * IMPACTS)
+    exact = passages([0.9] * FEW)
     (row,) = rb.release(study_of({"impact_s": (exact.t + 7.0).tolist(), "clock": "first impact"})).release.to_dict(
         "records"
     )
@@ -168,7 +178,7 @@ def test_times_may_count_from_the_first_impact():
 
 
 def test_values_may_be_missing_and_of_a_file_with_other_units(tmp_path):
-    exact = passages([0.9] * 6)
+    exact = passages([0.9] * FEW)
     rows = ["impact_ms;amplitude_deg"]
     for n, (t, amplitude) in enumerate(zip(*exact, strict=True)):
         cells = f"{1000 * t:.9g}", "" if n == 2 else f"{math.degrees(amplitude):.9g}"
@@ -193,7 +203,7 @@ def tomllike(**release):
 def test_damping_of_springs_is_found_again(case):
     """Values of a run with ζ = 0.1, to its own steps; 2e-3: the time step of the fit is another one."""
     base = rb.ElasticBase(60, zeta=0.1) if case["base"] == "elastic" else rb.YieldingBase(60, zeta=0.1, eta=4)
-    cycles = rb.simulate(BLOCK, base, rb.Motion.still(5.0), initial_rotation_rad=START).half_cycles.iloc[1:7]
+    cycles = rb.simulate(BLOCK, base, rb.Motion.still(5.0), initial_rotation_rad=START).half_cycles.iloc[1:5]
     (row,) = rb.release(
         study_of({"impact_s": cycles.t.tolist(), "amplitude_rad": cycles.amplitude.tolist()}, case)
     ).release.to_dict("records")
@@ -261,7 +271,7 @@ def test_a_file_of_measured_values_is_refused_with_its_line(tmp_path, content, w
 
 
 def test_the_command_leaves_what_python_has(tmp_path):
-    study = study_of(lists(passages([0.9] * 6)))
+    study = study_of(lists(passages([0.9] * FEW)))
     path = tmp_path / "study.toml"
     path.write_text(study.text, encoding="utf-8")
     assert main(["release", str(path), "--out", str(tmp_path / "out")]) == 0
@@ -292,7 +302,7 @@ def test_half_cycles_on_stiff_springs_tend_to_those_of_the_block():
 
 def test_the_page_opens_with_the_value_and_marks_what_puts_it_in_doubt(tmp_path):
     """A test that no value describes, beside one that the model made."""
-    exact, wild = lists(passages([0.9] * IMPACTS)), {"amplitude_rad": [0.09, 0.02, 0.07, 0.01, 0.06, 0.005]}
+    exact, wild = lists(passages([0.9] * FEW)), {"amplitude_rad": [0.09, 0.02, 0.07, 0.01, 0.06, 0.005]}
     for name, measured, doubt in (
         ("exact", exact, ""),
         ("wild", wild, "poor: no value describes the test; check size, "),
