@@ -12,6 +12,7 @@ import rockbatch as rb
 from rockbatch.analyses.accuracy.figures import error_and_time
 from rockbatch.analyses.accuracy.levels import of_table
 from rockbatch.analyses.fragility.figures import clouds, curves, risk
+from rockbatch.analyses.release.figures import rotations
 from rockbatch.analyses.sensitivity.figures import INDICES, bars
 from rockbatch.analyses.spectrum.figures import FELL, REGIONS, maps, spectra
 from rockbatch.analyses.spectrum.map_regions import between, inside, strips
@@ -300,6 +301,33 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     ]
     assert whiskers[0].title == f"{of_indices[0]:.3f} ± {errors[0]:.3f}"
     assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
+
+
+def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the_computed_ones():
+    t, theta = np.linspace(-0.5, 2.0, 6), np.array([0.1, -0.08, -0.02, 0.06, 0.05, -0.04])
+    history = pd.DataFrame(
+        {"t_s": np.tile(t, 2), "theta_rad": np.append(theta, 0.5 * theta), "case": np.repeat(["rock", "pads"], 6)}
+    )
+    impacts = pd.DataFrame({
+        "case": ["rock"] * 3 + ["pads"] * 3, "t_measured_s": [-0.5, 2.0, 2.1, -0.6, np.nan, 0.7],
+        "t_amplitude_computed_s": [0.25, 1.0, 2.0] * 2, "amplitude_measured_rad": [0.12, 0.03, np.nan, 0.03, 0.04, 0.02],
+    })  # fmt: skip
+    panels = rotations(impacts, history, ()).panels
+    assert [panel.caption for panel in panels] == ["rock", "pads"]
+    for panel, factor, most, at, amplitudes in (
+        (panels[0], 1.0, 0.12, [-0.5, 2.0], [-0.12, 0.03, np.nan]), (panels[1], 0.5, 0.05, [0.7], [-0.03, 0.04, -0.02]),
+    ):  # fmt: skip
+        (line,), (hits, highest) = of_kind(panel.marks, Polyline), of_kind(panel.marks, Points)
+        np.testing.assert_array_equal([line.x, line.y], [t, factor * theta])
+        assert (hits.x.tolist(), hits.y.tolist()) == (at, [0.0] * len(at))
+        np.testing.assert_allclose([highest.x, highest.y], [[0.25, 1.0, 2.0], amplitudes])
+        assert (panel.x.low, panel.x.high, panel.y.low, panel.y.high) == pytest.approx(
+            (-0.5, 2.0, -1.08 * most, 1.08 * most)
+        )
+        assert (hits.titles[-1], highest.titles[1]) == (
+            f"impact at {at[-1]:.4g} s",
+            f"amplitude {abs(amplitudes[1]):.4g} rad",
+        )
 
 
 def test_an_accuracy_has_its_errors_over_times_and_steps_beside_the_marks():
