@@ -15,15 +15,16 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
-from rockbatch.analyses.fragility.curves import assess
+from rockbatch.analyses.fragility.curves import Curve, Undecided, assess
 from rockbatch.analyses.fragility.hazard import Hazard
+from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analyses.fragility.lognormal import Capacities, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
 from rockbatch.analyses.fragility.runs import ScaledRuns, intensities, output
 from rockbatch.analyses.fragility.section import section
-from rockbatch.analyses.fragility.study import read_fragility
-from rockbatch.analyses.fragility.tables import described, points
+from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
+from rockbatch.analyses.fragility.tables import capacities, described, points
 from rockbatch.batch.digests import digests
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import simulations
@@ -36,11 +37,12 @@ from rockbatch.motions.hazard import HazardCurve
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting import finished_analysis
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.results.columns import columns
 from rockbatch.simulation import run_to_tolerance
-from rockbatch.study import load_study
+from rockbatch.study import Case, load_study
 from rockbatch.study.spec import Output
 from rockbatch.study.suite import ground_motions
 
@@ -59,7 +61,7 @@ def written(tmp_path, fragility):
         pier={"alpha": 0.2, "p": 2.0},
         motions={"polarity": ["+", "-"]},
         pulses=[
-            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 6.0}
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 4.5}
             for shape, t in shapes
         ],
         cases=(RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"}),
@@ -257,7 +259,7 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_pa
 
 def test_the_command_writes_points_curves_capacities_and_all_runs(ida):
     out, printed = ida
-    points, capacities, runs = (read(out / f"fragility{name}.csv") for name in ("", "_capacities", "_runs"))
+    points, capacities_, runs = (read(out / f"fragility{name}.csv") for name in ("", "_capacities", "_runs"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     of_file = {
         "case",
@@ -279,19 +281,55 @@ def test_the_command_writes_points_curves_capacities_and_all_runs(ida):
     assert {(one["limit_state"], one["case"]) for one in told["curves"]} == {
         (limit, case) for limit in limits for case in ("rigid", "pads") if (limit, case) != ("settlement", "rigid")
     }
-    assert len(capacities) == 5 * 5
-    for one in capacities:
+    assert len(capacities_) == 5 * 5
+    for one in capacities_:
         if one["found"] == "exceeded":
             assert float(one["above"]) < float(one["at_most"]) <= 1.02 * float(one["above"]) * (1 + 1e-9)
             assert float(one["scale_at_most"]) == pytest.approx(float(one["at_most"]) / 0.4, rel=0.05)
     overturned = {(run["record"], run["case"]) for run in runs if run["status"] == "overturned"}
     found = {
-        (one["record"], one["case"]) for one in capacities if one["limit_state"] == "overturning" and one["at_most"]
+        (one["record"], one["case"]) for one in capacities_ if one["limit_state"] == "overturning" and one["at_most"]
     }
     assert overturned == found
     assert "Fragility for PGA, incremental dynamic analysis" in printed
     assert "half way: theta_max_over_alpha > 0.5" in printed
     assert not (out / "fragility_runs.csv.part").exists()
+
+
+def test_capacities_have_all_their_bounds_also_as_scales():
+    case, spec = Case("rigid", Pier(0.2, 1.0), RigidBase(), {}), FragilitySpec("ida", "PGA", (0.2, 0.8), ())
+    found = (
+        (0, Capacity(Bracket(0.2, 0.4), Bracket(0.25, 0.3), Bracket(0.35, 0.5), 2, 1, 0.05)),
+        (1, Capacity(*3 * (Bracket(0.8, math.inf),), 0, 0, 0.1)),
+        (2, Capacity(*3 * (Bracket(0.0, 0.2),), 0, 0, 0.0)),
+        (1, Capacity(*3 * (Bracket(0.3, 0.31),), 0, 3, 0.2)),
+        (1, Capacity(Bracket(0.8, math.inf), Bracket(0.2, 0.3), Bracket(0.8, math.inf), 1, 0, 0.1)),
+    )
+    curve = Curve(case, OVERTURNING, (), "none", Undecided(0, 0, 0, 0), capacities=found)
+    rows = capacities([curve], spec, (), ["a", "b", "c"], [0.1, 0.2, 0.4])
+    assert rows.columns[:6].to_list() == ["record", "case", "limit_state", "measure", "unit", "found"]
+    assert rows["record"].to_list() == ["a", "b", "c", "b", "b"]
+    assert rows["found"].to_list() == [
+        "undecided", "beyond the highest level", "below the lowest level", "exceeded", "undecided",
+    ]  # fmt: skip
+    names = (
+        "above",
+        "at_most",
+        "scale_above",
+        "scale_at_most",
+        "undecided",
+        "if_exceeded",
+        "if_withstood",
+        "returns",
+        "widest_step",
+    )
+    np.testing.assert_allclose(rows[list(names)].to_numpy(float), [
+        [0.2, 0.4, 2.0, 4.0, 2, 0.3, 0.35, 1, 0.05],
+        [0.8, np.nan, 4.0, np.nan, 0, np.nan, np.nan, 0, 0.1],
+        [0.0, 0.2, 0.0, 0.5, 0, np.nan, np.nan, 0, 0.0],
+        [0.3, 0.31, 1.5, 1.55, 0, np.nan, np.nan, 3, 0.2],
+        [0.8, np.nan, 4.0, np.nan, 1, 0.3, 0.8, 0, 0.1],
+    ])  # fmt: skip
 
 
 def test_stripes_count_a_record_once_in_whatever_polarities(tmp_path):
@@ -409,12 +447,21 @@ def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
     assert row["rate_if_withstood"] < row["rate_per_year"] < row["rate_if_exceeded"]
 
 
-def test_a_limit_on_settlement_beside_others_asks_for_the_other_law(tmp_path):
-    settlement = Rule("settled", "settlement_m", at_most=0.01)
-    rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
+def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     spec = read_fragility(load_study(written(tmp_path, STRIPES)))
-    for limits, asked in (((rotation, settlement), True), ((rotation,), False)):
-        assert output(replace(spec, limits=limits), Output(both_laws=True)).both_laws is asked
+    rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
+    of_study = Output(both_laws=True, least_normal_share=0.2, least_stroke_mm=7.0)
+    of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and demand.needs != "sections"}
+    assert {demand.needs for demand in of_runs.values()} >= {"forces", "rocking", "devices_work"}
+    for name, demand in of_runs.items():
+        asked = output(replace(spec, limits=(rotation, Rule("other", name, at_most=0.01))), of_study)
+        assert asked.both_laws == bool(demand.other_law)
+        for need in ("forces", "rocking", "devices_work"):
+            assert getattr(asked, need) == (demand.needs == need), name
+        assert (asked.histories, asked.least_normal_share, asked.least_stroke_mm) == ("none", 0.2, 7.0)
+    assert not output(
+        replace(spec, limits=(Rule("settled", "settlement_m", at_most=0.01),)), Output(both_laws=False)
+    ).both_laws
 
 
 def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
@@ -461,6 +508,7 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
     assert first.startswith('<p class="lead">Overturning has a median of PGA')
     assert '<span class="undecided">too many runs are undecided to say much, 30 of 120 runs: with these on' in first
     assert 'class="unsure s1"' in figure
+    assert "Between dotted edges: the curve with undecided runs on either side." in figure
     assert "30 of 120 runs undecided: 30 failed" in figure
 
 
@@ -471,7 +519,17 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
     page = section(Contents(tmp_path, told["study"]))
     words = "The 30 records are components of 15 stations, each counted by itself: the intervals are too narrow."
-    assert (words in page.split("<figure", 1)[0]) == said
+    first, figure = page.split("<figure", 1)
+    assert (words in first) == said
+    for shown in (
+        "Between dotted edges",
+        "Strips above",
+        "by shares",
+        "Dashed",
+        "Demand of every record",
+        "records of its own",
+    ):
+        assert shown not in figure
 
 
 @pytest.mark.parametrize(
@@ -574,6 +632,7 @@ def test_where_first_exceedances_were_looked_for_is_said_once_and_drawn(ida):
     page = Page((out / "analyses.html").read_text(encoding="utf-8"))
     told = json.loads((out / "fragility.json").read_text(encoding="utf-8"))
     words = "in steps of 0.25 % from the lowest level up (rigid)", "at the levels alone, up to 100 % apart (pads)"
+    assert "Strips above: intensities that were looked at." in page.text
     for text in (page.text, printed):
         assert [text.count(each) for each in words] == [1, 1]
     by_case = {one["case"]: one["looked"] for one in told["curves"] if one["limit_state"] == "overturning"}

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,13 +16,16 @@ from scipy.stats import norm
 from studies import SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
+from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
-from rockbatch.analyses.fragility.risk import Risk, note, probability
-from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
+from rockbatch.analyses.fragility.risk import Risk, described, note, probability, risk_table, risks
+from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions.hazard import HazardCurve
-from rockbatch.study import load_study
+from rockbatch.pier import Pier, RigidBase
+from rockbatch.study import Case, load_study
 
 POINTS = [0.05, 0.15, 0.35, 0.7], [1 / 30, 1 / 150, 1 / 700, 1 / 2500]
 TABLE = HazardCurve(*POINTS)
@@ -177,6 +181,59 @@ def test_where_the_dispersion_is_open_the_rate_is_too():
 def test_an_open_upper_bound_of_a_rate_is_said(most, said):
     risk = Risk(None, exactly(0.5, 0.4), 1e-3, (1e-4, most), None, 0.0, 0.0, (1e-3, 1e-3), (0.0, 0.0), (0.2, 0.6))
     assert ("leave the upper bound of the rate open" in note(risk, FragilitySpec("ida", "PGA", (0.2, 0.4), ()))) == said
+
+
+def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
+    """400 000 steps over eight decades; 3e-4, and 0.02 where one of our steps of 5 % is cut."""
+    fitted, total = exactly(0.4, 0.3), math.hypot(0.3, 0.4)
+    levels, years = (0.2, 0.6), (50.0, 10.0)
+    spec = FragilitySpec("ida", "PGA", levels, (), hazard=Hazard(TABLE, years), dispersions=(Dispersion("a", 0.4),))
+    case = Case("rigid", Pier(0.2, 1.0), RigidBase(), {})
+    curve = Curve(case, OVERTURNING, (), fitted, Undecided(0, 0, 0, 0), Readings(exactly(0.35, 0.3), "none"))
+    edges = np.geomspace(1e-5, 1e3, 400_001)
+    x, rare = np.sqrt(edges[1:] * edges[:-1]), TABLE.rate([0.7])[0]
+    parts = norm.cdf(np.log(x / 0.4) / total) * -np.diff(TABLE.rate(edges))
+    rate, above = parts.sum(), parts[x > 0.7].sum()
+    of_others = (norm.cdf(np.log(x / 0.35) / total) * -np.diff(TABLE.rate(edges))).sum()
+    expected = {
+        "median": 0.4, "dispersion": 0.3, "dispersion_added": 0.4, "dispersion_total": total, "rate_per_year": rate,
+        "rate_low": rate, "rate_high": rate, "rate_if_withstood": 0.0, "rate_if_exceeded": of_others,
+        "rate_below_points": parts[x < 0.05].sum(), "rate_above_points": above,
+        "rate_least": rate - above + rare * norm.cdf(math.log(0.7 / 0.4) / total), "rate_most": rate - above + rare,
+    }  # fmt: skip
+    of_steps = {"rate_below_levels": parts[x < 0.2].sum(), "rate_above_levels": parts[x > 0.6].sum()}
+    for time in years:
+        expected |= {f"p_in_{time:g}_years{end}": 1.0 - math.exp(-time * rate) for end in ("", "_low", "_high")}
+    (found,) = risks([curve], spec)
+    (row,) = risk_table([curve], [found], spec, ()).to_dict("records")
+    assert {name: row[name] for name in expected} == pytest.approx(expected, rel=3e-4)
+    shares = np.cumsum(parts) / rate
+    for end, share in (("from", 0.05), ("to", 0.95)):
+        of_steps[f"contributing_{end}"] = x[np.searchsorted(shares, share)]
+    assert {name: row[name] for name in of_steps} == pytest.approx(of_steps, rel=0.02)
+    assert {name: row[name] for name in ("case", "limit_state", "measure", "unit")} == {
+        "case": "rigid", "limit_state": "overturning", "measure": "PGA", "unit": "g",
+    }  # fmt: skip
+    density = described(found, spec)["density"]
+    low, high = density["x"][0], density["x"][-1]
+    assert [low, high] == pytest.approx([0.5 * row["contributing_from"], 2.0 * row["contributing_to"]])
+    drawn = np.trapezoid(density["share"], np.log(density["x"]))
+    assert drawn == pytest.approx(parts[(low < x) & (x < high)].sum() / rate, rel=0.01)
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.049, False), (0.051, True)])
+def test_a_part_of_a_rate_is_worth_a_word_from_a_twentieth_on(share, said):
+    spec = FragilitySpec("stripes", "PGA", (0.2, 0.6), (), hazard=Hazard(TABLE, (10.0, 50.0)))
+    quiet = Risk(None, exactly(0.5, 0.4), 0.05, (0.04, 0.06), None, 0.0, 0.0, (0.03, 0.07), (0.0, 0.0), (0.2, 0.6))
+    part = share * quiet.rate
+    for change, words in (
+        ({"below": part}, "below its lowest point"), ({"above": part}, "between 0.03 and 0.07"),
+        ({"beyond_levels": (part, 0.0)}, "run, 0.2 g"), ({"beyond_levels": (0.0, part)}, "run, 0.6 g"),
+    ):  # fmt: skip
+        text = note(replace(quiet, **change), spec)
+        assert (words in text, text.startswith("5 %")) == (said, said)
+    often = note(replace(quiet, rate=1.2 * share), spec)  # three in 50 years are 0.06
+    assert often.startswith("several exceedances in the longest") == said
 
 
 # The study

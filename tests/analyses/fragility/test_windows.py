@@ -11,13 +11,10 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.curves import assess
-from rockbatch.analyses.fragility.figures import curves
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
-from rockbatch.analyses.fragility.lognormal import Lognormal
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import capacities, points
 from rockbatch.analyses.fragility.windows import SAMPLES, samples, windows
-from rockbatch.common.figures.description import Polyline
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -190,15 +187,3 @@ def test_other_methods_have_no_windows(tmp_path, method):
     assert result.curves[0].windows is None
     assert not any(name.startswith("window") for name in result.fragility.columns)
     assert "windows" not in result.info["curves"][0]
-
-
-def test_whatever_the_number_of_threads_the_shares_are_the_same_and_python_draws_their_curve(tmp_path):
-    one, two = (
-        rb.fragility(study(tmp_path, f"{jobs}", {"hunt_step": 0.02}), tmp_path / f"out {jobs}", jobs=jobs)
-        for jobs in (1, 2)
-    )
-    for name in ("fragility", "fragility_runs", "fragility_capacities"):
-        files = [(tmp_path / f"out {jobs}" / f"{name}.csv").read_bytes() for jobs in (1, 2)]
-        assert files[0] == files[1]
-    of_shares = [mark for panel in curves(one.info).panels for mark in panel.marks if mark.label == "rigid, by shares"]
-    assert any(isinstance(mark, Polyline) for mark in of_shares) == isinstance(two.curves[0].windows.fitted, Lognormal)
