@@ -73,11 +73,7 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
             stood.append(1000.0 * row["settlement_m"])
         cells.append([
             finished.shown(row["record"]), foundation, row["shock"], finished.shown(row["shock_record"]), row["start_s"],
-            row["shock_pga_g"], status if status == "ok" else alarm(status), *map(_cell, stood),
-            alarm(f"{moving:.4f}") if moving > AT_REST else _cell(moving),
+            row["shock_pga_g"], status if status == "ok" else alarm(status), *stood,
+            alarm(f"{moving:.4f}") if moving > AT_REST else moving,
         ])  # fmt: skip
     return table(heads, cells, sortable=True, name="Every shock")
-
-
-def _cell(value: float | None) -> float | None:
-    return value if value == value else None
