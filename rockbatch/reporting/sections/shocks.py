@@ -32,7 +32,7 @@ def section(finished: Finished) -> Markup:
     return render(
         "reporting/sections/shocks.html", runs=len(runs), cut_short=len(whole) - len(whole_runs), all_runs=len(whole),
         file=SHOCKS, pauses=len(moving), still=sum(m > AT_REST for m in moving),
-        most=max(moving, default=0.0), at_rest=AT_REST,
+        most=max(moving, default=None), at_rest=AT_REST,
         later=sum(max(run, key=_peak) is not run[0] for run in runs),
         fallen=sorted(Counter(row["shock"] for row in rows if row["shock_status"] == "overturned").items()),
         table=_table(finished, rows),
