@@ -79,6 +79,71 @@ def test_every_kind_of_mark_is_drawn_on_the_page_with_its_tooltip_and_legend():
     assert [path.get("data-name") for path in group] == ["named"]
 
 
+def numbers_in(path):
+    return [float(number) for number in re.findall(r"-?[\d.]+", path.get("d"))]
+
+
+def test_marks_lie_where_their_values_are_and_numbers_beside_their_lines():
+    """Read them back by the frame, whose ends are those of the axes; words may stand some pixels beside their point."""
+    y = Axis("F [kN]", -1.0, 3.0)
+    more = Span("y", 1.5, 2.5, look=Look("strip")), Rule("x", X[1:2], 0.25, 0.5, look=Look("bar low"))
+    drawn = parsed(svg.drawn(figure(*MARKS, *more, Words(1.5, 2.0, "left", -1, 10.0), y=y, caption="c", reads="plane")))
+    picture = next(node for node in drawn.iter("svg") if "readings" in node.get("class"))
+    of_class = {}
+    for node in picture.iter():
+        of_class.setdefault(node.get("class"), []).append(node)
+    left, top, foot, right = numbers_in(of_class["edge"][0])
+    (x0, y0), (dx, dy) = (left, foot - (foot - top) / 4), ((right - left) / 2, (foot - top) / 4)
+
+    def at(x, y):
+        return pytest.approx((x0 + x * dx, y0 - y * dy), abs=0.06)
+
+    (group,) = of_class["axes"]
+    assert [*map(float, group.get("data-box").split())] == pytest.approx(
+        [left, top, right - left, foot - top], abs=0.06
+    )
+    where = np.column_stack([x0 + X * dx, y0 - Y * dy])
+    for kind in ("area s2", "level s3 d2"):
+        steps = np.reshape([int(number) for number in re.findall(r"-?\d+", of_class[kind][0].get("d"))], (-1, 2))
+        np.testing.assert_allclose(steps.cumsum(axis=0) / 10.0, where, atol=0.06)
+    marks = [[float(node.get("x")), float(node.get("y"))] for node in of_class["s1"]]
+    np.testing.assert_allclose(marks, where, atol=0.06)
+    bar, high, wide, *back, low = numbers_in(of_class["bar"][0])[:6]
+    assert ((bar + wide / 2, high), (bar + wide + back[0], low)) == (at(1.0, 2.5), at(1.0, 1.5))
+    assert numbers_in(of_class["limit d1"][0]) == [*at(0.0, 1.0).expected, *at(2.0, 1.0).expected[:1]]
+    assert numbers_in(of_class["event"][0]) == pytest.approx(
+        [x0 + 0.5 * dx, foot, foot - 0.1 * (foot - top), x0 + 1.5 * dx, foot, foot - 0.1 * (foot - top)], abs=0.06
+    )
+    assert numbers_in(of_class["bar low"][0]) == pytest.approx([x0 + dx, y0, y0 - dy], abs=0.06)
+    x, y, width, height = (
+        [float(node.get(name)) for node in picture.iter("rect")] for name in ("x", "y", "width", "height")
+    )
+    assert x + width == pytest.approx([x0 + 0.5 * dx, left, 0.2 * dx, right - left], abs=0.06)
+    assert y + height == pytest.approx([top, y0 - 2.5 * dy, foot - top, dy], abs=0.06)
+    lines = numbers_in(of_class["grid"][0])
+    assert lines[1:15:3] == pytest.approx([y0 - value * dy for value in (-1, 0, 1, 2, 3)], abs=0.06)
+    assert lines[15::3] == pytest.approx([x0 + value * dx for value in (0.0, 0.5, 1.0, 1.5, 2.0)], abs=0.06)
+    words = {node.text: node for node in picture.iter("text")}
+    for value in (0.0, 0.5, 1.0, 1.5, 2.0):
+        x, y = (float(words[f"{value:.1f}"].get(name)) for name in "xy")
+        assert (x, foot + 9.0 < y < foot + 18.0) == (pytest.approx(x0 + value * dx, abs=0.06), True)
+    for value in (-1, 0, 1, 2, 3):
+        x, y = (float(words[f"{value}".replace("-", "−")].get(name)) for name in "xy")
+        assert left - 8.0 < x < left
+        assert y0 - value * dy + 2.0 < y < y0 - value * dy + 6.0
+    x, y = (float(words["left"].get(name)) for name in "xy")
+    assert (x, float(words["left"].get("dx"))) == (
+        pytest.approx(x0 + 1.5 * dx, abs=0.06),
+        -float(words[NASTY].get("dx")),
+    )
+    assert y0 - 2.0 * dy - 12.0 < y < y0 - 2.0 * dy - 4.0
+    assert "dx" not in words["?"].attrib
+    assert float(words["θ"].get("x")) == pytest.approx(0.5 * (left + right), abs=0.06)
+    assert foot + 20.0 < float(words["θ"].get("y")) < float(picture.get("viewBox").split()[3]) - 3.0
+    assert 0.0 <= float(words["F [kN]"].get("x")) < left
+    assert 9.0 < float(words["F [kN]"].get("y")) < top - 2.0
+
+
 def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -129,6 +194,7 @@ def test_both_renderers_write_the_same_ticks():
         assert on_paper == on_page == list(axis.ticks().values())
         assert len(on_page) in range(1, 10)
     assert written([0.5, 1.0, 1.5]) == ["0.5", "1.0", "1.5"]
+    assert (written([]), written([0.0]), written([0.25])) == ([], ["0"], ["0.25"])
     assert written([1e-4, 1e-2, 1.0]) == ["10⁻⁴", "10⁻²", "1"]
     assert list(Axis("", 0.0, 2.0, last=1.0, about=4).ticks()) == [0.0, 0.5, 1.0]
     assert list(Axis("", 1.1, 1.3, log=True, about=2).ticks()) == pytest.approx([1.1, 1.2, 1.3])

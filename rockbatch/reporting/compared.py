@@ -107,7 +107,7 @@ def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]]) -
             place = w and f"{study.label(w.run['record'])}, {study.case_of(w.run)}"
             row += ["none" if w is None else in_words(w), place]
         first, second = (math.nan if w is None else w.value for w in pair)
-        rows.append([*row, second / first if first > 0 and second == second else None])
+        rows.append([*row, second / first if first > 0 else None])
     heads = [Head("worst of the runs in common")]
     heads += [Head(words, group=side) for side in SIDES for words in ("value", "record and case")]
     return table([*heads, Head("B / A", ".3f")], rows, prose=True, name="Worst responses of both")
@@ -208,7 +208,7 @@ def pairs(pair: Pair) -> Markup:
     rows = []
     for pair_of_runs in zip(as_dicts(a.iloc[order]), as_dicts(b.iloc[order]), strict=True):
         first, second = (run["theta_max_over_alpha"] if run["status"] == "ok" else math.nan for run in pair_of_runs)
-        ratio = second / first if first > 0 and second == second else None
+        ratio = second / first if first > 0 else None
         other_values = (on_scale(column.name, run[column.name]) for column in more for run in pair_of_runs)
         own = (
             pair.named.shown(run[name]) if name == "record" else run[name] for run in pair_of_runs[:1] for name in names

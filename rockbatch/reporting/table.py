@@ -51,7 +51,7 @@ def table(
     """
     whole = list(rows)
     rows = whole[:MOST_ROWS]
-    used = [i for i in range(len(heads)) if i == 0 or any(row[i] not in (None, "") for row in rows)]
+    used = [i for i in range(len(heads)) if i == 0 or any(number(row[i]) for row in rows)]
     same = [i for i in used[1:] if sortable and len(whole) > LEAST_COMMON and len({str(row[i]) for row in whole}) == 1]
     used = [i for i in used if i not in same]
     numeric = {i for i in used if heads[i].form != WHOLE or any(isinstance(row[i], float | int) for row in rows)}

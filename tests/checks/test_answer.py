@@ -7,7 +7,7 @@ import pytest
 from check_samples import PIER, RIGID, case, runs, verdict
 
 from rockbatch.checks import wording
-from rockbatch.checks.answer import MOST_NAMES, answer, without_limits
+from rockbatch.checks.answer import MOST_FILES, MOST_NAMES, answer, without_limits
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, Stations, runs_of_cases, stations_of
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
@@ -207,6 +207,17 @@ def test_missing_stations_come_last_where_nothing_passes_and_are_reported_withou
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     assert [line.verdict for line in lines([failed], stations=stations)] == [FAIL, NOT_DECIDED]
     assert [line.text for line in lines([], stations=stations)] == ["1 of 2 stations; RSN1633 could not be used"]
+
+
+@pytest.mark.parametrize("more", [0, 3])
+def test_of_many_missing_stations_the_first_are_named_and_the_others_counted(more):
+    stations = Stations([], {f"S{i}": [LOST] for i in range(MOST_FILES + more)})
+    names = [f"S{i}" for i in range(MOST_FILES)]
+    (line,) = lines([], stations=stations)
+    listed = ", ".join([*names, *["and 3 more"] * bool(more)])
+    assert line.text == f"0 of {MOST_FILES + more} stations; {listed} could not be used"
+    listed = ", ".join([*(f'"{name}"' for name in names), *["…"] * bool(more)])
+    assert line.details == (f"To leave them out on purpose: leave_out = [{listed}] under [motions].",)
 
 
 def test_a_component_of_a_station_that_is_used_is_reported_by_its_files():

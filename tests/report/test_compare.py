@@ -194,8 +194,10 @@ def test_a_study_in_which_the_pier_overturns_is_never_the_better_one(tmp_path):
 
 
 def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_path):
-    a, b = two(tmp_path, second={"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.9}}})
-    _, head, rotation, *_ = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
+    changes = {(record, case): {"settlement_m": ""} for record, _ in FIG7 for case in "1234"}
+    changes["SYL360", "2"] |= {"theta_max_over_alpha": 0.9}
+    a, b = two(tmp_path, second={"changes": changes})
+    _, head, rotation, *others = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
     assert head == ["worst of the runs in common", "value", "record and case", "value", "record and case", "B / A"]
     with (a / "peaks.csv").open(encoding="utf-8", newline="") as file:
         worst = max(
@@ -209,3 +211,5 @@ def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_pat
     assert second.startswith(f"0.9 α = {0.9 * 0.13 * 180.0 / 3.14159265:.3g}°".rstrip("0"))
     assert at_second.startswith("SYL360, 2: ")
     assert float(ratio) == pytest.approx(0.9 / theta, abs=6e-4)
+    (settled,) = (row[3:] for row in others if row[0] == "mean settlement")
+    assert settled == ["none", "", ""]

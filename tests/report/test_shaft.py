@@ -36,6 +36,9 @@ def test_the_envelopes_of_every_case_are_in_the_table_and_drawn(out):
     rows = sections[(sections["case"] == "pads") & (sections["height_m"] == 7.0)]
     worst = rows.loc[rows["section_moment_kNm"].idxmax()]
     (cells,) = (row for row in page.tables[""] if row[:2] == ["pads", "7.00"])
+    assert float(cells[7]) == pytest.approx(rows["sections_error"].max(), rel=0.5)
+    assert cells[8:] == [worst["record"]]
+    assert "In every row: runs 2 of 2." in page.text
     assert [cell.replace(",", "") for cell in cells[2:7]] == [
         f"{value:.0f}"
         for value in (

@@ -22,19 +22,19 @@ STUDY = study_text(
     ),
     cases=(RIGID, PADS | {"beta": 30, "eta": 3, "epsilon": 0.1}),
     spectrum={
-        "alpha": [0.1, 0.2],
-        "two_pi_over_p_s": [2.0, 10.0],
-        "points": 3,
+        "alpha": [0.2],
+        "two_pi_over_p_s": [2.0, 4.0],
+        "points": 2,
         "map": [
             {
-                "name": "sine", "shape": "sine", "frequency": [1.0, 4.0], "frequencies": 3, "amplitude": [1.0, 6.0],
-                "amplitudes": 4, "tolerance": 0.1, "width": 0.5,
+                "name": "sine", "shape": "sine", "frequency": [1.0, 2.0], "frequencies": 2, "amplitude": [1.0, 2.0],
+                "amplitudes": 2, "tolerance": 0.5, "width": 0.5,
             }
         ],
     },
     output={"forces": True},
     fragility={"measure": "PGA", "levels_g": [0.3, 1.2]},
-    sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"kinematics": ["first-order", "finite"]}},
+    sensitivity={"samples": 4, "uniform": {"alpha": [0.18, 0.22]}, "choice": {"spring": ["bouc-wen", "epp"]}},
 )  # fmt: skip
 PICTURES = {
     "answer", "distribution", "fragility", "spectrum", "sensitivity", "histories", "studied", "statics", "records",

@@ -210,7 +210,7 @@ def written(ticks: Sequence[float]) -> list[str]:
     """Format ticks with as many decimals as their step needs; as powers of ten if they are far apart."""
     if len(ticks) > 1 and ticks[0] > 0 and ticks[1] / ticks[0] > 9:
         return [_power_of_ten(tick) for tick in ticks]
-    step = min((b - a for a, b in pairwise(ticks)), default=ticks[0] if ticks else 1.0) or 1.0
+    step = min((b - a for a, b in pairwise(ticks)), default=sum(ticks)) or 1.0
     decimals = next((d for d in range(9) if math.isclose(step, round(step, d), rel_tol=1e-6)), 9)
     return [f"{tick + 0.0:.{decimals}f}".replace("-", "−") for tick in ticks]
 

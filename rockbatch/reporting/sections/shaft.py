@@ -62,5 +62,5 @@ def _rows(finished: Finished, groups: "list[tuple[str, pd.DataFrame]]") -> Itera
             yield [
                 f"{label} ({words})" if words else label, bent["height_m"], runs[columns["shear"]].max(), bent[columns["moment"]],
                 bent[columns["axial_at_moment"]], runs[columns["axial_least"]].min(), runs[columns["axial_greatest"]].max(),
-                None if error != error else error, alarm(counts) if ended else counts, finished.shown(bent["record"]),
+                error, alarm(counts) if ended else counts, finished.shown(bent["record"]),
             ]  # fmt: skip

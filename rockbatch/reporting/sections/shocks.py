@@ -32,7 +32,7 @@ def section(finished: Finished) -> Markup:
     return render(
         "reporting/sections/shocks.html", runs=len(runs), cut_short=len(whole) - len(whole_runs), all_runs=len(whole),
         file=SHOCKS, pauses=len(moving), still=sum(m > AT_REST for m in moving),
-        most=max(moving, default=0.0), at_rest=AT_REST,
+        most=max(moving, default=None), at_rest=AT_REST,
         later=sum(max(run, key=_peak) is not run[0] for run in runs),
         fallen=sorted(Counter(row["shock"] for row in rows if row["shock_status"] == "overturned").items()),
         table=_table(finished, rows),
@@ -73,11 +73,7 @@ def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
             stood.append(1000.0 * row["settlement_m"])
         cells.append([
             finished.shown(row["record"]), foundation, row["shock"], finished.shown(row["shock_record"]), row["start_s"],
-            row["shock_pga_g"], status if status == "ok" else alarm(status), *map(_cell, stood),
-            alarm(f"{moving:.4f}") if moving > AT_REST else _cell(moving),
+            row["shock_pga_g"], status if status == "ok" else alarm(status), *stood,
+            alarm(f"{moving:.4f}") if moving > AT_REST else moving,
         ])  # fmt: skip
     return table(heads, cells, sortable=True, name="Every shock")
-
-
-def _cell(value: float | None) -> float | None:
-    return value if value == value else None
