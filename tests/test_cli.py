@@ -510,11 +510,14 @@ def test_help_and_lists_are_there_under_the_words_for_them(words, begin, capsys)
 
 
 def test_a_demand_that_does_not_exist_is_answered_in_a_line_with_the_command_that_lists_them(tmp_path, capsys):
-    check = {"name": "drift", "demand": "zzz", "at_most": 1, "reason": "x"}
-    study = write_study(tmp_path, study_text(check=[check]))
-    assert main(["run", str(study)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.endswith('demand = "zzz": expected one that `rockbatch check --list` lists')
+    for demand, end in (
+        ({"demand": "zzz"}, ': demand = "zzz": expected one that `rockbatch check --list` lists'),
+        ({}, ': demand is missing; write for example demand = "theta_max_over_alpha"'),
+    ):
+        check = {"name": "drift", "at_most": 1, "reason": "x"} | demand
+        assert main(["run", str(write_study(tmp_path, study_text(check=[check])))]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.endswith(end)
 
 
 def test_reading_results_loads_no_record_format():

@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.toml.kinds import KindError, Number, Other, Whole
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, Whole
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.meant import Meant, number_meant, similar
 from rockbatch.toml.section import CONFIRM, Key, Section, elsewhere, home, options
@@ -256,7 +256,7 @@ class Table:
         """Note required keys that are missing, and keys that do not go together."""
         for name, key in keys.items():
             if self.requires(keys, name) and not self.has(name):
-                few = 1 < len(options(key)) < 6
+                few = isinstance(key.kind, Choice) and not key.kind.listed_by
                 choices = f"; {name} is {key.kind.words}" if few else ""
                 self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
         for clash in keys.clashes if isinstance(keys, Section) else ():

@@ -314,7 +314,7 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("width_m = 4.0", "alfa = 0.13", "did you mean alpha?", "write one of"),
     ("width_m = 4.0", "width_m = 4.0\ndamping = 0.05", "did you mean zeta, under [[case]]?", "write"),
     ("width_m = 4.0", 'width_m = 4.0\nunit = "m"', "units stand in the names of keys; leave it out", "[motions]"),
-    ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "[["),
+    ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "above"),
     ("tolerance = 1e-3", "dt = 0.001", "write substeps, the number of steps per sample", "[motions]"),
     ("forces = true", 'path = "out"', "write --out FOLDER behind rockbatch run", "[motions]"),
     ('kind = "viscous"', 'kind = "friction pendulum"', 'expected one of "friction", "hysteretic", "viscous"', "did you mean"),

@@ -116,6 +116,41 @@ def test_every_key_that_is_read_anywhere_has_its_place_in_a_section():
                     assert value.keys() <= listed, f"{module.name}.{name}"
 
 
+CASE = "[[case]]"
+NEEDED = {
+    "[[pier.part]]": "mass_t height_m", "[[motions.pulse]]": "name shape amplitude_g period_s dt_s duration_s gamma nu",
+    "[[motions.fema_p695]]": "station azimuth", "[[motions.sequence]]": "name records", CASE: "base", "[[case.damper]]": "kind",
+    "[[case.stop]]": "gap_mm", "[[check]]": "name demand reason",
+    "[[reference]]": "record case theta_max_over_alpha source",
+}  # fmt: skip
+SINGLE = {  # where every other key takes a list
+    "[pier]": "gravity", "[[pier.part]]": "", CASE: "name base other_width_m", "[[case.damper]]": "kind at",
+    "[[case.tendon]]": "at", "[[case.stop]]": "at", "[[case.deck_spring]]": "side height_m",
+}  # fmt: skip
+SEVERAL = {
+    "[motions]": "path polarity scale columns confirm confirm_pga leave_out", "[motions.target]": "spectrum confirm",
+    "[motions.vertical_target]": "spectrum confirm", "[[motions.pulse]]": "confirm", "[numerics]": "confirm",
+    "[[motions.sequence]]": "records factors polarity confirm", "[output]": "sa_periods_s sa_pairs sections_m",
+    "[[check]]": "case scale confirm",
+}  # fmt: skip
+ALIKE = {
+    "[motions]": "columns", "[motions.target]": "spectrum", "[motions.vertical_target]": "spectrum",
+    "[[motions.sequence]]": "records factors polarity",
+}  # fmt: skip
+
+
+def test_keys_that_have_to_be_written_that_take_lists_and_that_repeat_values():
+    """As the tables say of themselves: a list is several piers or foundations, and few of their keys take none."""
+    for section in STUDY[: [each.header for each in STUDY].index("[[reference]]") + 1]:
+        several = {name for name, key in section.items() if key.many}
+        assert {name for name, key in section.items() if key.required} == {*NEEDED.get(section.header, "").split()}
+        if section.header in SINGLE:
+            assert section.keys() - several == {*SINGLE[section.header].split()}
+        else:
+            assert several == {*SEVERAL.get(section.header, "").split()}
+        assert {name for name, key in section.items() if not key.distinct} == {*ALIKE.get(section.header, "").split()}
+
+
 SECTIONS = [(file, section) for file, sections in FILES.items() for section in sections if section.keys_read]
 TABLES = ("select", "target")  # keys of [motions] that are tables of their own
 NUMBERS = (-1e6, -7.0, -1, 0, 1e-6, 0.5, 1, 1.25, 2, 3, 4, 64, 1e6)
