@@ -308,6 +308,7 @@ OF_RULES = [
 TOLD = [  # what stands in the study, what is written instead or too, what the answer says, and what it must not say
     ("mass_t = 1800.0", "mass_t = 1,800", "or mass_t = 1.8 if the comma parts decimals", "confirm"),
     ("mass_t = 1800.0", "mass_t = 1.800", 'deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8; check the', "?"),
+    ("mass_t = 1800.0", 'weight_kN = "heavy"', "did you mean mass_t? (the weight in kN over 9.81)", "write"),
     ("mass_t = 1800.0", "weight = 17658", "write mass_t = 1800 (the weight in kN over 9.81)", "height_m"),
     ("width_m = 4.0", "slenderness = 7.5", "write alpha = atan(width/height), in radians", "degrees"),
     ("width_m = 4.0", "depth_m = 4.0", "write one of", "did you mean"),

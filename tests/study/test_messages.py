@@ -31,6 +31,10 @@ def said(folder, text):
         ({"cases": [{"bse": "rigid"}]}, "[[case]] no. 1: bse: unknown key; did you mean base?"),
         ({"cases": [], "csae": [PADS]}, "csae: unknown section; did you mean case?"),
         (
+            {"cases": [{"base": "rigid", "shft": "elastic", "flexural_damping": 0.1}]},
+            "[[case]] no. 1: shft: unknown key; did you mean shaft?",
+        ),
+        (
             {"cases": [{"base": "yielding", "beta": 50.0, "eta_": 2.5}]},
             "[[case]] no. 1: eta_: unknown key; did you mean eta?",
         ),

@@ -145,18 +145,20 @@ def test_a_limit_is_odd_only_where_it_is_so_for_all_its_cases(tmp_path):
 @pytest.mark.parametrize(
     ("part", "old", "new", "said"),
     [
-        ("pier", "= 3000", '= 3000\nconfirm = ["heigth_m"]', 'confirm = "heigth_m": this table has no such key; write one'),
+        ("pier", "= 3000", '= 3000\nconfirm = ["heigth_m"]',
+         'confirm = "heigth_m": this table has no such key; write one of "width_m", "height_m", "mass_t"'),
         ("numerics", "1e-4", '1e-4\nconfirm = "quiet_s"', 'this table has no such key; write one of "tolerance"'),
+        ("numerics", "tolerance = 1e-4", 'confirm = "quiet_s"', 'this table has no such key; leave it out'),
         ("check", "= 0.1", '= 0.1\nconfirm = "name"', 'confirm = "name": expected one of "at_most", "at_least", "above"'),
         ("numerics", "1e-4", "9e-13", "tolerance = 9e-13: must be 1e-12 or above, because rounding alone makes as much"),
-        ("numerics", "1e-4", "0", "tolerance = 0: expected a number above 0"),
+        ("numerics", "1e-4", "0", "tolerance = 0: expected a number above 0; write for example tolerance = 1e-4"),
     ],
 )  # fmt: skip
 def test_values_that_cannot_be_confirmed_or_met_are_reported(tmp_path, part, old, new, said):
     with pytest.raises(InputError) as caught:
         load_study(written(tmp_path, **{part: PARTS[part].replace(old, new)}))
     (problem,) = caught.value.problems
-    assert said in problem
+    assert problem.endswith(said)
 
 
 def test_rules_from_elsewhere_are_held_against_the_piers_of_the_results(tmp_path):
@@ -258,7 +260,7 @@ def test_python_refuses_the_same_devices_until_they_are_confirmed(device):
     name = str(error.value).rsplit('"', 2)[1]
     right = replace(device, confirm=(name,))
     assert unlikely_devices(TALL, (right,)) == []
-    assert right == device
+    assert (right, repr(right)) == (device, repr(device))
     assert "confirm" not in rb.RigidBase(restraints=(right,)).parameters(TALL)["restraints"][0]
 
 
