@@ -3,6 +3,7 @@
 import math
 import re
 import tomllib
+from dataclasses import astuple
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from rockbatch.motions.baseline import Offset
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.selection import Selection
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Stop, Tendon, YieldingBase
-from rockbatch.study import FemaSpec, Numerics, Output, PulseSpec, Reference, Study, load_study
+from rockbatch.study import FemaSpec, Numerics, PulseSpec, Reference, Study, load_study
 from rockbatch.study.cases import BASE_KEYS, CASE
 from rockbatch.study.load import NUMERICS, REFERENCE, TOP
 from rockbatch.study.motions import FEMA, MOTIONS
@@ -61,9 +62,14 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     study = study_of(tmp_path, PIER, PULSE, case(base="rigid"))
     assert study.title == "study"
     assert study.notes == ""
-    assert study.output == Output(histories="worst", ledger=False, both_laws=True)
+    periods = (0.5, 1.0, 2.0, 4.0)
+    assert astuple(study.output) == (
+        *("worst", 20.0, False, False, False, 0.1, True, False, periods, (), False, None, (), False, 10.0),
+    )
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
-    assert (study.motions.vertical, study.motions.polarity, study.motions.scale) == (True, ("+",), (1.0,))
+    motions = study.motions
+    assert (motions.vertical, motions.polarity, motions.scale) == (True, ("+",), (1.0,))
+    assert (motions.vertical_scale, motions.strict) == (1.0, False)
     assert study.motions.pulses == (PulseSpec("sine", "sine", 0.4, 1.0, 0.01, 5.0),)
     assert study.varied == ()
     (only,) = study.cases
@@ -268,6 +274,7 @@ base = "yeilding"
 record = "*"
 case = "ridgid"
 theta_max_over_alpha = 0.1
+p = 0.5
 [sloppy]
 """
     problems = problems_of(tmp_path, text)
@@ -297,7 +304,7 @@ theta_max_over_alpha = 0.1
         38: '[[case]] "1": base = "yeilding": did you mean "yielding"? expected one of "rigid", "elastic", "yielding"',
         39: '[[reference]] "*": source is missing',
         41: '[[reference]] "*": case = "ridgid": did you mean "rigid"? expected one of "rigid", "1"',
-        43: "sloppy: unknown section",
+        44: "sloppy: unknown section",
     }
     for line, beginning in expected.items():
         assert any(problem.startswith(f"{line}: {beginning}") for problem in problems), (line, beginning)
