@@ -121,6 +121,10 @@ def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):
     assert expecting._spread([1e12]) == [0]
     monkeypatch.setattr(expecting, "TRIED", 10)
     assert sorted(expecting._spread([1.0] * 100)) == [round(10 * i + 4.5) for i in range(10)]
+    monkeypatch.setattr(expecting, "STEPS_TRIED", 4.0)
+    few = expecting._spread([1.0] * 100)
+    assert len(few) == 4
+    assert max(few) - min(few) > 50  # and not the first ones
 
 
 @pytest.mark.parametrize(
