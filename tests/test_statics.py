@@ -171,7 +171,7 @@ def weak_pairs(count, devices=lambda rng: ()):
 
 def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form_between_its_points():
     """Without a point at first yield the curve is 0.9 to 4.2 % low there."""
-    for pier, base in weak_pairs(10):
+    for pier, base in weak_pairs(4):
         sheet = rb.statics(pier, base)
         theta = np.linspace(1e-6, sheet.unstable_rad, 20_001)[:-1]
         finite = base.kinematics == "finite"
@@ -195,7 +195,7 @@ def test_the_curve_has_the_printed_strength_of_weak_supports_with_devices_and_of
         "stop": lambda rng: (rb.Stop(gap_m=rng.uniform(0.005, 0.05), lam=rng.uniform(0.1, 0.8)),),
         "round": lambda rng: (),
     }
-    for pier, weak in weak_pairs(6, makes[kind]):
+    for pier, weak in weak_pairs(3, makes[kind]):
         base = dataclasses.replace(weak, spring="bouc-wen") if kind == "round" else weak
         sheet = sheet_of(pier, base)
         curve = sheet.equilibria
