@@ -1,6 +1,8 @@
 """The command line as users and their scripts meet it: files, messages, exit codes."""
 
 import csv
+import errno
+import io
 import json
 import os
 import shutil
@@ -16,7 +18,7 @@ from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
-from rockbatch.commands.streams import in_width
+from rockbatch.commands.streams import in_width, is_lost, show
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 
@@ -390,6 +392,25 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
     assert "Traceback" not in told
     assert "Exception" not in told
     assert ("the output cannot be printed (No space left on device)" in told) == (redirected == "> /dev/full")
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (errno.ENOSPC, "the output cannot be printed (No space left on device); all else is still done\n"),
+        (errno.EPIPE, ""),
+    ],
+)
+def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys, code, told):
+    class Failing(io.StringIO):
+        def write(self, text):
+            raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(sys, "stdout", Failing())
+    for _ in range(2):
+        show("text")
+    assert capsys.readouterr().err == told
+    assert [is_lost(sys.stdout), is_lost(sys.stdout)] == [True, False]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
