@@ -15,6 +15,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
+from rockbatch.commands.statics import rotations
 from rockbatch.core.springs.laws import static_deflection as series
 from rockbatch.pier import (
     ElasticBase,
@@ -415,7 +416,43 @@ BRIDGE = {"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 100
 PADS = {"name": "pads", "base": "elastic", "stiffness_kN_m": [1e6, 2e6], "zeta": 0.05, "area_m2": 6.0}
 
 
-def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("pier", "base", "heads"),
+    [
+        (PIER, RigidBase(restraints=(TENDON, rb.Stop(gap_m=0.1, lam=0.1), FRICTION)),
+         ["moment [m]", "of tendons", "of stops, springs", "of dampers", "period [s]", "damping"]),
+        (TALL, ElasticBase.from_stiffness(TALL, 2e6), ["moment [kN m]", "period [s]"]),
+    ],
+)  # fmt: skip
+def test_the_command_prints_the_curve_and_the_swings_at_their_rotations(pier, base, heads):
+    sheet = rb.statics(pier, base)
+    head, *lines = ([*re.split(r"\s{2,}", line.strip())] for line in rotations(sheet).splitlines())
+    assert head == ["theta/alpha", "theta [rad]", "held by [g]", *heads]
+    curve, scale = sheet.curve, sheet.weight_kN or 1.0
+    names = {
+        "moment": "moment_over_weight_m",
+        "of tendons": "of_tendons_m",
+        "of stops": "of_stops_m",
+        "of dampers": "of_dampers_m",
+    }
+    swings = dict(zip(sheet.swings_at.amplitude, sheet.swings_at.period, strict=True))
+    printed = {float(line[1]): [float(cell.replace(",", "").rstrip("%")) for cell in line] for line in lines}
+    for theta in (0.0, curve["theta_rad"].iloc[-1], sheet.strength_rad, *swings):
+        assert any(theta == pytest.approx(each, rel=1e-3) for each in printed)
+    for theta, (share, _, held, *cells) in printed.items():
+        assert share == pytest.approx(theta / pier.alpha, rel=2e-3)
+        assert held == pytest.approx(np.interp(theta, curve["theta_rad"], curve["acceleration_g"]), abs=2e-4)
+        for title, cell in zip(heads, cells, strict=False):
+            if column := next((name for start, name in names.items() if title.startswith(start)), None):
+                there = scale * np.interp(theta, curve["theta_rad"], curve[column])
+                assert cell == pytest.approx(there, rel=2e-3, abs=2e-4 * scale)
+    with_period = [line for line in lines if len(line) == len(head)]
+    assert [float(line[head.index("period [s]")]) for line in with_period] == pytest.approx(
+        list(swings.values()), rel=5e-3
+    )
+
+
+def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path, capsys, monkeypatch):
     motions = {"path": "nowhere"}
     study = write_study(
         tmp_path, study_text(pier=BRIDGE, motions=motions, pulses=(), cases=({"name": "rock", "base": "rigid"}, PADS))
@@ -424,7 +461,14 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     assert main(["statics", str(study), "--csv", str(sheet), "--curves", str(curves)]) == 0
     printed = capsys.readouterr().out
     assert "static strength [g]" in printed
-    assert "pads stiffness_kN_m=2e+06" in printed
+    assert "\n\npads stiffness_kN_m=2e+06\ntheta/alpha" in printed
+    monkeypatch.setattr("rockbatch.commands.statics.MOST_CASES", 2)
+    assert main(["statics", str(study)]) == 0
+    fewer = capsys.readouterr()
+    assert (fewer.out.rstrip(), fewer.err) == (
+        printed.split("\n\n")[0],
+        "3 cases: their curves are written with --curves FILE\n",
+    )
     table = pd.read_csv(sheet)
     assert list(table)[:2] == ["case", "stiffness_kN_m"]
     for row, base in zip(
