@@ -486,26 +486,20 @@ def test_a_library_that_memory_is_too_little_for_is_reported_in_a_sentence(study
         ("zzz", "rockbatch: there is no command zzz; `rockbatch --help` says more"),
         ("list", "rockbatch: there is no command list; did you mean examples?"),
         ("ls", "rockbatch: there is no command ls; did you mean examples?"),
-        (
-            "examples --list",
-            "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more",
-        ),
+        ("examples --list",
+         "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more"),
         ("-v", "rockbatch: unrecognized arguments: -v; did you mean --version?"),
         ("run pier.toml -o", "rockbatch: unrecognized arguments: -o; did you mean --out?"),
         ("run", "rockbatch run: the following arguments are required: STUDY.toml; `rockbatch run --help` says more"),
         ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
         ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),
         ("run empty", "rockbatch: empty: a folder; give a study file, such as pier.toml"),
-        (
-            "motions pier.toml",
-            "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]",
-        ),
-        (
-            "init --example nearfault x",
-            "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them",
-        ),
+        ("motions pier.toml",
+         "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]"),
+        ("init --example nearfault x",
+         "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_in_a_command_line_is_answered_in_one_line_with_what_was_meant(
     words, answer, tmp_path, monkeypatch, capsys
 ):

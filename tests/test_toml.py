@@ -224,18 +224,14 @@ def test_a_line_that_is_no_toml_is_quoted_as_it_can_be_shown(tmp_path):
     ("text", "gaps", "found"),
     [
         ("a,b\n1,2\n# remark\n\n3,4e0\n", False, {"a": [1.0, 3.0], "b": [2.0, 4.0]}),
-        ("b;a\n1,5;2\n", False, {"b": [1.5], "a": [2.0]}),
-        ("a\n1\nNaN\n", True, {"a": [1.0, math.nan]}),
-        ("a,b\n,2\n", True, {"a": [math.nan], "b": [2.0]}),
-        ("a,b\n,2\n", False, ":2: a = "),
-        ("a\nnan\n", False, ':2: a = "nan"'),
-        ("a\n1_0\n", True, ':2: a = "1_0"'),
-        ("a,b\n1\n", False, ":2: 1 cells below 2 column names"),
-        ("a,a\n1,2\n", False, ":1: a column occurs twice"),
+        ("b;a\n1,5;2\n", False, {"b": [1.5], "a": [2.0]}), ("a\n1\nNaN\n", True, {"a": [1.0, math.nan]}),
+        ("a,b\n,2\n", True, {"a": [math.nan], "b": [2.0]}), ("a,b\n,2\n", False, ":2: a = "),
+        ("a\nnan\n", False, ':2: a = "nan"'), ("a\n1_0\n", True, ':2: a = "1_0"'),
+        ("a,b\n1\n", False, ":2: 1 cells below 2 column names"), ("a,a\n1,2\n", False, ":1: a column occurs twice"),
         ("a,c\n1,2\n", False, ':1: "c": unknown column; write one of a, b'),
         ("# a\na\n", False, "expected a line of column names"),
     ],
-)
+)  # fmt: skip
 def test_columns_of_a_small_file_are_numbers_or_the_line_says_why_not(tmp_path, text, gaps, found):
     path = tmp_path / "x.csv"
     path.write_text(text, encoding="utf-8")

@@ -419,12 +419,10 @@ def manifest(path):
 @pytest.mark.parametrize(
     ("whole", "load", "meant", "written"),
     [
-        *((STUDY, load_study, *row) for row in REPLACED),
-        *((TARGET, load_study, *row) for row in OF_TARGET),
-        *((MANIFEST, manifest, *row) for row in OF_MANIFEST),
-        *((RULES, load_rules, *row) for row in OF_RULES),
+        *((STUDY, load_study, *row) for row in REPLACED), *((TARGET, load_study, *row) for row in OF_TARGET),
+        *((MANIFEST, manifest, *row) for row in OF_MANIFEST), *((RULES, load_rules, *row) for row in OF_RULES),
     ],
-)
+)  # fmt: skip
 def test_advice_followed_to_the_letter_leads_to_what_was_meant(folder, whole, load, meant, written):
     wrong = whole.replace(meant, written, -1 if written.startswith("[") else 1)
     assert wrong != whole

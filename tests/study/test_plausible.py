@@ -217,15 +217,11 @@ def test_what_is_wrong_about_a_deck_spring_is_said(tmp_path, keys, said):
     [
         ("gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e5, or lambda"),
         ("lambda = 20", "gap_mm is missing"),
-        (
-            "gap_mm = 100\nlambda = 20\nstiffness_kN_m = 1e5",
-            "stiffness_kN_m and lambda are given, which fix the same; keep one",
-        ),
+        ("gap_mm = 100\nlambda = 20\nstiffness_kN_m = 1e5", "stiffness_kN_m and lambda are given, which fix the same; keep one"),
         ("gap_mm = 100\nlambda = 20\nrestitution = 60", "restitution = 60: must be within 0.1 and 1"),
-        ('gap_mm = 100\nlambda = 20\nat = "top"', 'at = "top"'),
-        ("gap_m = 0.1\nlambda = 20", "gap_m"),
+        ('gap_mm = 100\nlambda = 20\nat = "top"', 'at = "top"'), ("gap_m = 0.1\nlambda = 20", "gap_m"),
     ],
-)
+)  # fmt: skip
 def test_what_is_wrong_about_a_stop_is_said(tmp_path, keys, said):
     problems = problems_of(
         written_with(tmp_path, case=f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.stop]]\n{keys}\n')
@@ -297,20 +293,10 @@ def test_a_motion_in_gal_is_refused_where_it_is_run():
 @pytest.mark.parametrize(
     ("old", "new", "key", "said"),
     [
-        (
-            "amplitude_g = 0.2",
-            "amplitude_g = 4",
-            "amplitude_g",
-            "amplitude_g = 4 g: more than 3 g, where pulses of near-fault",
-        ),
-        (
-            "dt_s = 0.01",
-            "dt_s = 0.8",
-            "dt_s",
-            "dt_s = 0.8 s: 1.2 samples in a period of 1 s, which miss the pulse's peak",
-        ),
+        ("amplitude_g = 0.2", "amplitude_g = 4", "amplitude_g", "amplitude_g = 4 g: more than 3 g, where pulses of near-fault"),
+        ("dt_s = 0.01", "dt_s = 0.8", "dt_s", "dt_s = 0.8 s: 1.2 samples in a period of 1 s, which miss the pulse's peak"),
     ],
-)
+)  # fmt: skip
 def test_a_pulse_that_is_none_is_refused(tmp_path, old, new, key, said):
     (problem,) = problems_of(written_with(tmp_path, pulse=PULSE.replace(old, new)))
     assert said in problem

@@ -63,21 +63,17 @@ PAD = {"base": "yielding", "beta": 50, "eta": 2.5}
 @pytest.mark.parametrize(
     ("tables", "where"),
     [
-        ({"pier": {"alpha": -0.2, "p": 1.0}}, "$.pier.alpha"),
-        ({"pier": {"alpha": 0.2, "p": [1.0, 1.0]}}, "$.pier.p"),
+        ({"pier": {"alpha": -0.2, "p": 1.0}}, "$.pier.alpha"), ({"pier": {"alpha": 0.2, "p": [1.0, 1.0]}}, "$.pier.p"),
         ({"pier": {"alpha": 0.2, "p": 1.0, "widht_m": 4.0}}, "$.pier"),
-        ({"motions": {"polarity": ["+", "*"]}}, "$.motions.polarity"),
-        ({"motions": {"scale": [1, 1]}}, "$.motions.scale"),
-        ({"motions": {"target": {"pga": 0.4}}}, "$.motions.target"),
-        ({"cases": [PAD | {"restitution": 0.9}]}, "$.case[0]"),
-        ({"cases": [{"base": "rigid", "eta": 2.5}]}, "$.case[0]"),
-        ({"cases": [{"beta": 40}]}, "$.case[0]"),
+        ({"motions": {"polarity": ["+", "*"]}}, "$.motions.polarity"), ({"motions": {"scale": [1, 1]}}, "$.motions.scale"),
+        ({"motions": {"target": {"pga": 0.4}}}, "$.motions.target"), ({"cases": [PAD | {"restitution": 0.9}]}, "$.case[0]"),
+        ({"cases": [{"base": "rigid", "eta": 2.5}]}, "$.case[0]"), ({"cases": [{"beta": 40}]}, "$.case[0]"),
         ({"chekc": [{"name": "a"}]}, "$"),
         ({"sensitivity": {"uniform": {"damper": {"force": [1, 2]}}}}, "$.sensitivity.uniform.damper"),
         ({"sensitivity": {"log_uniform": {"tendon_2": {"psi": [0.0, 0.5]}}}}, "$.sensitivity.log_uniform.tendon_2.psi"),
         ({"sensitivity": {"uniform": {"damper_0": {"f": [1, 2]}}}}, "$.sensitivity.uniform"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_is_refused_by_the_schema_where_it_is_and_by_the_reader(tmp_path, tables, where):
     text = study_text(**tables)
     assert where in {place[: len(where)] for place in places(text)}

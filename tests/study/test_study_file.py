@@ -347,22 +347,18 @@ def test_the_message_on_an_empty_file_names_what_it_lacks(tmp_path):
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ("alpha = 0.1", "1: [pier]: its size is missing; write p = 0.38"),
-        ("p = 1", "1: [pier]: alpha is missing"),
+        ("alpha = 0.1", "1: [pier]: its size is missing; write p = 0.38"), ("p = 1", "1: [pier]: alpha is missing"),
         ("alpha = 0.1\np = 1\nsize_m = 7", "4: [pier]: p and size_m are given"),
         ("p = 1\nwidth_m = 4\nheight_m = 9\n", "4: [pier]: p, width_m and height_m are given"),
         ("width_m = 4", "1: [pier]: height_m is missing beside width_m"),
         ("width_m = 4\nheight_m = 9\nalpha = 0.1", "4: [pier]: alpha follows from width_m and height_m"),
         ("width_m = 4\nheight_m = 9\nmu = 3", "4: [pier]: mu follows from width_m and height_m"),
-        (
-            "alpha = 7.4\np = 1",
-            "2: [pier]: alpha = 7.4: must be below π/2 = 1.5708 rad; if it is in degrees, write 0.1292",
-        ),
+        ("alpha = 7.4\np = 1", "2: [pier]: alpha = 7.4: must be below π/2 = 1.5708 rad; if it is in degrees, write 0.1292"),
         ("alpha = [\n0.1,\n7.4]\np = 1", "4: [pier]: alpha = 7.4: must be below π/2"),
         ("alpha = []\np = 1", "2: [pier]: alpha = []: expected at least one value"),
         ("alpha = 0.1\np = 1\ngravity = []", "4: [pier]: gravity = []: expected one value, not a list"),
     ],
-)
+)  # fmt: skip
 def test_a_pier_is_given_in_one_way_that_can_be(tmp_path, keys, said):
     assert problem_of(tmp_path, f"[pier]\n{keys}\n", PULSE, RIGID).startswith(said)
 
@@ -388,14 +384,10 @@ def test_a_pier_is_given_in_one_way_that_can_be(tmp_path, keys, said):
         (case("beta = 40", "eta = 2", "n = 0.5"), 5, "n = 0.5: the Bouc–Wen exponent must be at least 1"),
         (case("beta = 40", "eta = 2", "bta = 3"), 5, "bta: unknown key; did you mean beta?"),
         (case("beta = 40", "eta = 2", "quiet_s = 3"), 5, "quiet_s: unknown key; it belongs under [numerics]"),
-        (
-            case("beta = 40", "eta = 2", 'name = ["a"]'),
-            5,
-            'name = ["a"]: did you mean "a"? expected one value, not a list',
-        ),
+        (case("beta = 40", "eta = 2", 'name = ["a"]'), 5, 'name = ["a"]: did you mean "a"? expected one value, not a list'),
         ('[case]\nbase = "rigid"\n', 1, "case: expected a list of tables; write [[case]] above each one"),
     ],
-)
+)  # fmt: skip
 def test_a_case_has_what_its_base_takes_and_what_can_be(tmp_path, written, line, said):
     above = PIER + PULSE
     problem = problem_of(tmp_path, above, written)
@@ -467,32 +459,20 @@ def test_without_a_readable_pier_a_base_is_still_checked_but_not_against_a_pier(
         ("axis_deg = 30\nevery_deg = 15", "6: [motions]: axis_deg and every_deg are given"),
         ("axis_deg = 400", "5: [motions]: axis_deg = 400: expected an azimuth within 0..360"),
         ("every_deg = 0", "5: [motions]: every_deg = 0: expected an angle within 1..90"),
-        (
-            'offset = "pre-event"',
-            '5: [motions]: offset = "pre-event": over which time? write for example offset_window',
-        ),
+        ('offset = "pre-event"', '5: [motions]: offset = "pre-event": over which time? write for example offset_window'),
         ('offset = "preevent"', '5: [motions]: offset = "preevent": did you mean "pre-event"? expected one of'),
         ("offset_window_s = [0, 5]", '5: [motions]: offset_window_s = [0, 5]: is for offset = "pre-event"'),
-        (
-            'offset = "mean"\noffset_window_s = [0, 5]',
-            '6: [motions]: offset_window_s = [0, 5]: does not apply to offset = "mean"',
-        ),
-        (
-            'offset = "pre-event"\noffset_window_s = [5, 5]',
-            "6: [motions]: offset_window_s = [5, 5]: expected a range; write for example",
-        ),
+        ('offset = "mean"\noffset_window_s = [0, 5]',
+         '6: [motions]: offset_window_s = [0, 5]: does not apply to offset = "mean"'),
+        ('offset = "pre-event"\noffset_window_s = [5, 5]',
+         "6: [motions]: offset_window_s = [5, 5]: expected a range; write for example"),
         ("select = 3", "5: [motions]: select = 3: expected a table in braces; write for example select = { pga_g"),
         ("select = { pga = [0, 1] }", "5: [motions.select]: pga: unknown key; did you mean pga_g?"),
-        (
-            "select = { pga_g = [1, 0.1] }",
-            "5: [motions.select]: pga_g = [1, 0.1]: expected a range; write for example pga_g = [0.1, 1",
-        ),
+        ("select = { pga_g = [1, 0.1] }",
+         "5: [motions.select]: pga_g = [1, 0.1]: expected a range; write for example pga_g = [0.1, 1"),
         ("select = { pga_g = 0.1 }", "5: [motions.select]: pga_g = 0.1: expected a range; write for example"),
         ("select = { pga_g = [] }", "5: [motions.select]: pga_g = []: expected a range; write for example"),
-        (
-            "select = { pga_g = [0.1, 0.2, 0.3] }",
-            "5: [motions.select]: pga_g = [0.1, 0.2, 0.3]: expected a range; write",
-        ),
+        ("select = { pga_g = [0.1, 0.2, 0.3] }", "5: [motions.select]: pga_g = [0.1, 0.2, 0.3]: expected a range; write"),
         ("select = { pga_g = [0.1, nan] }", "5: [motions.select]: pga_g = nan: expected a finite number"),
         ("target = {}", "5: [motions.target]: the measure is missing"),
         ("target = { pga_g = 1, sa_g = 1 }", "5: [motions.target]: pga_g and sa_g are given; write one of"),
@@ -504,7 +484,7 @@ def test_without_a_readable_pier_a_base_is_still_checked_but_not_against_a_pier(
         ("confirm = [1]", "5: [motions]: confirm = 1: expected text in quotes"),
         ('strict = "yes"', '5: [motions]: strict = "yes": did you mean true? expected true or false'),
     ],
-)
+)  # fmt: skip
 def test_what_makes_a_suite_is_checked_with_its_line(tmp_path, keys, said):
     assert problem_of(tmp_path, PIER, f"[motions]\n{keys}\n", PULSE, RIGID).startswith(said)
 
@@ -770,15 +750,13 @@ def test_dampers_and_tendons_by_kilonewtons_and_by_ratios(tmp_path):
 @pytest.mark.parametrize(
     ("keys", "told"),
     [
-        ('kind = "friction"', "force_kN is missing"),
-        ('kind = "friction"\nf = 0.1\nforce_kN = 5', "force_kN and f"),
+        ('kind = "friction"', "force_kN is missing"), ('kind = "friction"\nf = 0.1\nforce_kN = 5', "force_kN and f"),
         ('kind = "friction"\nf = 0.1\nyield_mm = 5', 'yield_mm = 5: does not apply to kind = "friction"'),
         ('kind = "hysteretic"\nf = 0.1', "yield_mm is missing"),
         ('kind = "viscous"\ncoefficient_kN_s_m = 5', "coefficient_kN_s_m: kN are of a pier whose mass is known"),
-        ('kind = "rubber"\nf = 0.1', "rubber"),
-        ('kind = "viscous"\nnu = 0.1\nat = "middle"', "an offset"),
+        ('kind = "rubber"\nf = 0.1', "rubber"), ('kind = "viscous"\nnu = 0.1\nat = "middle"', "an offset"),
     ],
-)
+)  # fmt: skip
 def test_mistakes_of_a_damper_are_reported(tmp_path, keys, told):
     with pytest.raises(InputError) as error:
         study_of(tmp_path, PIER, PULSE, f'[[case]]\nbase = "rigid"\n[[case.damper]]\n{keys}\n')
