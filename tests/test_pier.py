@@ -161,10 +161,9 @@ def test_what_is_possible_ends_at_its_bounds(low, high, make):
     assert problems(FIG5, make(math.nan))
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0])
-def test_values_that_are_no_numbers_are_refused(value):
-    for base in (ElasticBase(value), YieldingBase(50.0, eta=value), YieldingBase(50.0, eta=3.0, n=value)):
-        assert problems(FIG5, base), base
+@pytest.mark.parametrize("beta", [math.nan, math.inf, -1.0])
+def test_a_stiffness_that_is_no_number_is_refused(beta):
+    assert problems(FIG5, ElasticBase(beta))
 
 
 def test_a_pier_reports_all_its_mistakes_at_once():
