@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import pandas as pd
@@ -17,6 +18,8 @@ from report_samples import write_results
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch import listening
+from rockbatch.commands import messages
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.streams import in_width, is_lost, show
 from rockbatch.reporting import write_report
@@ -279,62 +282,53 @@ def test_the_line_of_the_documentation_registers_the_completion():
     assert "_python_argcomplete" in done.stdout
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
-def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(monkeypatch):
-    """As while kernels are compiled."""
+@contextmanager
+def terminal(monkeypatch, rows, columns):
+    """Let stderr be a terminal of this size; afterwards the list holds what it shows."""
     import fcntl
     import pty
     import struct
     import termios
 
-    from rockbatch.batch import listening
-    from rockbatch.commands import messages
-
-    monkeypatch.setattr(listening, "MOVES_S", 0.1)
+    shown = []
     ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    with os.fdopen(theirs, "w") as terminal:
-        monkeypatch.setattr("sys.stderr", terminal)
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    with os.fdopen(theirs, "w") as stream:
+        monkeypatch.setattr("sys.stderr", stream)
+        yield shown
+        stream.flush()
+        shown.append(os.read(ours, 100_000).decode())
+    os.close(ours)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
+def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(monkeypatch):
+    """As while kernels are compiled."""
+    monkeypatch.setattr(listening, "MOVES_S", 0.1)
+    with terminal(monkeypatch, 30, 100) as shown:
         listener = messages.Terminal()
         with listener.progress(3):
             time.sleep(1.2)
             listener.say("compiling")
-        terminal.flush()
-        shown = os.read(ours, 100_000).decode()
-    os.close(ours)
-    assert "0/3 [00:00<" in shown
-    assert "0/3 [00:01<" in shown
-    assert "\rcompiling" in shown.replace(" ", "")
+    assert "0/3 [00:00<" in shown[0]
+    assert "0/3 [00:01<" in shown[0]
+    assert "\rcompiling" in shown[0].replace(" ", "")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
 @pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
 def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn, monkeypatch):
     """A terminal without a size gets plain lines, as a file does."""
-    import fcntl
-    import pty
-    import struct
-    import termios
-
-    from rockbatch.commands import messages
-
     monkeypatch.setattr(messages, "SECONDS_BETWEEN_LINES", 0.0)
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
-    with os.fdopen(theirs, "w") as terminal:
-        monkeypatch.setattr("sys.stderr", terminal)
-        with messages.Terminal().progress(3) as advance:
-            for _ in range(3):
-                time.sleep(0.12)
-                advance(1)
-        terminal.flush()
-        shown = os.read(ours, 100_000).decode()
-    os.close(ours)
+    with terminal(monkeypatch, *size) as shown, messages.Terminal().progress(3) as advance:
+        for _ in range(3):
+            time.sleep(0.12)
+            advance(1)
     if drawn:
-        assert "/3 [" in shown
-        assert "<" in shown  # time spent < time left
+        assert "/3 [" in shown[0]
+        assert "<" in shown[0]  # time spent < time left
     else:
-        assert shown.startswith("1 of 3 runs, ")
+        assert shown[0].startswith("1 of 3 runs, ")
 
 
 def test_wide_tables_fit_the_terminal(monkeypatch):

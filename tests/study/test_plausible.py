@@ -196,36 +196,24 @@ def written_with(folder, motions="", case='[[case]]\nname = "rock"\nbase = "rigi
     return path
 
 
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        ("gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e4, or lambda"),
-        ("lambda = 1\nstiffness_kN_m = 1e4", "stiffness_kN_m and lambda are given, which fix the same; keep one"),
-        ('lambda = 1\nside = "top"', 'side = "top"'),
-        ("lambda = 1\nheight_m = -3", "height_m"),
-        ('lambda = 1\nat = "left"', "at"),
-    ],
-)
-def test_what_is_wrong_about_a_deck_spring_is_said(tmp_path, keys, said):
-    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.deck_spring]]\n{keys}\n'
-    problems = problems_of(written_with(tmp_path, case=case))
-    assert any(said in problem for problem in problems), problems
+TWICE = "stiffness_kN_m and lambda are given, which fix the same; keep one"
 
 
 @pytest.mark.parametrize(
-    ("keys", "said"),
+    ("device", "keys", "said"),
     [
-        ("gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e5, or lambda"),
-        ("lambda = 20", "gap_mm is missing"),
-        ("gap_mm = 100\nlambda = 20\nstiffness_kN_m = 1e5", "stiffness_kN_m and lambda are given, which fix the same; keep one"),
-        ("gap_mm = 100\nlambda = 20\nrestitution = 60", "restitution = 60: must be within 0.1 and 1"),
-        ('gap_mm = 100\nlambda = 20\nat = "top"', 'at = "top"'), ("gap_m = 0.1\nlambda = 20", "gap_m"),
+        ("deck_spring", "gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e4, or lambda"),
+        ("deck_spring", "lambda = 1\nstiffness_kN_m = 1e4", TWICE), ("deck_spring", 'lambda = 1\nside = "top"', 'side = "top"'),
+        ("deck_spring", "lambda = 1\nheight_m = -3", "height_m"), ("deck_spring", 'lambda = 1\nat = "left"', "at"),
+        ("stop", "gap_mm = 100", "stiffness_kN_m is missing; write for example stiffness_kN_m = 5.0e5, or lambda"),
+        ("stop", "lambda = 20", "gap_mm is missing"), ("stop", "gap_mm = 100\nlambda = 20\nstiffness_kN_m = 1e5", TWICE),
+        ("stop", "gap_mm = 100\nlambda = 20\nrestitution = 60", "restitution = 60: must be within 0.1 and 1"),
+        ("stop", 'gap_mm = 100\nlambda = 20\nat = "top"', 'at = "top"'), ("stop", "gap_m = 0.1\nlambda = 20", "gap_m"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_about_a_stop_is_said(tmp_path, keys, said):
-    problems = problems_of(
-        written_with(tmp_path, case=f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.stop]]\n{keys}\n')
-    )
+def test_what_is_wrong_about_a_stop_or_a_deck_spring_is_said(tmp_path, device, keys, said):
+    case = f'[[case]]\nname = "a"\nbase = "rigid"\n[[case.{device}]]\n{keys}\n'
+    problems = problems_of(written_with(tmp_path, case=case))
     assert any(said in problem for problem in problems), problems
 
 

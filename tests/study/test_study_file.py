@@ -601,28 +601,21 @@ def test_every_study_that_comes_along_is_sound_and_explains_itself(path):
         assert not any("settlement" in rule.demand for rule in study.checks)
 
 
-def test_fig5_has_the_paper_s_parameters():
-    study = load_study(CONFIGS / "fig5.toml")
-    rigid, *yielding = study.cases
-    assert rigid.base == RigidBase(flight="stop")
-    bases = [YieldingBase(50.0, 0.1, flight="stop", eta=eta) for eta in (5.0, 3.0, 2.5, 2.2)]
-    assert [each.base for each in yielding] == bases
-    assert {each.pier for each in study.cases} == {Pier(0.2, 1.0)}
+@pytest.mark.parametrize(
+    ("name", "alpha", "bases", "wave", "varied"),
+    [
+        ("fig5", 0.2, [(50.0, eta) for eta in (5.0, 3.0, 2.5, 2.2)], ("sine", 1.0, 0.5), "eta"),
+        ("fig6", 0.15, [(beta, 2.5) for beta in (20.0, 40.0, 60.0, 100.0)], ("cosine", 1.0, 1.0), "beta"),
+    ],
+)
+def test_figures_5_and_6_have_the_paper_s_parameters(name, alpha, bases, wave, varied):
+    study = load_study(CONFIGS / f"{name}.toml")
+    expected = [RigidBase(flight="stop"), *(YieldingBase(beta, 0.1, flight="stop", eta=eta) for beta, eta in bases)]
+    assert [each.base for each in study.cases] == expected
+    assert {each.pier for each in study.cases} == {Pier(alpha, 1.0)}
     (pulse,) = study.motions.pulses
-    assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == ("sine", 1.0, 0.5)
-    assert study.varied == ("eta",)
-
-
-def test_fig6_has_the_paper_s_parameters():
-    study = load_study(CONFIGS / "fig6.toml")
-    rigid, *yielding = study.cases
-    assert rigid.base == RigidBase(flight="stop")
-    bases = [YieldingBase(beta, 0.1, flight="stop", eta=2.5) for beta in (20.0, 40.0, 60.0, 100.0)]
-    assert [each.base for each in yielding] == bases
-    assert {each.pier for each in study.cases} == {Pier(0.15, 1.0)}
-    (pulse,) = study.motions.pulses
-    assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == ("cosine", 1.0, 1.0)
-    assert study.varied == ("beta",)
+    assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == wave
+    assert study.varied == (varied,)
 
 
 def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
