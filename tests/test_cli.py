@@ -271,14 +271,9 @@ def test_the_line_of_the_documentation_registers_the_completion():
     assert line in (Path(__file__).parents[1] / "docs/commands.md").read_text(encoding="utf-8")
     if not (bash and tool.exists()):
         pytest.skip("without argcomplete or bash")
-    path = f"{tool.parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        [bash, "-c", f"{line}; complete -p rockbatch"],
-        env=os.environ | {"PATH": path},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    environment = os.environ | {"PATH": f"{tool.parent}{os.pathsep}{os.environ['PATH']}"}
+    command = [bash, "-c", f"{line}; complete -p rockbatch"]
+    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
     assert "_python_argcomplete" in done.stdout
 
 

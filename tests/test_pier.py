@@ -161,9 +161,12 @@ def test_what_is_possible_ends_at_its_bounds(low, high, make):
     assert problems(FIG5, make(math.nan))
 
 
-@pytest.mark.parametrize("beta", [math.nan, math.inf, -1.0])
-def test_a_stiffness_that_is_no_number_is_refused(beta):
-    assert problems(FIG5, ElasticBase(beta))
+@pytest.mark.parametrize(
+    ("beta", "words"), [(math.nan, "above"), (-1.0, "above"), (math.inf, "1e+15 at most"), (2e15, "1e+15")]
+)
+def test_a_stiffness_that_is_no_number_is_refused(beta, words):
+    (problem,) = problems(FIG5, ElasticBase(beta))
+    assert words in problem
 
 
 def test_a_pier_reports_all_its_mistakes_at_once():

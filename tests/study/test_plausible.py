@@ -1,6 +1,7 @@
 """Values that only a wrong unit explains: told with what is usual, and taken once they are confirmed."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -170,9 +171,8 @@ def test_rules_from_elsewhere_are_held_against_the_piers_of_the_results(tmp_path
         rb.check(out, rules)
     with pytest.raises(InputError, match="past the edge"):
         rb.check(out, [rb.Rule("uplift", "heel_uplift_m", at_most=100.0)])
-    assert (
-        rb.check(out, [rb.Rule("uplift", "heel_uplift_m", at_most=100.0, confirm=("at_most",))])["value"].notna().all()
-    )
+    confirmed = rb.Rule("uplift", "heel_uplift_m", at_most=100.0, confirm=("at_most",))
+    assert rb.check(out, [confirmed])["value"].notna().all()
     rules.write_text(at_the_key(rules.read_text(), "at_most = 100", "at_most"), encoding="utf-8")
     assert rb.check(out, rules)["verdict"].eq("pass").all()
 
@@ -217,13 +217,40 @@ def test_what_is_wrong_about_a_stop_or_a_deck_spring_is_said(tmp_path, device, k
     assert any(said in problem for problem in problems), problems
 
 
-def test_a_viscous_damper_in_newtons_is_a_thousand_times_that_in_kilonewtons():
-    """By hand: 5e6 N s/m on 3,000 t have 1.7 % of the weight at 0.1 m/s; taken for kN s/m 17 times it."""
-    for factor, refused in ((1, False), (1000, True)):
-        share = factor * 5e3 * 0.1 / (3000 * 9.81)
-        assert (share > 1) == refused
-        damper = rb.Damper("viscous", nu=factor * 5e3 / (3000 * TALL.p))
-        assert (unlikely_devices(TALL, (damper,)) != []) == refused
+B, R0, P, A = 4.0, np.hypot(4.0, 15.0), TALL.p, TALL.alpha
+friction, hysteretic, viscous = (
+    partial(rb.Damper, kind, f=0.1, yield_m=0.005) for kind in ("friction", "hysteretic", "viscous")
+)
+tendon, stop, beside = (
+    partial(rb.Tendon, psi=0.1, lam=0.1),
+    partial(rb.Stop, gap_m=0.1, lam=1.0),
+    partial(rb.DeckSpring, lam=1.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("make", "name", "bound", "beyond"),
+    [
+        (friction, "f", 1.0, 1.001), (friction, "f", 1e-3, 0.999),
+        (hysteretic, "yield_m", 2.5e-5, 0.999), (hysteretic, "yield_m", 0.5, 1.001),
+        (hysteretic, "brace", B**2 / (1e-3 * R0), 1.001), (hysteretic, "brace", 0.025, 0.999),
+        (partial(viscous, exponent=0.5), "nu", 9.81 / P / 0.1**0.5, 1.001), (viscous, "nu", 1e-3 * 9.81 / P, 0.999),
+        (partial(viscous, brace=20.0), "nu", 20.0 * 9.81 * R0 / B**2 / P / 1e4, 0.999),
+        (tendon, "psi", 1e-3, 0.999), (tendon, "strength", 10.0, 1.001), (tendon, "lam", 100.0, 1.001),
+        (tendon, "lam", 0.01, 0.999),
+        (stop, "gap_m", 5e-4, 0.999), (stop, "gap_m", 2.0 * TALL.half_width, 1.001),
+        (stop, "lam", B**2 / (1e-4 * R0), 1.001), (stop, "lam", 0.05 * B**2 / (R0 * 2.0 * B * A), 0.999),
+        (beside, "lam", B**2 / (1e-3 * R0), 1.001), (beside, "lam", 0.05 * B**2 / (R0 * TALL.deck * A), 0.999),
+        (partial(beside, height_m=10.0), "gap_m", 10.0 * np.tan(A), 1.001),
+    ],
+)  # fmt: skip
+def test_what_is_usual_of_a_device_ends_at_its_bound(make, name, bound, beyond):
+    """By the sentences of the module's constants, from the weight, R0, b and α."""
+    inside = (
+        bound if name in ("f", "yield_m", "psi", "strength", "gap_m") else bound * (1.0 - 1e-9 * np.sign(beyond - 1.0))
+    )
+    assert unlikely_devices(TALL, (make(**{name: inside}),)) == []
+    assert len(unlikely_devices(TALL, (make(**{name: bound * beyond}),))) == 1
 
 
 def test_an_empty_tendon_is_refused(tmp_path):
@@ -273,9 +300,8 @@ def test_a_motion_in_gal_is_refused_where_it_is_run():
         InputError, match=r'motion "gal": PGA 40\.8 g, where .*gal are 0\.01 of it.*confirm = \["pga"\]'
     ):
         rb.simulate(TALL, rb.RigidBase(), gal)
-    assert rb.simulate(TALL, rb.RigidBase(), replace(gal, confirm=("pga",))).row["pga_g"] == pytest.approx(
-        40.8, abs=0.05
-    )
+    confirmed = rb.simulate(TALL, rb.RigidBase(), replace(gal, confirm=("pga",)))
+    assert confirmed.row["pga_g"] == pytest.approx(40.8, abs=0.05)
 
 
 @pytest.mark.parametrize(

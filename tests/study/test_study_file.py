@@ -4,6 +4,7 @@ import math
 import re
 import tomllib
 from dataclasses import astuple
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -641,17 +642,7 @@ def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
 def test_the_example_s_comments_name_every_key_there_is():
     """A newcomer copies it: what it does not show does not exist."""
     text = (CONFIGS / "example.toml").read_text()
-    for key in [
-        *TOP,
-        *PIER_KEYS,
-        *MOTIONS,
-        *FEMA,
-        *PULSE_KEYS,
-        *NUMERICS,
-        *CASE,
-        *BASE_KEYS,
-        *(key for keys in DEVICES.values() for key in keys),
-    ]:
+    for key in chain(TOP, PIER_KEYS, MOTIONS, FEMA, PULSE_KEYS, NUMERICS, CASE, BASE_KEYS, *DEVICES.values()):
         assert re.search(rf"\b{key}\b", text), key
 
 
@@ -668,14 +659,8 @@ def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_an
     assert [type(device) for device in only.base.restraints] == [Damper, Damper, Tendon, Stop, DeckSpring]
     ratios = re.sub(r"(?m)^\w+ = [^#\n]*#.*\bor (\w+ = [\d.]+).*$", r"\1", devices).replace("yield_kN", "# yield_kN")
     hysteretic, viscous, tendon, stop, beside = Study.from_toml(PIER + PULSE + RIGID + ratios).cases[0].base.restraints
-    assert (hysteretic.f, hysteretic.yield_m, hysteretic.at, viscous.nu, viscous.exponent) == (
-        0.02,
-        0.005,
-        "left",
-        0.5,
-        0.5,
-    )
-    assert viscous.brace == 5.0
+    assert hysteretic == Damper("hysteretic", f=0.02, yield_m=0.005, at="left")
+    assert viscous == Damper("viscous", nu=0.5, exponent=0.5, brace=5.0)
     assert (tendon.psi, tendon.lam, tendon.strength) == (0.5, 1.0, math.inf)
     assert (stop.gap_m, stop.lam, stop.restitution, stop.at) == (0.1, 20.0, 0.6, "left")
     assert beside == DeckSpring(0.2, 0.05, 0.6, "right", 31.5)
