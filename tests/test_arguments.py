@@ -133,16 +133,13 @@ def test_samples_are_copied_and_cannot_change():
 @pytest.mark.parametrize(
     ("samples", "words"),
     [
-        (np.ma.masked_less(ROWS, 0.0), "masked samples"),
-        (ROWS + 1j, "complex128: must be real numbers"),
-        (np.array([0.0, None]), "object: must be real numbers"),
-        (["0.1", "0.2"], "must be real numbers"),
-        ([True, False], "bool: must be real numbers"),
-        ([[0.1, 0.2], [0.3]], "cannot be made an array"),
+        (np.ma.masked_less(ROWS, 0.0), "masked samples"), (ROWS + 1j, "complex128: must be real numbers"),
+        (np.array([0.0, None]), "object: must be real numbers"), (["0.1", "0.2"], "must be real numbers"),
+        ([True, False], "bool: must be real numbers"), ([[0.1, 0.2], [0.3]], "cannot be made an array"),
         (3.0, "samples in a row"),
     ],
     ids=["masked", "complex", "object", "str", "bool", "ragged", "scalar"],
-)
+)  # fmt: skip
 def test_samples_that_are_no_real_numbers_are_refused(samples, words):
     for components in ({"horizontal": samples}, {"horizontal": ROWS, "vertical": samples}):
         with pytest.raises(rb.InputError, match=words):

@@ -68,6 +68,7 @@ def test_where_processes_are_too_few_a_sentence_says_so_and_no_record_is_to_blam
     assert not (out / "peaks.csv").exists()
 
 
+@pytest.mark.slow  # a whole run in a process of its own
 def test_with_three_processes_one_thread_finishes_the_batch(study):
     study = of_records(study.parent, [0.5, 1.0])
     few, many = (study.with_name(name) for name in ("few", "many"))
@@ -76,13 +77,6 @@ def test_with_three_processes_one_thread_finishes_the_batch(study):
     assert (few / "report.html").is_file()
     assert main(["run", str(study), "--out", str(many), "--jobs", "1"]) == 0
     assert (few / "peaks.csv").read_bytes() == (many / "peaks.csv").read_bytes()
-
-
-def test_a_path_from_a_missing_home_is_refused(study):
-    study.write_text(study.read_text().replace('"records"', '"~/records"'))
-    done = rockbatch_as_nobody(300, "run", str(study))
-    assert done.returncode == 2
-    assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr
 
 
 def test_where_dask_raises_an_error_of_processes_the_sentence_is_the_same(study, monkeypatch, capsys):

@@ -1,12 +1,15 @@
 """The command line as users and their scripts meet it: files, messages, exit codes."""
 
 import csv
+import errno
+import io
 import json
 import os
 import shutil
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import pandas as pd
@@ -15,8 +18,10 @@ from report_samples import write_results
 from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.batch import listening
+from rockbatch.commands import messages
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
-from rockbatch.commands.streams import in_width
+from rockbatch.commands.streams import in_width, is_lost, show
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 
@@ -266,73 +271,59 @@ def test_the_line_of_the_documentation_registers_the_completion():
     assert line in (Path(__file__).parents[1] / "docs/commands.md").read_text(encoding="utf-8")
     if not (bash and tool.exists()):
         pytest.skip("without argcomplete or bash")
-    path = f"{tool.parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        [bash, "-c", f"{line}; complete -p rockbatch"],
-        env=os.environ | {"PATH": path},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    environment = os.environ | {"PATH": f"{tool.parent}{os.pathsep}{os.environ['PATH']}"}
+    command = [bash, "-c", f"{line}; complete -p rockbatch"]
+    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
     assert "_python_argcomplete" in done.stdout
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
-def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(monkeypatch):
-    """As while kernels are compiled."""
+@contextmanager
+def terminal(monkeypatch, rows, columns):
+    """Let stderr be a terminal of this size; afterwards the list holds what it shows."""
     import fcntl
     import pty
     import struct
     import termios
 
-    from rockbatch.batch import listening
-    from rockbatch.commands import messages
-
-    monkeypatch.setattr(listening, "MOVES_S", 0.1)
+    shown = []
     ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    with os.fdopen(theirs, "w") as terminal:
-        monkeypatch.setattr("sys.stderr", terminal)
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    with os.fdopen(theirs, "w") as stream:
+        monkeypatch.setattr("sys.stderr", stream)
+        yield shown
+        stream.flush()
+        shown.append(os.read(ours, 100_000).decode())
+    os.close(ours)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
+def test_the_bar_moves_while_nothing_is_finished_and_makes_room_for_messages(monkeypatch):
+    """As while kernels are compiled."""
+    monkeypatch.setattr(listening, "MOVES_S", 0.1)
+    with terminal(monkeypatch, 30, 100) as shown:
         listener = messages.Terminal()
         with listener.progress(3):
             time.sleep(1.2)
             listener.say("compiling")
-        terminal.flush()
-        shown = os.read(ours, 100_000).decode()
-    os.close(ours)
-    assert "0/3 [00:00<" in shown
-    assert "0/3 [00:01<" in shown
-    assert "\rcompiling" in shown.replace(" ", "")
+    assert "0/3 [00:00<" in shown[0]
+    assert "0/3 [00:01<" in shown[0]
+    assert "\rcompiling" in shown[0].replace(" ", "")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of Unix")
 @pytest.mark.parametrize(("size", "drawn"), [((30, 100), True), ((0, 0), False)])
 def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size, drawn, monkeypatch):
     """A terminal without a size gets plain lines, as a file does."""
-    import fcntl
-    import pty
-    import struct
-    import termios
-
-    from rockbatch.commands import messages
-
     monkeypatch.setattr(messages, "SECONDS_BETWEEN_LINES", 0.0)
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
-    with os.fdopen(theirs, "w") as terminal:
-        monkeypatch.setattr("sys.stderr", terminal)
-        with messages.Terminal().progress(3) as advance:
-            for _ in range(3):
-                time.sleep(0.12)
-                advance(1)
-        terminal.flush()
-        shown = os.read(ours, 100_000).decode()
-    os.close(ours)
+    with terminal(monkeypatch, *size) as shown, messages.Terminal().progress(3) as advance:
+        for _ in range(3):
+            time.sleep(0.12)
+            advance(1)
     if drawn:
-        assert "/3 [" in shown
-        assert "<" in shown  # time spent < time left
+        assert "/3 [" in shown[0]
+        assert "<" in shown[0]  # time spent < time left
     else:
-        assert shown.startswith("1 of 3 runs, ")
+        assert shown[0].startswith("1 of 3 runs, ")
 
 
 def test_wide_tables_fit_the_terminal(monkeypatch):
@@ -377,15 +368,11 @@ def started(study, out, redirected, **more):
 @pytest.mark.parametrize(
     ("redirected", "more", "code"),
     [
-        ("> /dev/full", {"PYTHONIOENCODING": "ascii"}, 1),
-        *(
-            pytest.param(*way, marks=pytest.mark.slow)
-            for way in (
-                ("", {"PYTHONIOENCODING": "ascii"}, 0), (">&- 2>&-", {}, 0), ("> /dev/full 2> /dev/full", {}, 1)
-            )
-        ),
+        ("> /dev/full", {"PYTHONIOENCODING": "ascii"}, 1), ("", {"PYTHONIOENCODING": "ascii"}, 0), (">&- 2>&-", {}, 0),
+        ("> /dev/full 2> /dev/full", {}, 1),
     ],
 )  # fmt: skip
+@pytest.mark.slow
 def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_path, redirected, more, code):
     study = write_study(tmp_path, study_text(cases=[{"name": "θ-é-地", "base": "rigid"}], output={"histories": "none"}))
     ended, told = started(study, tmp_path / "out", redirected, **more)
@@ -396,8 +383,28 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
     assert ("the output cannot be printed (No space left on device)" in told) == (redirected == "> /dev/full")
 
 
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (errno.ENOSPC, "the output cannot be printed (No space left on device); all else is still done\n"),
+        (errno.EPIPE, ""),
+    ],
+)
+def test_to_a_stream_that_has_failed_nothing_more_is_written(monkeypatch, capsys, code, told):
+    class Failing(io.StringIO):
+        def write(self, text):
+            raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(sys, "stdout", Failing())
+    for _ in range(2):
+        show("text")
+    assert capsys.readouterr().err == told
+    assert [is_lost(sys.stdout), is_lost(sys.stdout)] == [True, False]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="shells of Unix")
-def test_checks_and_their_report_do_not_need_a_reader(tmp_path):
+@pytest.mark.parametrize(("redirected", "told"), [("| true", ""), ("> /dev/full", "cannot be printed (No space left")])
+def test_checks_and_their_report_do_not_need_a_reader(tmp_path, redirected, told):
     rules = tmp_path / "rules.toml"
     rules.write_text(
         '[[check]]\nname = "é"\ndemand = "theta_max_over_alpha"\nat_most = 0.9\nreason = "r"\n', encoding="utf-8"
@@ -405,8 +412,9 @@ def test_checks_and_their_report_do_not_need_a_reader(tmp_path):
     (tmp_path / "out").mkdir()
     before = write_report(write_results(tmp_path / "out"), []).read_bytes()
     check = f"{sys.executable} -m rockbatch check {tmp_path / 'out'} --rules {rules}"
-    done = subprocess.run(f"({check}; echo $? >&2) | true", shell=True, capture_output=True, text=True)
+    done = subprocess.run(f"({check}; echo $? >&2) {redirected}", shell=True, capture_output=True, text=True)
     assert done.stderr.split()[-1] == "1"
+    assert told in done.stderr
     assert "Traceback" not in done.stderr
     assert (tmp_path / "out/report.html").read_bytes() != before
 
@@ -467,26 +475,20 @@ def test_a_library_that_memory_is_too_little_for_is_reported_in_a_sentence(study
         ("zzz", "rockbatch: there is no command zzz; `rockbatch --help` says more"),
         ("list", "rockbatch: there is no command list; did you mean examples?"),
         ("ls", "rockbatch: there is no command ls; did you mean examples?"),
-        (
-            "examples --list",
-            "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more",
-        ),
+        ("examples --list",
+         "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more"),
         ("-v", "rockbatch: unrecognized arguments: -v; did you mean --version?"),
         ("run pier.toml -o", "rockbatch: unrecognized arguments: -o; did you mean --out?"),
         ("run", "rockbatch run: the following arguments are required: STUDY.toml; `rockbatch run --help` says more"),
         ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
         ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),
         ("run empty", "rockbatch: empty: a folder; give a study file, such as pier.toml"),
-        (
-            "motions pier.toml",
-            "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]",
-        ),
-        (
-            "init --example nearfault x",
-            "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them",
-        ),
+        ("motions pier.toml",
+         "rockbatch: pier.toml: no record; give the folder of records, as a study has it in path under [motions]"),
+        ("init --example nearfault x",
+         "rockbatch: there is no example 'nearfault'; did you mean near_fault? `rockbatch examples` lists them"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_in_a_command_line_is_answered_in_one_line_with_what_was_meant(
     words, answer, tmp_path, monkeypatch, capsys
 ):
@@ -510,11 +512,14 @@ def test_help_and_lists_are_there_under_the_words_for_them(words, begin, capsys)
 
 
 def test_a_demand_that_does_not_exist_is_answered_in_a_line_with_the_command_that_lists_them(tmp_path, capsys):
-    check = {"name": "drift", "demand": "zzz", "at_most": 1, "reason": "x"}
-    study = write_study(tmp_path, study_text(check=[check]))
-    assert main(["run", str(study)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.endswith('demand = "zzz": expected one that `rockbatch check --list` lists')
+    for demand, end in (
+        ({"demand": "zzz"}, ': demand = "zzz": expected one that `rockbatch check --list` lists'),
+        ({}, ': demand is missing; write for example demand = "theta_max_over_alpha"'),
+    ):
+        check = {"name": "drift", "at_most": 1, "reason": "x"} | demand
+        assert main(["run", str(write_study(tmp_path, study_text(check=[check])))]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.endswith(end)
 
 
 def test_reading_results_loads_no_record_format():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.common.figures.description import Area, Polyline, Rule, Words
+from rockbatch.common.figures.description import Area, Points, Polyline, Rule, Words
 from rockbatch.pier import Place
-from rockbatch.pier.figures import ASIDE, MOST_PIERS, Sheet, sketches, statics
+from rockbatch.pier.figures import ASIDE, MOST_PIERS, SPRING, Sheet, sketches, statics
 
 PIER = {"alpha": math.atan(0.2), "half_width_m": 4.0, "height_m": 20.0}
 
@@ -46,6 +46,67 @@ def test_the_deck_and_the_devices_are_to_scale():
     assert damper.x.mean() == pytest.approx(4.0 * scale + ASIDE)
     assert "with tendon and viscous damper and stop" in figure.description
     assert {"h = 20 m", "2b = 8 m", "deck, 33 m"} <= {mark.text for mark in marks(figure, "", Words)}
+
+
+def at(mark):
+    """Return the corners of a mark [px]."""
+    return [(round(float(x), 9), round(float(y), 9)) for x, y in zip(mark.x, mark.y, strict=True)]
+
+
+@pytest.mark.parametrize("base", ["rigid", "elastic"])
+def test_lines_of_a_sketch_end_where_what_they_show_does(base):
+    devices = [
+        ("tendon", Place(2.0)),
+        ("stop", Place(-4.0)),
+        ("viscous damper", Place(4.0)),
+        ("deck spring", Place(0.0, 38.0, -1.0)),
+    ]
+    (figure,) = sketches([PIER | {"deck_m": 41.0, "devices": devices}], {base})
+    (panel,) = figure.panels
+    (shaft,) = marks(figure, "band", Area)
+    b, top = (round(float(each.max()), 9) for each in (shaft.x, shaft.y))
+    (centre,) = marks(figure, "peak", Points)
+    ((_, h),) = at(centre)
+    assert at(centre) == [(0.0, pytest.approx(top / 2))]
+    assert sorted(at(shaft)) == [(-b, 0.0), (-b, top), (b, 0.0), (b, top)]
+    rigid = [at(mark) for mark in marks(figure, "rigid")]
+    assert [(-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)] in rigid
+    assert [(b, 0.0), (0.0, h)] in rigid
+    below = -SPRING if base == "elastic" else 0.0
+    for x in (-b, b):
+        (ground,) = (
+            line for line in rigid if len(line) == 2 and {y for _, y in line} == {below} and line[0][0] < x < line[1][0]
+        )
+        assert ground[0][0] + ground[1][0] == pytest.approx(2 * x)
+        hatches = [
+            at(m) for m in marks(figure, "edge") if m.y[0] == below and m.y[1] < below and abs(m.x[0] - x) < 15.0
+        ]
+        assert len(hatches) == 4
+        assert len({round(end[0] - start[0], 6) for start, end in hatches}) == 1
+        coils = [line for line in rigid if len(line) == 7 and line[0] == (x, 0.0)]
+        assert len(coils) == (base == "elastic")
+        for coil in coils:
+            assert [y for _, y in coil] == pytest.approx(np.linspace(0.0, below, 7))
+            assert [round(along - x) for along, _ in coil] == [0, 4, -4, 4, -4, 4, 0]
+    edges = [at(mark) for mark in marks(figure, "edge")]
+    (height,) = (line for line in edges if [y for _, y in line] == [0.0, h] and line[0][0] == line[1][0])
+    (width,) = (line for line in edges if [x for x, _ in line] == [-b, b] and line[0][1] == line[1][1] < -SPRING)
+    assert height[0][0] > b
+    for end in (*height, *width):
+        assert (
+            sum(np.mean(line, axis=0) == pytest.approx(end) and np.ptp(line) > 0 for line in edges if len(line) == 2)
+            == 1
+        )
+    assert at(marks(figure, "tendon")[1]) == [(b, 0.0), (b + ASIDE, 0.0), (b + ASIDE, -SPRING)]
+    assert [(-b - ASIDE, -SPRING), (-b - ASIDE, ASIDE), (-b, ASIDE)] in rigid
+    tied = at(marks(figure, "tendon")[2])
+    assert [y for _, y in tied] == pytest.approx([h * 38.0 / 20.0] * 2)
+    assert tied[0][0] - tied[1][0] == pytest.approx(SPRING)
+    (wall,) = (line for line in rigid if len(line) == 2 and line[0][0] == line[1][0] == tied[1][0])
+    assert sum(y for _, y in wall) / 2 == pytest.approx(tied[0][1])
+    for mark in (m for m in panel.marks if not isinstance(m, Words)):
+        assert panel.x.low <= mark.x.min() <= mark.x.max() <= panel.x.high
+        assert panel.y.low <= mark.y.min() <= mark.y.max() <= panel.y.high
 
 
 def test_the_slenderness_is_an_arc_about_the_toe_from_the_edge_to_the_radius():

@@ -47,13 +47,11 @@ def test_a_vertical_component_is_known_by_other_names_and_points_up():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (stream("HNE", "HNN", "HNZ"), "one horizontal component"),
-        (stream("HNZ"), "one horizontal component"),
-        (Stream(), "not none"),
-        (stream("HNE") + stream("HNZ", delta=0.02), "differ in sampling interval"),
+        (stream("HNE", "HNN", "HNZ"), "one horizontal component"), (stream("HNZ"), "one horizontal component"),
+        (Stream(), "not none"), (stream("HNE") + stream("HNZ", delta=0.02), "differ in sampling interval"),
         (stream("HNE") + stream("HNZ", starttime=UTCDateTime(5)), "or start"),
     ],
-)
+)  # fmt: skip
 def test_a_stream_of_other_components_is_refused(given, words):
     with pytest.raises(rb.InputError, match=words):
         rb.Motion.from_obspy(given, "g")

@@ -15,6 +15,7 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
+from rockbatch.commands.statics import rotations
 from rockbatch.core.springs.laws import static_deflection as series
 from rockbatch.pier import (
     ElasticBase,
@@ -171,7 +172,7 @@ def weak_pairs(count, devices=lambda rng: ()):
 
 def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form_between_its_points():
     """Without a point at first yield the curve is 0.9 to 4.2 % low there."""
-    for pier, base in weak_pairs(10):
+    for pier, base in weak_pairs(4):
         sheet = rb.statics(pier, base)
         theta = np.linspace(1e-6, sheet.unstable_rad, 20_001)[:-1]
         finite = base.kinematics == "finite"
@@ -195,7 +196,7 @@ def test_the_curve_has_the_printed_strength_of_weak_supports_with_devices_and_of
         "stop": lambda rng: (rb.Stop(gap_m=rng.uniform(0.005, 0.05), lam=rng.uniform(0.1, 0.8)),),
         "round": lambda rng: (),
     }
-    for pier, weak in weak_pairs(6, makes[kind]):
+    for pier, weak in weak_pairs(3, makes[kind]):
         base = dataclasses.replace(weak, spring="bouc-wen") if kind == "round" else weak
         sheet = sheet_of(pier, base)
         curve = sheet.equilibria
@@ -415,7 +416,38 @@ BRIDGE = {"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0, "deck_mass_t": 100
 PADS = {"name": "pads", "base": "elastic", "stiffness_kN_m": [1e6, 2e6], "zeta": 0.05, "area_m2": 6.0}
 
 
-def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("pier", "base", "heads"),
+    [
+        (PIER, RigidBase(restraints=(TENDON, rb.Stop(gap_m=0.1, lam=0.1), FRICTION)),
+         ["moment [m]", "of tendons", "of stops, springs", "of dampers", "period [s]", "damping"]),
+        (TALL, ElasticBase.from_stiffness(TALL, 2e6), ["moment [kN m]", "period [s]"]),
+    ],
+)  # fmt: skip
+def test_the_command_prints_the_curve_and_the_swings_at_their_rotations(pier, base, heads):
+    sheet = rb.statics(pier, base)
+    head, *lines = ([*re.split(r"\s{2,}", line.strip())] for line in rotations(sheet).splitlines())
+    assert head == ["theta/alpha", "theta [rad]", "held by [g]", *heads]
+    curve, scale = sheet.curve, sheet.weight_kN or 1.0
+    swings = dict(zip(sheet.swings_at.amplitude, sheet.swings_at.period, strict=True))
+    printed = {float(line[1]): [float(cell.replace(",", "").rstrip("%")) for cell in line] for line in lines}
+    for theta in (0.0, curve["theta_rad"].iloc[-1], sheet.strength_rad, *swings):
+        assert any(theta == pytest.approx(each, rel=1e-3) for each in printed)
+    for theta, (share, _, held, *cells) in printed.items():
+        assert share == pytest.approx(theta / pier.alpha, rel=2e-3)
+        assert held == pytest.approx(np.interp(theta, curve["theta_rad"], curve["acceleration_g"]), abs=2e-4)
+        for title, cell in zip(heads, cells, strict=False):
+            column = {"mo": "moment_over_weight_m"}.get(title[:2], f"of_{title[3:].split(',')[0]}_m")
+            if column in curve:
+                there = scale * np.interp(theta, curve["theta_rad"], curve[column])
+                assert cell == pytest.approx(there, rel=2e-3, abs=2e-4 * scale)
+    with_period = [line for line in lines if len(line) == len(head)]
+    assert [float(line[head.index("period [s]")]) for line in with_period] == pytest.approx(
+        list(swings.values()), rel=5e-3
+    )
+
+
+def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path, capsys, monkeypatch):
     motions = {"path": "nowhere"}
     study = write_study(
         tmp_path, study_text(pier=BRIDGE, motions=motions, pulses=(), cases=({"name": "rock", "base": "rigid"}, PADS))
@@ -424,7 +456,14 @@ def test_the_command_prints_and_writes_what_python_has_without_records(tmp_path,
     assert main(["statics", str(study), "--csv", str(sheet), "--curves", str(curves)]) == 0
     printed = capsys.readouterr().out
     assert "static strength [g]" in printed
-    assert "pads stiffness_kN_m=2e+06" in printed
+    assert "\n\npads stiffness_kN_m=2e+06\ntheta/alpha" in printed
+    monkeypatch.setattr("rockbatch.commands.statics.MOST_CASES", 2)
+    assert main(["statics", str(study)]) == 0
+    fewer = capsys.readouterr()
+    assert (fewer.out.rstrip(), fewer.err) == (
+        printed.split("\n\n")[0],
+        "3 cases: their curves are written with --curves FILE\n",
+    )
     table = pd.read_csv(sheet)
     assert list(table)[:2] == ["case", "stiffness_kN_m"]
     for row, base in zip(
@@ -546,15 +585,12 @@ def test_the_page_shows_the_sheet_of_its_study(capsys):
     [
         (Pier(0.01, 0.3), ElasticBase(1e6)),
         (Pier(1.57, 2.0, 1e6), ElasticBase(0.03, restraints=(rb.Stop(gap_m=100.0, lam=0.1), FRICTION))),
-        (
-            Pier(1.0, 0.3, 1e6),
-            YieldingBase(0.88, eta=2.5, n=1000.0, restraints=(rb.Tendon(psi=0.3, lam=0.3), FRICTION)),
-        ),
+        (Pier(1.0, 0.3, 1e6), YieldingBase(0.88, eta=2.5, n=1000.0, restraints=(rb.Tendon(psi=0.3, lam=0.3), FRICTION))),
         (Pier(0.2, 1.0), YieldingBase(30.0, eta=1.000001, n=1.0)),
         (Pier(0.2, 1.0), YieldingBase(30.0, eta=1e6, kinematics="finite", restraints=(rb.Damper("friction", f=10.0),))),
         (Pier(1e-4, 1e3, 1e-3), RigidBase(restraints=(rb.Tendon(psi=10.0, lam=1e6),))),
     ],
-)
+)  # fmt: skip
 def test_the_sheet_of_any_pier_that_stands_has_finite_numbers(pier, base):
     """Warnings are errors here: nothing overflows or divides by 0 on the way."""
     sheet = sheet_of(pier, base)

@@ -9,10 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.units import Bounds
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import Number
+from rockbatch.toml.kinds import Number, positive, within
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.reader import TomlFile
+from rockbatch.toml.section import Key, Section
 
 AWKWARD = '''\
 # [pier] in a comment = 1
@@ -124,33 +126,56 @@ def test_every_key_of_any_file_has_the_line_it_is_written_on(tables):
     assert {at: lines[at] for at in expected} == expected
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "advice"),
-    [
-        ("a = 1\nbase = rigid\n", 2, 'write base = "rigid"'),
-        ("alpha = 0,13\n", 1, "write alpha = 0.13"),
-        ("alpha = .13\n", 1, "write alpha = 0.13"),
-        ("eta = [5., 3.0]\n", 1, "write eta = [5.0, 3.0]"),
-        ("vertical = True\n", 1, "write vertical = true"),
-        ("vertical = True   # as they come\n", 1, "write vertical = true;"),
-        ('path = "C:\\data"\n', 1, 'write path = "C:/data"'),
-        ("alpha =\n", 1, "the value is missing"),
-        ("[pier\nalpha = 1\n", 1, "write [pier]"),
-        ("alpha: 0.13\n", 1, "write alpha = 0.13"),
-        ("p = 1\np = 2\n", 2, "a second time"),
-        ("[pier]\n[pier]\n", 2, "write [[pier]] above each if it is one of several; else join both"),
-        ("beta = [1,\n2\n", 2, "not valid TOML"),
-        ("beta = [1,\neta = 2\n", 1, "the bracket that opens here does not close"),
-    ],
-)
+PIER = Section(("pier",), "", {
+    "mass_t": Key(positive, "3.0"), "gravity": Key(within(Bounds(0.0, 1e9, " [m/s²]")), "9.81"),
+})  # fmt: skip
+CASE = Section(("case",), "", {"name": Key(positive, "1.0")}, many=True)
+DAMPER = Section(("case", "damper"), "", {"f": Key(positive, "1.0")}, many=True)
+ONE_LEFT = "it is given a second time; keep one"
+NOT_TOML = [  # a text, the line that is wrong, and what to write there, or what is wrong about it
+    ("a = 1\nbase = rigid\n", 2, 'write base = "rigid"'), ('notes = """a"""\nbase = rigid\n', 2, 'write base = "rigid"'),
+    ("alpha = 0,13\n", 1, "write alpha = 0.13"), ("alpha = .13\n", 1, "write alpha = 0.13"),
+    ("λ = 1,5\n", 1, "write lambda = 1.5"),
+    ("alpha: 0.13\n", 1, "write alpha = 0.13"), ("alpha 0.13\n", 1, "write alpha = 0.13"), ("kN/m = 3\n", 1, "write kN_m = 3"),
+    ("name => 3\n", 1, "write name = 3"), ("name => a\n", 1, "invalid value"),
+    ("my key = 3\n", 1, "write my_key = 3"), ("height [m] = 3\n", 1, "write height_m = 3"),
+    ("eta = [5., 3.0]\n", 1, "write eta = [5.0, 3.0]"), ("b = (1, 2\n", 1, "write b = [1, 2]"),
+    ("b = 1.5 ; 2\n", 1, "write b = [1.5, 2]"),
+    ("vertical = True   # as they come\n", 1, "write vertical = true"), ("vertical = no\n", 1, "write vertical = false"),
+    ('path = "C:\\data"\n', 1, 'write path = "C:/data"'), ('name = "a\\d#b"\n', 1, 'write name = "a/d#b"'),
+    ("name = 'a\"\n", 1, 'write name = "a"'), ("name = “a” # b\n", 1, 'write name = "a"'),
+    ('name = "a" // b\n', 1, 'write name = "a"'),
+    ('names = [a, "b", c+d]\n', 1, 'write names = ["a", "b", "c+d"]'), ('title = "a\nb = 1\n', 1, 'write title = "a"'),
+    ("mass_t = 1.8e6 kg\n", 1, "write mass_t = 1800"), ("gravity = 981 cm/s2\n", 1, "write gravity = 9.81"),
+    ("mass_t = 1,800\n", 1, "write mass_t = 1800, or mass_t = 1.8 if the comma parts decimals"),
+    ("mass_t = [1,5; 2,5]\n", 1, "write mass_t = [1.5, 2.5]"), ("mass_t = [1.5 t, 2000 kg]\n", 1, "write mass_t = [1.5, 2]"),
+    ("mass_t = 5 apples\n", 1, "write the number alone, in the unit of the key"),
+    ("alpha =\n", 1, "the value is missing behind the equals sign"),
+    ("[pier\nalpha = 1\n", 1, "write [pier]"), ("(pier)\n", 1, "write [pier]"), ("pier]]\n", 1, "write [pier]"),
+    ("case\n", 1, "write [[case]]"), ("case.damper\n", 1, "write [[case.damper]]"), ("[tower\n", 1, "write [tower]"),
+    ("tower:\n", 1, "write [tower]"), ("tower]\n", 1, "write [tower]"), ("{tower}}\n", 1, "write [[tower]]"),
+    ("tower\n", 1, "expected '=' after a key in a key/value pair"), ("\n= 3\n", 2, "invalid statement"),
+    ("p = 1\np = 2\n", 2, ONE_LEFT), ("[pier]\np = 1\np = 2\n", 3, ONE_LEFT),
+    ("[[case]]\np = 1\np = 2\n", 3, f"{ONE_LEFT}, or write [[case]] above if another one begins here"),
+    ("[pier]\n[pier]\n", 2, "it is given a second time; write its keys under the [pier] in line 1"),
+    ("[case]\n[case]\n", 2, "write [[case]] above each"), ("\n[case]\n[[case]]\n", 3, "write [[case]] in line 2, too"),
+    ("[tower]\n[tower]\n", 2, "write [[tower]] above each if it is one of several; else join both under one [tower]"),
+    ("\n[[case.damper]]\n[[case]]\n", 3,
+     "[[case.damper]] in line 2 stands before it: write it below the [[case]] that it belongs to"),
+    ("beta = [1,\n2\n\n", 2, "unclosed array"), ("beta = [1,\neta = 2\n", 1, "the bracket that opens here does not close"),
+    ("t = { a = 1,\nb = 2\n", 1, "the bracket that opens here does not close"), ("a = [1]]\n", 1, "expected newline or end of"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "line", "advice"), NOT_TOML)
 def test_what_is_not_toml_is_refused_with_its_line_and_what_to_write(tmp_path, text, line, advice):
     path = tmp_path / "study.toml"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError) as caught:
-        TomlFile.read(path)
+        TomlFile.read(path, (PIER, CASE, DAMPER))
     (problem,) = caught.value.problems
-    assert problem.startswith(f"{path}:{line}: not valid TOML: ")
-    assert advice in problem
+    reads = f"{'; it reads' * advice.startswith(('write', 'it ', 'the ', '[['))}: {text.splitlines()[line - 1]}"
+    assert problem.removesuffix(reads).partition(" document")[0] == f"{path}:{line}: not valid TOML: {advice}"
 
 
 def test_a_file_that_is_not_utf8_is_refused_with_its_line(tmp_path):
@@ -178,7 +203,9 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     (tmp_path / "fig7.toml").touch()
     with pytest.raises(InputError, match=r"no such file; did you mean .*fig7\.toml\?"):
         TomlFile.read(tmp_path / "fig77.toml")
-    with pytest.raises(InputError, match="a folder; did you mean"):
+    for name in ("a", "b", "z"):
+        (tmp_path / f"{name}.toml").touch()
+    with pytest.raises(InputError, match=r"a folder; did you mean \S+/a\.toml or \S+/b\.toml or \S+/fig7\.toml\?$"):
         TomlFile.read(Path(tmp_path))
 
 
@@ -197,18 +224,14 @@ def test_a_line_that_is_no_toml_is_quoted_as_it_can_be_shown(tmp_path):
     ("text", "gaps", "found"),
     [
         ("a,b\n1,2\n# remark\n\n3,4e0\n", False, {"a": [1.0, 3.0], "b": [2.0, 4.0]}),
-        ("b;a\n1,5;2\n", False, {"b": [1.5], "a": [2.0]}),
-        ("a\n1\nNaN\n", True, {"a": [1.0, math.nan]}),
-        ("a,b\n,2\n", True, {"a": [math.nan], "b": [2.0]}),
-        ("a,b\n,2\n", False, ":2: a = "),
-        ("a\nnan\n", False, ':2: a = "nan"'),
-        ("a\n1_0\n", True, ':2: a = "1_0"'),
-        ("a,b\n1\n", False, ":2: 1 cells below 2 column names"),
-        ("a,a\n1,2\n", False, ":1: a column occurs twice"),
+        ("b;a\n1,5;2\n", False, {"b": [1.5], "a": [2.0]}), ("a\n1\nNaN\n", True, {"a": [1.0, math.nan]}),
+        ("a,b\n,2\n", True, {"a": [math.nan], "b": [2.0]}), ("a,b\n,2\n", False, ":2: a = "),
+        ("a\nnan\n", False, ':2: a = "nan"'), ("a\n1_0\n", True, ':2: a = "1_0"'),
+        ("a,b\n1\n", False, ":2: 1 cells below 2 column names"), ("a,a\n1,2\n", False, ":1: a column occurs twice"),
         ("a,c\n1,2\n", False, ':1: "c": unknown column; write one of a, b'),
         ("# a\na\n", False, "expected a line of column names"),
     ],
-)
+)  # fmt: skip
 def test_columns_of_a_small_file_are_numbers_or_the_line_says_why_not(tmp_path, text, gaps, found):
     path = tmp_path / "x.csv"
     path.write_text(text, encoding="utf-8")

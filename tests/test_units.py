@@ -13,14 +13,11 @@ from rockbatch.toml.meant import in_another_unit, quantity_of
     ("spellings", "factor"),
     [
         (("m/s2", "M/S**2", "m/s/s", "m/s^2", "m/s²", "M/SEC**2", "m/(s**2)", "m*s-2", "m*s**-2", "M/S/S"), 1.0),
-        (("cm/s**2", "cm/s2", "CM/SEC/SEC", "gal", "Gal", "GAL", "cm/s/s"), 0.01),
-        (("mm/s2", "mm/s/s"), 1e-3),
-        (("um/s**2", "µm/s²", "μm/s2"), 1e-6),
-        (("nm/s**2", "NM/S**2", "nm/s/s", "nm/s^2"), 1e-9),
-        (("g", "G"), 9.81),
+        (("cm/s**2", "cm/s2", "CM/SEC/SEC", "gal", "Gal", "GAL", "cm/s/s"), 0.01), (("mm/s2", "mm/s/s"), 1e-3),
+        (("um/s**2", "µm/s²", "μm/s2"), 1e-6), (("nm/s**2", "NM/S**2", "nm/s/s", "nm/s^2"), 1e-9), (("g", "G"), 9.81),
         (("g/10", "G/10"), 0.981),
     ],
-)
+)  # fmt: skip
 def test_every_spelling_of_a_unit_has_its_factor(spellings, factor):
     assert [acceleration_factor(spelling) for spelling in spellings] == pytest.approx(
         [factor] * len(spellings), rel=1e-14

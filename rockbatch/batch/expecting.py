@@ -82,9 +82,9 @@ def expected(
     started = time.perf_counter()
     tried = _tried(study, simulated, _spread(steps), jobs, listener)
     took = time.perf_counter() - started
-    seconds = took * sum(steps) / max(sum(steps[i] for i in tried), 1.0)
+    seconds = took * sum(steps) / sum(steps[i] for i in tried)
     ended = [simulated[i]._replace(outcome=outcome) for i, outcome in tried.items()]
-    size = sum(history_bytes(run, row(run)) for run in ended) / max(len(tried), 1)
+    size = sum(history_bytes(run, row(run)) for run in ended) / len(tried)
     histories = {"none": 0.0, "all": len(plan) * size}.get(
         "none" if share else study.output.histories, min(len(study.cases) * size, 1e6 * study.output.histories_MB)
     )

@@ -96,14 +96,14 @@ class Threads:
                     yield finished(pending.pop(future), outcomes)
         except (KeyboardInterrupt, Exception):  # what is finished by then is not lost
             stop.set()
-            pool.shutdown(wait=True, cancel_futures=True)
+            pool.shutdown(cancel_futures=True)
             for future, group in pending.items():
                 if not future.cancelled() and future.exception() is None:
                     yield finished(group, future.result())
             raise
         finally:
             stop.set()
-            pool.shutdown(wait=True, cancel_futures=True)
+            pool.shutdown(cancel_futures=True)
 
 
 def finished(group: Group, outcomes: Sequence[Outcome | None]) -> Group:

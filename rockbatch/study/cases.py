@@ -304,7 +304,8 @@ class _Usual(NamedTuple):
 
 
 def _half_weight(pier: Pier) -> float:
-    return 0.5 * (pier.mass_t or 0.0) * pier.gravity
+    assert pier.mass_t is not None
+    return 0.5 * pier.mass_t * pier.gravity
 
 
 _USUAL = {

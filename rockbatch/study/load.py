@@ -371,9 +371,9 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
 
 
 def _heights(cases: Sequence[Case], output: Output) -> set[float]:
-    """Return the heights [m] of all sections of all cases; none of a pier that lacks some, which is noted already."""
+    """Return the heights [m] of all sections of all cases; none without any, or of a pier that lacks some, which is noted."""
     heights = set[float]()
-    for pier in {case.pier for case in cases} if output.requested_sections else ():
+    for pier in {case.pier for case in cases}:
         with suppress(InputError):
             heights.update(section_heights(pier, output.requested_sections or 0))
     return heights

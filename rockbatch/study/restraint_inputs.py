@@ -115,7 +115,7 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
 def in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
     """Return a problem, "eta = …" or "damper: f = …", in terms of the input that it is about, and the input's name."""
     subject, _, message = problem.partition(": ")
-    mine = [name for name in values if is_of_restraint(name) and name.startswith(subject)]
+    mine = [name for name in values if name.startswith(subject)]
     symbol = (message if mine else problem).partition(" = ")[0]
     if name_of_symbol := next((name for name in mine if name.endswith(f".{symbol}")), ""):
         return message.replace(symbol, name_of_symbol, 1), name_of_symbol

@@ -288,7 +288,7 @@ def _misfits(rule: Rule) -> list[str]:
         (neither, f"{example.split()[0]} is missing, the limit; write for example {example}"),
         (wrong_way, f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}"),
         (
-            not (two_limits or neither or wrong_way or math.isfinite(rule.limit)),
+            not (neither or wrong_way or math.isfinite(rule.limit)),
             f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
         ),
         (rule.above is not None and not counts, 'above: is for statistic = "count"; leave it out'),

@@ -200,14 +200,13 @@ def _read_spectrum(table: Table, vertical: bool) -> SpectrumTarget | None:
     elif code.endswith("vertical"):
         table.complain(f"spectrum = {shown(code)}: is for [motions.vertical_target]", "spectrum")
     read = table.read(keys, unfit=unfit | _UNFIT_FOR_SPECTRUM)
-    limits = read.get("period_range_s")
     spectrum = _spectrum(table, code, read) if "spectrum" in read else None
-    if not table.file.is_sound_since(problems_before) or spectrum is None or limits is None:
+    if not table.file.is_sound_since(problems_before):
         return None
+    assert spectrum is not None  # or a mistake is noted
     with table.noting("period_range_s"):
-        return SpectrumTarget(
-            spectrum, limits, **{name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
-        )
+        given = {name: read[name] for name in ("factors", "pairs", "at_least") if name in read}
+        return SpectrumTarget(spectrum, read["period_range_s"], **given)
     return None
 
 

@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.toml.kinds import KindError, Number, Other, Whole
+from rockbatch.toml.kinds import Choice, KindError, Number, Other, Whole
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
 from rockbatch.toml.meant import Meant, number_meant, similar
 from rockbatch.toml.section import CONFIRM, Key, Section, elsewhere, home, options
@@ -96,8 +96,8 @@ class TomlFile:
         """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts."""
         if self.is_full:
             return
-        depth = next((n for n in range(len(key_path), 0, -1) if key_path[:n] in self.lines), 0)
-        line = self.lines.get(key_path[:depth], 0)
+        places = (key_path[:n] for n in range(len(key_path), 0, -1))
+        line = next((self.lines[place] for place in places if place in self.lines), 0)
         problem = (line, f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
         if problem not in self.problems:
             self.problems.append(problem)
@@ -244,7 +244,7 @@ class Table:
         read: dict[str, Any] = {}
         for name, settings in usable.items():
             values = tuple(setting.value for setting in settings)
-            several = settings if places and keys[name].many else values
+            several = settings if places else values
             read[name] = several if keys[name].many or keys[name].pair else values[0]
         return read
 
@@ -256,7 +256,7 @@ class Table:
         """Note required keys that are missing, and keys that do not go together."""
         for name, key in keys.items():
             if self.requires(keys, name) and not self.has(name):
-                few = 1 < len(options(key)) < 6
+                few = isinstance(key.kind, Choice) and not key.kind.listed_by
                 choices = f"; {name} is {key.kind.words}" if few else ""
                 self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
         for clash in keys.clashes if isinstance(keys, Section) else ():
@@ -321,8 +321,10 @@ class Table:
         if not key.pair:
             return usable
         ends = [end.value for end in usable]
-        if len(ends) < len(items) or (len(ends) == 2 and ends[0] < ends[1]):
-            return usable if len(ends) == len(items) else []
+        if len(ends) < len(items):
+            return []
+        if len(ends) == 2 and ends[0] < ends[1]:
+            return usable
         example = shown([min(ends), max(ends)]) if ends and min(ends) < max(ends) else key.example
         self.complain(f"{name} = {shown(value)}: expected a range; write for example {name} = {example}", name)
         return []

@@ -197,7 +197,7 @@ def _quotes(key: str, value: str) -> str:
 
 def _quoted(value: str) -> str:
     bare = value.strip("\"'")
-    if numeral(bare).values or not re.search(r"[A-Za-z+*-]", bare) or re.search(r"[\"'={]", bare):
+    if numeral(bare).values or not re.search(r"[A-Za-z+*-]", bare) or re.search(r"[\"'=>{]", bare):
         return value
     return f'"{bare.replace(chr(92), "/")}"'
 

@@ -2,6 +2,7 @@
 
 import math
 from contextlib import contextmanager
+from itertools import pairwise
 
 import pytest
 from studies import PADS, RIGID, study_text, write_study
@@ -119,6 +120,10 @@ def test_runs_that_are_tried_are_spread_and_not_too_many_steps(monkeypatch):
     assert sum(steps[i] for i in chosen) <= max(expecting.STEPS_TRIED, 1e9)
     assert len(set(chosen)) == len(chosen) >= 1
     assert expecting._spread([1e12]) == [0]
+    monkeypatch.setattr(expecting, "STEPS_TRIED", 8.0)
+    few = sorted(expecting._spread([1.0] * 1000))
+    assert max(after - before for before, after in pairwise([0, *few, 1000])) < 400  # and not the first ones
+    monkeypatch.setattr(expecting, "STEPS_TRIED", 100.0)
     monkeypatch.setattr(expecting, "TRIED", 10)
     assert sorted(expecting._spread([1.0] * 100)) == [round(10 * i + 4.5) for i in range(10)]
 

@@ -65,9 +65,9 @@ def test_the_table_is_in_the_order_of_the_numbers_however_the_runs_finish(path):
 def test_wherever_the_file_is_cut_the_rows_before_are_kept_and_the_table_ends_with_the_same_bytes(path):
     interrupted(path, ROWS)
     whole = path.read_bytes()
-    ends = [at + 1 for at, byte in enumerate(whole) if byte == ord("\n")][
-        1:
-    ]  # a row is a line, whatever its cells hold
+    _, *ends = (
+        at + 1 for at, byte in enumerate(whole) if byte == ord("\n")
+    )  # a row is a line, whatever its cells hold
     assert len(ends) == len(ROWS)
     kept = {}
     for length in sorted({*range(0, len(whole), 4), *(end - 1 for end in ends), *ends}):

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -77,32 +78,21 @@ def carried_out(path, folder, among=None):
 # The mirror image itself
 
 PIER = Pier(0.2, 1.0)
+slow = partial(pytest.param, marks=pytest.mark.slow)
 
 
 @pytest.mark.parametrize(
     ("base", "amplitude"),
     [
         (ElasticBase(beta=40.0, epsilon=0.1), 6.0),
-        pytest.param(
-            ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite", flight="stop"), 6.0, marks=pytest.mark.slow
-        ),  # flights let last bits grow
-        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 6.0),
-        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1, spring="epp"), 6.0),
-        pytest.param(
-            YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"),
-            4.0,
-            marks=pytest.mark.slow,
-        ),
+        slow(ElasticBase(beta=40.0, epsilon=0.1, kinematics="finite", flight="stop"), 6.0),  # flights let last bits grow
+        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 6.0), (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1, spring="epp"), 6.0),
+        slow(YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="epp", kinematics="finite", flight="stop"), 4.0),
         (YieldingBase(beta=40.0, eta=2.0, zeta=0.05, spring="hardening"), 6.0),
-        pytest.param(
-            YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="hardening", kinematics="finite", flight="stop"),
-            4.0,
-            marks=pytest.mark.slow,
-        ),
-        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 15.0),
-        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 30.0),
+        slow(YieldingBase(beta=40.0, eta=1.5, epsilon=0.1, spring="hardening", kinematics="finite", flight="stop"), 4.0),
+        (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 15.0), (YieldingBase(beta=40.0, eta=2.0, epsilon=0.1), 30.0),
     ],
-)
+)  # fmt: skip
 @pytest.mark.parametrize("vertical", [False, True])
 def test_a_mirrored_outcome_is_that_of_a_simulation_of_the_reversed_motion(base, amplitude, vertical):
     """Noise that fades, so that nothing is symmetric in time; it rocks, yields, overturns or flies.

@@ -110,6 +110,7 @@ def wait_for(out, runs):
         time.sleep(0.002)
 
 
+@pytest.mark.slow
 @unix
 def test_killed_at_random_instants_it_goes_on_and_ends_with_the_same_bytes(study, tmp_path, undisturbed):
     """While it starts, while runs are under way and written down, and while the table and the report are written."""
@@ -159,29 +160,7 @@ def slowed_down(monkeypatch, seconds):
     monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", lambda *asked: (time.sleep(seconds), real(*asked))[1])
 
 
-@unix
-def test_after_ctrl_c_the_same_command_goes_on(study, tmp_path, undisturbed, capsys, monkeypatch):
-    out = tmp_path / "out"
-    with monkeypatch.context() as patch:
-        slowed_down(patch, 0.05)
-        process = started(study, out)
-    wait_for(out, 20)
-    os.kill(process.pid, signal.SIGINT)
-    process.join()
-    assert process.exitcode == 130
-    kept = finished_in(out)
-    assert 20 <= kept < RUNS
-    assert [file.name for file in out.iterdir()] == ["peaks.csv.part"]  # a table is there when it is whole
-    capsys.readouterr()
-    assert main(["run", str(study), "--out", str(out)]) == 0
-    assert f"{kept // 2} of them are finished already, {SIMULATED - kept // 2} are left" in capsys.readouterr().err
-    assert (out / "peaks.csv").read_bytes() == undisturbed
-    assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
-    assert main(["report", str(out)]) == 0
-    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
-
-
-def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkeypatch, capsys):
+def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_path, undisturbed, monkeypatch, capsys):
     real, groups = rockbatch.batch.threads.outcomes_of, []
 
     def interrupted(runs, *arguments):
@@ -190,16 +169,22 @@ def test_an_interrupt_says_what_is_kept_and_how_to_go_on(study, tmp_path, monkey
             raise KeyboardInterrupt
         return real(runs, *arguments)
 
-    monkeypatch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
     out = tmp_path / "out"
-    assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
+    with monkeypatch.context() as patch:
+        patch.setattr(rockbatch.batch.threads, "outcomes_of", interrupted)
+        assert main(["run", str(study), "--out", str(out), "--jobs", "1"]) == 130
     told = capsys.readouterr().err
-    assert (
-        f"interrupted: {finished_in(out) // 2} of {SIMULATED} runs are finished and kept in {out / 'peaks.csv.part'}"
-        in told
-    )
+    kept = finished_in(out)
+    assert 20 <= kept < RUNS
+    assert f"interrupted: {kept // 2} of {SIMULATED} runs are finished and kept in {out / 'peaks.csv.part'}" in told
     assert "the same command continues from there" in told
-    assert finished_in(out) >= 20
+    assert [file.name for file in out.iterdir()] == ["peaks.csv.part"]  # a table is there when it is whole
+    assert main(["run", str(study), "--out", str(out)]) == 0
+    assert f"{kept // 2} of them are finished already, {SIMULATED - kept // 2} are left" in capsys.readouterr().err
+    assert (out / "peaks.csv").read_bytes() == undisturbed
+    assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
+    assert main(["report", str(out)]) == 0
+    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
 
 
 @unix

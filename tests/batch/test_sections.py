@@ -74,27 +74,15 @@ IN_PARTS = {"width_m": 4.0, "part": [{"mass_t": 500.0, "height_m": 7.0, "inertia
     ("tables", "message"),
     [
         ({"output": {"sections_m": [0.0, 15.0]}}, "sections_m = 15: must be within 0 and the top of the shaft, 14 m"),
-        (
-            {"output": {"sections": 3, "sections_m": [0.0]}},
-            "sections and sections_m are given, which say the same; keep one",
-        ),
+        ({"output": {"sections": 3, "sections_m": [0.0]}}, "sections and sections_m are given, which say the same; keep one"),
         ({"output": {"sections": 1}}, "2 or above: foot and top of the shaft are among them"),
-        (
-            {"output": {"sections": 3}, "pier": FRAME},
-            "how the deck of a frame presses on each of its columns is not known",
-        ),
-        (
-            {"output": {"sections": 3}, "pier": IN_PARTS},
-            "part 1, at 7 m, has no length_m, over which its mass is spread",
-        ),
+        ({"output": {"sections": 3}, "pier": FRAME}, "how the deck of a frame presses on each of its columns is not known"),
+        ({"output": {"sections": 3}, "pier": IN_PARTS}, "part 1, at 7 m, has no length_m, over which its mass is spread"),
         ({"output": {"sections": 3}, "pier": {"alpha": 0.2, "p": 1.0, "mu": 4.0}}, "mu = 4 does not say how the mass"),
         ({"check": CHECKS[:1]}, "there are no forces in sections; write sections = 5 under"),
-        (
-            {"output": {"sections": 4}, "check": CHECKS[:1]},
-            "at_m = 7: there is no section at this height; there are 0, 4.66667",
-        ),
+        ({"output": {"sections": 4}, "check": CHECKS[:1]}, "at_m = 7: there is no section at this height; there are 0, 4.66667"),
     ],
-)
+)  # fmt: skip
 def test_a_study_with_sections_that_cannot_be_is_refused(tmp_path, tables, message):
     with pytest.raises(rb.InputError) as refused:
         rb.load_study(study_of(tmp_path, **tables))

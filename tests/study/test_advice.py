@@ -308,13 +308,14 @@ OF_RULES = [
 TOLD = [  # what stands in the study, what is written instead or too, what the answer says, and what it must not say
     ("mass_t = 1800.0", "mass_t = 1,800", "or mass_t = 1.8 if the comma parts decimals", "confirm"),
     ("mass_t = 1800.0", "mass_t = 1.800", 'deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8; check the', "?"),
+    ("mass_t = 1800.0", 'weight_kN = "heavy"', "did you mean mass_t? (the weight in kN over 9.81)", "write"),
     ("mass_t = 1800.0", "weight = 17658", "write mass_t = 1800 (the weight in kN over 9.81)", "height_m"),
     ("width_m = 4.0", "slenderness = 7.5", "write alpha = atan(width/height), in radians", "degrees"),
     ("width_m = 4.0", "depth_m = 4.0", "write one of", "did you mean"),
     ("width_m = 4.0", "alfa = 0.13", "did you mean alpha?", "write one of"),
     ("width_m = 4.0", "width_m = 4.0\ndamping = 0.05", "did you mean zeta, under [[case]]?", "write"),
     ("width_m = 4.0", 'width_m = 4.0\nunit = "m"', "units stand in the names of keys; leave it out", "[motions]"),
-    ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "[["),
+    ("width_m = 4.0", "width_m = 4.0\nwidth_m = 5.0", "given a second time; keep one", "above"),
     ("tolerance = 1e-3", "dt = 0.001", "write substeps, the number of steps per sample", "[motions]"),
     ("forces = true", 'path = "out"', "write --out FOLDER behind rockbatch run", "[motions]"),
     ('kind = "viscous"', 'kind = "friction pendulum"', 'expected one of "friction", "hysteretic", "viscous"', "did you mean"),
@@ -418,12 +419,10 @@ def manifest(path):
 @pytest.mark.parametrize(
     ("whole", "load", "meant", "written"),
     [
-        *((STUDY, load_study, *row) for row in REPLACED),
-        *((TARGET, load_study, *row) for row in OF_TARGET),
-        *((MANIFEST, manifest, *row) for row in OF_MANIFEST),
-        *((RULES, load_rules, *row) for row in OF_RULES),
+        *((STUDY, load_study, *row) for row in REPLACED), *((TARGET, load_study, *row) for row in OF_TARGET),
+        *((MANIFEST, manifest, *row) for row in OF_MANIFEST), *((RULES, load_rules, *row) for row in OF_RULES),
     ],
-)
+)  # fmt: skip
 def test_advice_followed_to_the_letter_leads_to_what_was_meant(folder, whole, load, meant, written):
     wrong = whole.replace(meant, written, -1 if written.startswith("[") else 1)
     assert wrong != whole

@@ -39,6 +39,19 @@ def test_what_cannot_be_is_refused_with_a_remedy(tmp_path, tables, message):
     assert message in messages(tmp_path, **tables)
 
 
+def test_keys_of_a_shaft_that_bends_are_columns_of_those_that_do(tmp_path):
+    case = BENDS | {
+        "shaft": ["rigid", "elastic"],
+        "flexural_damping": [0.02, 0.05],
+        "flexural_impact": ["rate", "momentum"],
+    }
+    cases = rb.load_study(write_study(tmp_path, study_text(pier=SHAFT, cases=[case]))).cases
+    assert len(cases) == 8
+    for each in cases:
+        keys = ("shaft", "flexural_damping", "flexural_impact") if each.base.bends else ()
+        assert each.columns == {key: getattr(each.base, key) for key in keys}
+
+
 @pytest.mark.slow  # the kernel of an elastic shaft
 def test_a_rigid_and_a_bending_shaft_are_compared_in_one_study(tmp_path):
     """Drift of the bending one is its own way, not height times rotation; its checks and histories know it."""

@@ -48,6 +48,7 @@ def test_tables_text_and_file_make_the_same_study(tmp_path, pier4):
     assert of_file == of_text
     assert facts(pier4) == facts(of_file)
     assert pier4.notes == TABLES["notes"]
+    assert "\n[pier]\nwidth_m = 4.0\n" in pier4.text
     assert [case.name for case in pier4.cases] == ["rock", "pads", "pads"]
     assert pier4.motions.scale == (1.0, 1.5)
 
@@ -197,6 +198,9 @@ def test_a_study_is_shown_in_a_few_lines(tmp_path, pier4):
     ]
     several = pier4.with_(
         pier={"height_m": [30.0, 32.0]}, numerics={"substeps": 2}, motions=rb.Motion("c", 0.01, np.ones(9))
+    )
+    assert "motions   still ground for 5 s\n" in repr(
+        pier4.with_(motions={"pulse": None, "target": None, "scale": None, "still_s": 5.0})
     )
     told = repr(several)
     assert "2 piers" in told

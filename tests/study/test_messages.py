@@ -24,18 +24,15 @@ def said(folder, text):
         ({"pier": {"widht_m": 4.0, "height_m": 30.0}}, "[pier]: widht_m: unknown key; did you mean width_m?"),
         ({"pier": {"alpha": 0.2, "size": 7.0}}, "[pier]: size: unknown key; did you mean size_m?"),
         ({"pier": {"alhpa": 0.2, "p": 1.0}}, "[pier]: alhpa: unknown key; did you mean alpha?"),
-        (
-            {"pier": PIER | {"mass": 900.0}, "cases": [PADS | {"damper": [{"kind": "friction", "force_kN": 40.0}]}]},
-            "[pier]: mass: unknown key; did you mean mass_t?",
-        ),
+        ({"pier": PIER | {"mass": 900.0}, "cases": [PADS | {"damper": [{"kind": "friction", "force_kN": 40.0}]}]},
+         "[pier]: mass: unknown key; did you mean mass_t?"),
         ({"cases": [{"bse": "rigid"}]}, "[[case]] no. 1: bse: unknown key; did you mean base?"),
         ({"cases": [], "csae": [PADS]}, "csae: unknown section; did you mean case?"),
-        (
-            {"cases": [{"base": "yielding", "beta": 50.0, "eta_": 2.5}]},
-            "[[case]] no. 1: eta_: unknown key; did you mean eta?",
-        ),
+        ({"cases": [{"base": "rigid", "shft": "elastic", "flexural_damping": 0.1}]},
+         "[[case]] no. 1: shft: unknown key; did you mean shaft?"),
+        ({"cases": [{"base": "yielding", "beta": 50.0, "eta_": 2.5}]}, "[[case]] no. 1: eta_: unknown key; did you mean eta?"),
     ],
-)
+)  # fmt: skip
 def test_a_misspelt_key_is_reported_once_and_not_as_missing_too(tmp_path, tables, message):
     (problem,) = said(tmp_path, study_text(**tables).replace("case = []\n", ""))
     assert problem.partition(": ")[2] == message

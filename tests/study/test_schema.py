@@ -63,21 +63,17 @@ PAD = {"base": "yielding", "beta": 50, "eta": 2.5}
 @pytest.mark.parametrize(
     ("tables", "where"),
     [
-        ({"pier": {"alpha": -0.2, "p": 1.0}}, "$.pier.alpha"),
-        ({"pier": {"alpha": 0.2, "p": [1.0, 1.0]}}, "$.pier.p"),
+        ({"pier": {"alpha": -0.2, "p": 1.0}}, "$.pier.alpha"), ({"pier": {"alpha": 0.2, "p": [1.0, 1.0]}}, "$.pier.p"),
         ({"pier": {"alpha": 0.2, "p": 1.0, "widht_m": 4.0}}, "$.pier"),
-        ({"motions": {"polarity": ["+", "*"]}}, "$.motions.polarity"),
-        ({"motions": {"scale": [1, 1]}}, "$.motions.scale"),
-        ({"motions": {"target": {"pga": 0.4}}}, "$.motions.target"),
-        ({"cases": [PAD | {"restitution": 0.9}]}, "$.case[0]"),
-        ({"cases": [{"base": "rigid", "eta": 2.5}]}, "$.case[0]"),
-        ({"cases": [{"beta": 40}]}, "$.case[0]"),
+        ({"motions": {"polarity": ["+", "*"]}}, "$.motions.polarity"), ({"motions": {"scale": [1, 1]}}, "$.motions.scale"),
+        ({"motions": {"target": {"pga": 0.4}}}, "$.motions.target"), ({"cases": [PAD | {"restitution": 0.9}]}, "$.case[0]"),
+        ({"cases": [{"base": "rigid", "eta": 2.5}]}, "$.case[0]"), ({"cases": [{"beta": 40}]}, "$.case[0]"),
         ({"chekc": [{"name": "a"}]}, "$"),
         ({"sensitivity": {"uniform": {"damper": {"force": [1, 2]}}}}, "$.sensitivity.uniform.damper"),
         ({"sensitivity": {"log_uniform": {"tendon_2": {"psi": [0.0, 0.5]}}}}, "$.sensitivity.log_uniform.tendon_2.psi"),
         ({"sensitivity": {"uniform": {"damper_0": {"f": [1, 2]}}}}, "$.sensitivity.uniform"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_is_refused_by_the_schema_where_it_is_and_by_the_reader(tmp_path, tables, where):
     text = study_text(**tables)
     assert where in {place[: len(where)] for place in places(text)}
@@ -114,6 +110,41 @@ def test_every_key_that_is_read_anywhere_has_its_place_in_a_section():
             for name, value in vars(importlib.import_module(module.name)).items():
                 if isinstance(value, Mapping) and value and all(isinstance(key, Key) for key in value.values()):
                     assert value.keys() <= listed, f"{module.name}.{name}"
+
+
+CASE = "[[case]]"
+NEEDED = {
+    "[[pier.part]]": "mass_t height_m", "[[motions.pulse]]": "name shape amplitude_g period_s dt_s duration_s gamma nu",
+    "[[motions.fema_p695]]": "station azimuth", "[[motions.sequence]]": "name records", CASE: "base", "[[case.damper]]": "kind",
+    "[[case.stop]]": "gap_mm", "[[check]]": "name demand reason",
+    "[[reference]]": "record case theta_max_over_alpha source",
+}  # fmt: skip
+SINGLE = {  # where every other key takes a list
+    "[pier]": "gravity", "[[pier.part]]": "", CASE: "name base other_width_m", "[[case.damper]]": "kind at",
+    "[[case.tendon]]": "at", "[[case.stop]]": "at", "[[case.deck_spring]]": "side height_m",
+}  # fmt: skip
+SEVERAL = {
+    "[motions]": "path polarity scale columns confirm confirm_pga leave_out", "[motions.target]": "spectrum confirm",
+    "[motions.vertical_target]": "spectrum confirm", "[[motions.pulse]]": "confirm", "[numerics]": "confirm",
+    "[[motions.sequence]]": "records factors polarity confirm", "[output]": "sa_periods_s sa_pairs sections_m",
+    "[[check]]": "case scale confirm",
+}  # fmt: skip
+ALIKE = {
+    "[motions]": "columns", "[motions.target]": "spectrum", "[motions.vertical_target]": "spectrum",
+    "[[motions.sequence]]": "records factors polarity",
+}  # fmt: skip
+
+
+def test_keys_that_have_to_be_written_that_take_lists_and_that_repeat_values():
+    """As the tables say of themselves: a list is several piers or foundations, and few of their keys take none."""
+    for section in STUDY[: [each.header for each in STUDY].index("[[reference]]") + 1]:
+        several = {name for name, key in section.items() if key.many}
+        assert {name for name, key in section.items() if key.required} == {*NEEDED.get(section.header, "").split()}
+        if section.header in SINGLE:
+            assert section.keys() - several == {*SINGLE[section.header].split()}
+        else:
+            assert several == {*SEVERAL.get(section.header, "").split()}
+        assert {name for name, key in section.items() if not key.distinct} == {*ALIKE.get(section.header, "").split()}
 
 
 SECTIONS = [(file, section) for file, sections in FILES.items() for section in sections if section.keys_read]

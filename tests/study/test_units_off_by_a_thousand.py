@@ -129,13 +129,10 @@ def test_a_unit_off_by_a_thousand_is_refused_until_it_is_confirmed(tmp_path, tab
 @pytest.mark.parametrize(
     "pier",
     [
-        {"width_m": 0.03, "height_m": 0.1, "mass_t": 0.0007},  # of concrete, 0.1 m thick
-        {"width_m": 0.25, "height_m": 1.0, "mass_t": 0.5},
-        {"alpha": 0.1, "p": 8.5},
-        {"alpha": 0.2, "p": 1.0, "mass_t": 3000.0},
-        {"alpha": 0.13, "p": 0.38, "mass_t": 3000.0},
+        {"width_m": 0.03, "height_m": 0.1, "mass_t": 0.0007}, {"width_m": 0.25, "height_m": 1.0, "mass_t": 0.5},
+        {"alpha": 0.1, "p": 8.5}, {"alpha": 0.2, "p": 1.0, "mass_t": 3000.0}, {"alpha": 0.13, "p": 0.38, "mass_t": 3000.0},
     ],
-)
+)  # fmt: skip
 def test_blocks_of_laboratories_and_piers_of_papers_are_accepted(tmp_path, pier):
     load_study(write_study(tmp_path, study_text(pier=pier, cases=[{"base": "rigid"}])))
 
