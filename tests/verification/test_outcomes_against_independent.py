@@ -1,7 +1,7 @@
 """Outcomes of random hard cases are those of an independent reference of order 8 (benchmarks/outcomes.py)."""
 
 import math
-from dataclasses import asdict
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -83,13 +83,12 @@ def test_the_pool_is_the_same_for_the_same_seed_and_another_for_another(outcomes
 @pytest.mark.slow
 def test_references_are_those_of_the_solver_and_kept(outcomes, references, tmp_path):
     cache = outcomes.Cache(tmp_path, 0)
-    for case in outcomes.cases(3, only="flight"):
-        _, fine, loose = cache.get(case)
-        _, *known = references.get(case)
-        for each, other in zip((fine, loose), known, strict=True):
-            assert asdict(other) == pytest.approx(asdict(each), rel=1e-6, nan_ok=True)
+    for case in outcomes.cases(9, only="flight"):
+        for each, other in zip(cache.get(case)[1:], references.get(case)[1:], strict=True):
+            assert other.status == each.status
+            assert astuple(other)[1:] == pytest.approx(astuple(each)[1:], rel=1e-6, nan_ok=True)
     cache.save()
-    assert outcomes.Cache(tmp_path, 0).known == cache.known
+    assert repr(outcomes.Cache(tmp_path, 0).known) == repr(cache.known)  # nan is not itself
 
 
 @pytest.fixture(scope="module")
