@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from core_samples import gaps_of
+from core_samples import gaps_of, held_pivots
 
 from rockbatch.pier import ElasticBase, Pier
 from rockbatch.simulation.models import IDLE, springs
@@ -52,3 +52,12 @@ def test_in_first_order_kinematics_an_elongation_is_linear_and_arms_keep_p_delta
         assert foot[:5] == pytest.approx((y.v - 0.7 * y.theta, y.v_rate - 0.7 * y.omega, 1.0, -0.7, 0.0), rel=1e-12)
         assert foot.arm == pytest.approx(m.height * y.theta - 0.7, rel=1e-12)
         assert deck == pytest.approx((-9.0 * y.theta, -9.0 * y.omega, 0.0, -9.0, 0.0, -9.0), rel=1e-12)
+
+
+def test_friction_holds_the_pivot_that_does_not_accelerate(uncompiled):
+    """v̈ ± b θ̈ is 0 there; in full contact at rest both are."""
+    base, b = ElasticBase(50.0), PIER.half_width
+    moved = [(y, SimpleNamespace(v_rate=sign * b * 0.3, omega=0.3)) for y in STATES for sign in (-1.0, 1.0)]
+    still = [(y, SimpleNamespace(v_rate=0.0, omega=0.0)) for y in STATES]
+    found = uncompiled(held_pivots, PIER, base, moved + still)
+    assert found == [(True, False), (False, True)] * len(STATES) + [(True, True)] * len(STATES)

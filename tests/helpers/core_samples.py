@@ -9,6 +9,7 @@ import pytest
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.core.devices.elongation import attitude, gap_of
+from rockbatch.core.devices.events import _is_held
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation.models import springs
@@ -104,3 +105,10 @@ def gaps_of(pier, base, devices, states):
     m = springs(pier, base)
     at = [attitude(m, y, SimpleNamespace(top=0.0), 0.0) for y in states]
     return [[gap_of(m, of, *each) for each in zip(at, states, strict=True)] for of in devices]
+
+
+def held_pivots(pier, base, states):
+    """Return of each pair of a state and its accelerations which pivots, left and right, friction holds where they are."""
+    m, devices = springs(pier, base), SimpleNamespace(level=[0.0])
+    moments = [SimpleNamespace(y=y, k=k, contact=SimpleNamespace(top=0.0)) for y, k in states]
+    return [tuple(_is_held(m, devices, now, 0.0, i) for i in range(2)) for now in moments]

@@ -238,6 +238,9 @@ def test_the_error_of_a_settlement_is_what_halving_the_step_changes_and_its_drif
     outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
     assert outcome.settlement_error == pytest.approx(2e-6 + 2.0 * 3e-5 * wait)
     assert outcome.theta_res_error == pytest.approx(error_control.ROUNDING * FIG5.alpha + 2.0 * 1e-6 * wait)
+    scripted(monkeypatch, steady[0])
+    rounding = error_control.ROUNDING * FIG5.alpha * FIG5.half_width
+    assert run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4).settlement_error == rounding
     scripted(monkeypatch, ok(0.1, theta_res=0.0, settlement=0.0))
     assert run_to_tolerance(FIG5, ElasticBase(50.0), SINE, 1e-4).settlement_error is None
 

@@ -19,7 +19,7 @@ from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, written
-from rockbatch.simulation.leaning import lean_of
+from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of
 from rockbatch.simulation.models import readings
 from rockbatch.study import Case, Numerics, Output, load_study
 
@@ -106,6 +106,21 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
     rigid = outcome_of(rb.RigidBase(), motion, rocking=True)
     assert (rigid.theta_rocking_error, rigid.theta_lean_error) == (rigid.theta_max_error, None)
     assert outcome_of(PADS, motion).theta_rocking_error is None
+
+
+def test_the_greatest_swing_about_a_line_is_found_between_rows_of_any_distance():
+    """Of 0.01 e^(−λt) sin ωt about a line that rises by more, where tan ωt = ω/λ; each half cycle after it is smaller."""
+    decay, omega = 0.3, 2.0
+    phase = np.arctan2(omega, decay)
+    peak = 0.01 * np.exp(-decay * phase / omega) * np.sin(phase)
+    for seed in range(20):
+        t = np.cumsum(np.random.default_rng(seed).uniform(0.02, 0.3, 30))
+        wave, line = 0.01 * np.exp(-decay * t), 0.02 + 0.03 * t
+        swing, rate = wave * np.sin(omega * t), wave * (omega * np.cos(omega * t) - decay * np.sin(omega * t))
+        for side in (-1.0, 1.0):
+            found = greatest_swing(t, side * (line + swing), side * (0.03 + rate), side * swing)
+            assert found == pytest.approx((peak, phase / omega), rel=2e-3, abs=0.3 / PARTS)
+            assert found[0] == pytest.approx(peak, rel=2e-3)
 
 
 @pytest.mark.parametrize("requested", [False, True])

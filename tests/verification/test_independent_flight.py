@@ -11,8 +11,8 @@ import pytest
 
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.simulation.outcome import Outcome
 
+pytestmark = pytest.mark.slow  # compiled by itself
 PIER = Pier(alpha=0.2, p=1.0)
 G = PIER.gravity
 SIDES = {"L": -1, "R": 1, "rest": 0}
@@ -295,51 +295,3 @@ def test_a_block_that_lands_while_the_ground_falls_faster_leaves_it_again(refere
     flying = np.flatnonzero((trace[:, 4] == 0) & (trace[:, 0] > 0))
     assert np.all(np.diff(flying) == 1)
     assert found.flight_duration == pytest.approx(trace[flying[-1] + 1, 0] - found.t_flight, abs=1e-15)
-
-
-@pytest.fixture(scope="module")
-def truths(outcomes):
-    """Some cases of the pool with their references."""
-    chosen = outcomes.cases(30, only="flight")
-    return [(case, *outcomes.twice(case.pier, case.base, case.motion)) for case in chosen]
-
-
-class TestThePool:
-    """Random cases of flight, and how they are judged."""
-
-    @staticmethod
-    def answer(case, truth, **changes):
-        """The outcome of a solver that is right."""
-        overturned = truth.status == "overturned"
-        given = {
-            "status": "overturned" if overturned else "ok", "reason": "", "theta_max": truth.theta_max,
-            "t_max": truth.t_max, "impacts": truth.impacts, "separations": truth.separations,
-            "t_flight": None if math.isnan(truth.t_flight) else truth.t_flight, "t_end": truth.t_end, "substeps": 1,
-            "theta_max_error": 1e-6 * case.pier.alpha,
-        }  # fmt: skip
-        return Outcome(**(given | changes))
-
-    def test_holds_300_after_all_others(self, outcomes):
-        assert len(outcomes.cases(only="flight")) == 300
-        assert [name for name in outcomes.STRATA if "flight" in name] == list(outcomes.STRATA)[-3:]
-
-    def test_has_references_for_nearly_all_and_most_fly(self, outcomes, truths):
-        said = [outcomes.stands_on_itself(*truth) for truth in truths]
-        assert sum(verdict != "" for verdict in said) <= 0.1 * len(truths)
-        assert sum(fine.flights > 0 for _, fine, _ in truths) >= 0.5 * len(truths)
-        for (_, fine, loose), verdict in zip(truths, said, strict=True):
-            assert fine.forced == 0
-            if verdict == "":
-                assert fine.flights == loose.flights
-
-    def test_accepts_the_truth_and_nothing_else(self, outcomes, truths):
-        for case, fine, _ in truths:
-            assert outcomes.verdict(case, self.answer(case, fine), fine)[0] == ""
-            if fine.status == "overturned" or fine.flights == 0:
-                continue
-            off = self.answer(case, fine, theta_max=fine.theta_max + 2e-4 * case.pier.alpha)
-            assert outcomes.verdict(case, off, fine)[0] == "error"
-            unaware = self.answer(case, fine, t_flight=None)
-            assert outcomes.verdict(case, unaware, fine)[0] == "flight at another time"
-            ended = self.answer(case, fine, status="flight", t_end=fine.t_flight, theta_max=fine.peak_flight)
-            assert outcomes.verdict(case, ended, fine)[0] == "flight, guided"

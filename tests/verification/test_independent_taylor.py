@@ -13,6 +13,7 @@ import pytest
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
 
+pytestmark = pytest.mark.slow  # compiled by itself
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 
@@ -29,7 +30,7 @@ def taylor(independent):
     return independent("taylor")
 
 
-@pytest.mark.parametrize("c", [pytest.param(1e-3, marks=pytest.mark.slow), 1e-6, 1e-12])
+@pytest.mark.parametrize("c", [1e-3, 1e-6, 1e-12])
 def test_a_hop_is_seen_however_short_it_is(taylor, c):
     """x (c − x) (½ − x) falls at x = c and rises at ½."""
     poly = np.zeros(taylor.COLUMNS)
@@ -71,7 +72,6 @@ def test_a_lift_off_by_a_hair_is_an_arc_of_cubics(taylor):
     assert truth.theta_max == pytest.approx(peak, rel=1e-7)
 
 
-@pytest.mark.slow
 def test_two_references_that_share_no_code_agree(independent, taylor):
     """To 10⁻⁹ α, but where a motion 10⁻¹² stronger moves the peak by more: that is chaos."""
     cases, reference, compared = independent("pool").cases, independent("reference").reference, 0

@@ -1,6 +1,7 @@
 """Outcomes of random hard cases are those of an independent reference of order 8 (benchmarks/outcomes.py)."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from core_samples import broadband, has_usual_n, is_common
 
 from rockbatch.motions import Motion, pulse
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.simulation.outcome import Outcome
 
 PIER = Pier(alpha=0.20, p=1.0)
 G = PIER.gravity
@@ -18,12 +20,6 @@ SINE = pulse("sine", name="sine", amplitude=G, period=0.5, dt=0.01, duration=2.0
 @pytest.fixture(scope="module")
 def reference(outcomes):
     return outcomes.reference
-
-
-@pytest.fixture(scope="module")
-def cache(outcomes, tmp_path_factory):
-    """References that several tests need."""
-    return outcomes.Cache(tmp_path_factory.mktemp("references"), 0)
 
 
 def assert_nothing_wrong(outcomes, rows):
@@ -36,21 +32,25 @@ def assert_nothing_wrong(outcomes, rows):
     assert counts["failed, settled"] == 0, told
 
 
-def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, cache):
-    """The first of each kind whose kernel fast tests compile; of springs under records there is none."""
+def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, references):
+    """The first of each kind whose kernel fast tests compile; of springs under records there is none.
+
+    A weak motion's peak comes after the end of the run, until which the reference would have to be solved anew.
+    """
     first = {case.stratum: case for case in reversed(outcomes.cases(80)) if is_common(case.base)}
-    assert len(first) == 18
-    rows = outcomes.judged([*first.values()], cache, jobs=2)
+    del first["weak"]
+    assert len(first) == 17
+    rows = outcomes.judged([*first.values()], references, jobs=2)
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.15 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("count", "least"), [(80, 60), pytest.param(None, 1200, marks=pytest.mark.thorough)])
-def test_outcomes_of_the_pool_are_those_of_the_reference(outcomes, cache, count, least):
+def test_outcomes_of_the_pool_are_those_of_the_reference(outcomes, tmp_path, count, least):
     """A part of it, and the whole; other seeds: ``python benchmarks/outcomes.py``."""
     cases = [case for case in outcomes.cases(count) if count is None or has_usual_n(case.base)]
-    rows = outcomes.judged(cases, cache, jobs=2)
+    rows = outcomes.judged(cases, outcomes.Cache(tmp_path, 0), jobs=2)
     assert len(rows) >= least
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
     assert_nothing_wrong(outcomes, rows)
@@ -80,16 +80,65 @@ def test_the_pool_is_the_same_for_the_same_seed_and_another_for_another(outcomes
     assert [case.pier for case in first] != [case.pier for case in other]
 
 
-def test_references_are_kept(outcomes, tmp_path):
-    case = outcomes.cases(1, only="rigid pulses")[0]
+@pytest.mark.slow
+def test_references_are_those_of_the_solver_and_kept(outcomes, references, tmp_path):
     cache = outcomes.Cache(tmp_path, 0)
-    row = outcomes.judge(case, cache)
+    for case in outcomes.cases(9, only="flight"):
+        for each, other in zip(cache.get(case)[1:], references.get(case)[1:], strict=True):
+            assert other.status == each.status
+            assert astuple(other)[1:] == pytest.approx(astuple(each)[1:], rel=1e-6, nan_ok=True)
     cache.save()
-    kept = outcomes.Cache(tmp_path, 0)
-    assert list(kept.known) == [case.id]
-    assert repr(outcomes.judge(case, kept)) == repr(row)  # nan is not itself
+    assert repr(outcomes.Cache(tmp_path, 0).known) == repr(cache.known)  # nan is not itself
 
 
+@pytest.fixture(scope="module")
+def truths(outcomes, references):
+    """Some cases of the pool with their references."""
+    return [references.get(case) for case in outcomes.cases(30, only="flight")]
+
+
+class TestThePool:
+    """Random cases of flight, and how they are judged."""
+
+    @staticmethod
+    def answer(case, truth, **changes):
+        """The outcome of a solver that is right."""
+        overturned = truth.status == "overturned"
+        given = {
+            "status": "overturned" if overturned else "ok", "reason": "", "theta_max": truth.theta_max,
+            "t_max": truth.t_max, "impacts": truth.impacts, "separations": truth.separations,
+            "t_flight": None if math.isnan(truth.t_flight) else truth.t_flight, "t_end": truth.t_end, "substeps": 1,
+            "theta_max_error": 1e-6 * case.pier.alpha,
+        }  # fmt: skip
+        return Outcome(**(given | changes))
+
+    def test_holds_300_after_all_others(self, outcomes):
+        assert len(outcomes.cases(only="flight")) == 300
+        assert [name for name in outcomes.STRATA if "flight" in name] == list(outcomes.STRATA)[-3:]
+
+    def test_has_references_for_nearly_all_and_most_fly(self, outcomes, truths):
+        said = [outcomes.stands_on_itself(*truth) for truth in truths]
+        assert sum(verdict != "" for verdict in said) <= 0.1 * len(truths)
+        assert sum(fine.flights > 0 for _, fine, _ in truths) >= 0.5 * len(truths)
+        for (_, fine, loose), verdict in zip(truths, said, strict=True):
+            assert fine.forced == 0
+            if verdict == "":
+                assert fine.flights == loose.flights
+
+    def test_accepts_the_truth_and_nothing_else(self, outcomes, truths):
+        for case, fine, _ in truths:
+            assert outcomes.verdict(case, self.answer(case, fine), fine)[0] == ""
+            if fine.status == "overturned" or fine.flights == 0:
+                continue
+            off = self.answer(case, fine, theta_max=fine.theta_max + 2e-4 * case.pier.alpha)
+            assert outcomes.verdict(case, off, fine)[0] == "error"
+            unaware = self.answer(case, fine, t_flight=None)
+            assert outcomes.verdict(case, unaware, fine)[0] == "flight at another time"
+            ended = self.answer(case, fine, status="flight", t_end=fine.t_flight, theta_max=fine.peak_flight)
+            assert outcomes.verdict(case, ended, fine)[0] == "flight, guided"
+
+
+@pytest.mark.slow
 class TestTheReference:
     """The judge itself, against closed forms and against itself."""
 
@@ -142,7 +191,7 @@ class TestTheReference:
         assert rigid.theta_max / PIER.alpha == pytest.approx(0.401675, abs=1e-6)
         assert springs.theta_max == pytest.approx(rigid.theta_max, rel=1e-4)
 
-    @pytest.mark.parametrize("e", [0.0, *(pytest.param(e, marks=pytest.mark.slow) for e in (0.5, 0.9))])
+    @pytest.mark.parametrize("e", [0.0, 0.5, 0.9])
     def test_agrees_with_the_other_reference_on_many_impacts_on_a_rigid_base(self, reference, e):
         """Also where a block that an impact has stopped is lifted again at once."""
         motion = Motion("noise", 0.01, broadband(np.random.default_rng(4), 0.01, 1500, 3.0 * G * PIER.alpha))
@@ -150,9 +199,9 @@ class TestTheReference:
         assert found.impacts >= 10
         assert other.theta_max == pytest.approx(found.theta_max, rel=1e-8)
 
-    @pytest.mark.slow
     @pytest.mark.parametrize("count", [10, pytest.param(25, marks=pytest.mark.thorough)])
-    def test_stops_only_when_nothing_follows(self, outcomes, reference, cache, count):
+    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path, count):
+        cache = outcomes.Cache(tmp_path, 0)
         for case in outcomes.cases(count):
             run, fine, _ = cache.get(case)
             if fine.decided and not isinstance(run.base, RigidBase):

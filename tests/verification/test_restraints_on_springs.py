@@ -48,7 +48,7 @@ FRICTION = {
     "mixed": (Damper("friction", f=0.06), Damper("hysteretic", f=0.05, yield_m=0.005), Tendon(psi=0.1, lam=0.5)),
 }
 NEAR_FAULT = Path(__file__).parents[2] / "motions" / "near_fault"
-SHAKEN = pulse("sine", 0.5, 1.0, end=2.0)
+SHAKEN = pulse("sine", 0.5, 1.0, end=1.2)
 
 
 def tied(base, restraints):
@@ -81,8 +81,8 @@ def _agree(base, restraints, motion):
 
 def test_damped_springs_with_devices_in_finite_kinematics_agree_with_the_reference(uncompiled):
     """Uncompiled, in an eighth of the steps."""
-    vertical = 0.4 * GRAVITY * np.sin(np.arange(61) * 0.44)
-    motion = Motion("both", 0.02, pulse("sine", 0.5, 1.0, dt=0.02, end=1.2).horizontal, vertical)
+    vertical = 0.4 * GRAVITY * np.sin(np.arange(41) * 0.44)
+    motion = Motion("both", 0.02, pulse("sine", 0.5, 1.0, dt=0.02, end=0.8).horizontal, vertical)
     base = tied(FINITE, FRICTION["mixed"])
     end = TiedTwoSprings(FIG5, base, motion, 0.0).run()
     found = uncompiled(run_fixed, FIG5, base, motion, 8, 0.0, wait=False)
