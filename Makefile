@@ -28,8 +28,9 @@ slow: $(VENV)/.test
 thorough: $(VENV)/.test
 	$(BIN)/python -m pytest -n auto --dist load -m thorough
 
-# Small errors put into the product at random places: do the tests notice? Half a minute of a core each; see tests/mutants/run.py.
+# Small errors put into the product at random places: do the tests notice? See tests/mutants/run.py.
 mutants: $(VENV)/.test
+	$(BIN)/python -m pip install --quiet pytest-cov
 	$(BIN)/python tests/mutants/run.py --seed $(or $(SEED),1) --count $(or $(COUNT),200)
 
 # The fast tests with every supported Python that is installed, each in an environment of its own.

@@ -1,6 +1,7 @@
 """What holds for all tests: which kernels fast ones may compile, and how others are tried without the compiler."""
 
 import multiprocessing
+import os
 from concurrent.futures import ProcessPoolExecutor
 from unittest import mock
 
@@ -90,6 +91,9 @@ def pytest_runtest_protocol(item):
 @pytest.fixture(scope="session")
 def uncompiled():
     """Call functions in a process in which Numba compiles nothing: a sub-step of a run takes a millisecond there."""
+    if os.environ.get("NUMBA_DISABLE_JIT") == "1":
+        yield lambda function, *given, **named: function(*given, **named)
+        return
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         with pytest.MonkeyPatch.context() as patch:  # here Numba would notice it, too
             patch.setenv("NUMBA_DISABLE_JIT", "1")

@@ -1,6 +1,9 @@
 """The tool that puts small errors into the product: which errors, and that a test is seen to notice one."""
 
 import ast
+import json
+import os
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -17,7 +20,7 @@ PRODUCT = "rockbatch"
 def importable(monkeypatch):
     monkeypatch.syspath_prepend(str(TOOL))
     yield
-    for name in ("places", "run"):
+    for name in ("places", "run", "judging", "recording"):
         sys.modules.pop(name, None)
 
 
@@ -57,30 +60,56 @@ def test_every_error_leaves_a_program_and_another_one():
         assert ast.dump(ast.parse(error.put_into(source))) != whole
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("limit", "test", "noticed"),
-    [("3", "", ""), ("2", "def test_limit()", ""), ("2", "@pytest.mark.slow\ndef test_limit()", " (slow)")],
-)
-def test_an_error_survives_fast_and_slow_tests_that_do_not_meet_it(tmp_path, monkeypatch, limit, test, noticed):
-    import run
-    from places import mutants
-    from run import FAST, SLOW, Place, noticed_by
+SMALL = """
+LIMIT = 3
+def small(x):
+    return x < LIMIT
+def stopped(x):
+    while x < 5:
+        x += 1
+    return x
+class Few:
+    def all_small(self, values):
+        return all(small(x) for x in values if x > 4)
+"""
+TESTS = """
+import pytest, sys
+from few import Few, small, stopped
+def test_small(): assert small(1) and not small(9)
+def test_few(): assert Few().all_small([1, 2]) and not Few().all_small([5, 1])
+def test_stopped(): assert stopped(0) == 5
+def test_unsound(): assert not small(1) and Few().all_small([1])
+"""
 
-    source = f"def small(x):\n    return x < {limit}\n"
-    (tmp_path / PRODUCT).mkdir()
-    (tmp_path / PRODUCT / "few.py").write_text(source)
-    (tmp_path / "conftest.py").write_text("import sys; sys.path.insert(0, 'rockbatch')\n")
-    (tmp_path / "test_few.py").write_text(
-        "from few import small\ndef test_small(): assert small(1) and not small(9)\ndef test_unsound(): assert False\n"
-    )
-    if test:
-        (tmp_path / "test_limit.py").write_text(f"import pytest\nfrom few import small\n{test}: assert not small(2)\n")
-    (mutant,) = (mutant for mutant in mutants(source) if "<=" in mutant.text)
-    place = Place(f"{PRODUCT}/few.py", mutant)
-    monkeypatch.setattr(run, "tests_of", lambda place: [(FAST, ["test_few.py"]), (FAST, ["."]), (SLOW, ["."])])
-    assert noticed_by(place, tmp_path, set()) == (f"test_limit.py::test_limit{noticed}" if test else "")
-    assert (tmp_path / PRODUCT / "few.py").read_text() == source
+
+JUDGED = {
+    "x < LIMIT → (x <= LIMIT)": (["small", "few"], ""),
+    "x > 4 → (x >= 4)": (["small", "few"], ""),
+    "x < 5 → (x <= 5)": (["small", "stopped"], "stopped"),
+    "4 → (5)": (["unsound", "few"], "few"),  # in a generator in a method
+    "3 → (4)": (["unsound", "small"], ""),  # when it is imported
+    "1 → (2)": (["stopped"], "stopped"),
+}
+"""Errors, the tests that they meet, and which notices them."""
+
+
+def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
+    from places import mutants
+
+    (tmp_path / "few.py").write_text(SMALL)
+    (tmp_path / "test_few.py").write_text(TESTS)
+    wrong = {str(mutant): mutant.put_into(SMALL) for mutant in mutants(SMALL)}
+    requests = [
+        {"file": "few.py", "wrong": wrong[error], "tests": [[f"test_few.py::test_{name}" for name in tests]]}
+        for error, (tests, _) in JUDGED.items()
+    ]
+    process = subprocess.run(
+        [sys.executable, TOOL / "judging.py", "."], input="\n".join(map(json.dumps, requests)), cwd=tmp_path, text=True,
+        env=os.environ | {"PYTHONPATH": str(tmp_path)}, capture_output=True,
+    )  # fmt: skip
+    answers = [json.loads(line).removeprefix("test_few.py::test_") for line in process.stdout.splitlines()]
+    assert dict(zip(JUDGED, answers, strict=True)) == {error: noticed for error, (_, noticed) in JUDGED.items()}
+    assert (tmp_path / "few.py").read_text() == SMALL
 
 
 @pytest.mark.slow

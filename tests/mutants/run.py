@@ -1,25 +1,23 @@
-"""Put small errors into the product, one at a time, and see whether its tests notice.
+"""Put small errors into the product, one at a time, and see whether its fast tests notice.
 
     make mutants [SEED=1] [COUNT=200]
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
-Places are drawn at random from all lines that compute (places.py). An error meets first the test files that name most of what its
-module defines, then those of the next dozen files about its package, then the slow tests of the nearest files; others may notice
-more. It is noticed where a test fails that passes without it, or computes far longer. What is finished is kept in build/mutants
-and not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
+Places are drawn at random from all lines that compute (places.py). The fast tests run once, to record which of them runs which
+line (recording.py); an error meets those that run its line, a minute of them, or those that run most of its module if it is
+in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
+longer. Errors in the core meet tests without the compiler, of a few seconds each. What is finished is kept in build/mutants and
+not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
 
 import argparse
 import ast
-import contextlib
 import functools
 import hashlib
 import json
 import os
 import random
-import re
 import shutil
-import signal
 import subprocess
 import sys
 import tomllib
@@ -28,64 +26,20 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import Queue
-from tempfile import TemporaryFile
 from typing import NamedTuple
 
-import pytest
+from judging import TOO_SLOW
 from places import Mutant, mutants
+from recording import PHYSICS, Record
 
 TOP = Path(__file__).parents[2]
 BUILD = TOP / "build" / "mutants"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-LONGEST = 200
-"""Seconds of computing for each file of tests, its kernels included, after which they count as failed."""
-TOO_SLOW = "no end"
-"""What ends a name of tests that took longer, or were killed."""
-NEAREST, MOST = 6, 18
-"""Test files that meet an error first, and at all."""
-UNCOMPILED = [
-    "tests/verification/test_dimensions.py",
-    "tests/core/test_free_vibration.py",
-    "tests/core/test_trigonometry.py",
-]
-"""Tests of the core without a run, for which a minute would be compiled anew: errors in the core meet them first."""
-TESTS = {
-    "core": ("core", "simulation", "verification"),
-    "simulation": ("simulation", "batch", "core", "verification"),
-    "pier": ("test_pier*.py", "test_statics.py", "verification", "study"),
-    "motions/formats": ("motions",),
-    "reporting": ("report", "docs"),
-    "quantities": ("results", "checks", "analyses/test_quantities.py", "report"),
-    "results": ("results", "report", "batch"),
-    "checks": ("checks", "results", "report"),
-    "toml": ("test_toml.py", "test_units.py", "study"),
-    "rockbatch": ("test_python_doors.py", "test_python_pieces.py", "test_doors.py"),
-    "commands": (
-        "test_cli.py",
-        "test_arguments.py",
-        "test_doors.py",
-        "test_outputs.py",
-        "test_hostile_calls.py",
-        "checks",
-    ),
-    "common": (
-        *(
-            "test_f*.py",
-            "test_units.py",
-            "test_arguments.py",
-            "test_notebooks.py",
-            "test_outputs.py",
-            "test_interrupts.py",
-        ),
-        *("test_pier_figures.py", "results", "report", "batch"),
-    ),
-}
-"""Tests of a package, the nearest first, where they are not in a folder of its name."""
+FIRST, MOST_SECONDS = 40, 60.0
+"""Tests that an error meets first, and how long all of them took without it."""
+OF_MODULE = 150
+"""Tests that an error meets in what runs when a module is imported."""
 NOT_COPIED = (".venv*", "build", "reports", ".git", ".mypy_cache", ".ruff_cache", ".pytest_cache")
-PYTEST = "-q", "-x", "--tb=no", "-p", "no:cacheprovider"
-FAST, SLOW = "not slow", "slow and not thorough"
-BY_SLOW = " (slow)"
-"""What ends the name of a slow test where no fast one noticed the error."""
 
 
 class Place(NamedTuple):
@@ -104,6 +58,11 @@ class Place(NamedTuple):
     def name(self) -> str:
         """Return file, error and line as equivalent.toml has them: they stay the same when lines move."""
         return f"{self.file}: {self.mutant} in {_lines(self.file)[self.mutant.line - 1].strip()}"
+
+    @property
+    def lines(self) -> range:
+        """Return the lines on which the error is."""
+        return range(self.mutant.line, self.mutant.line + self.mutant.before.count("\n") + 1)
 
 
 @functools.cache
@@ -134,99 +93,29 @@ def copied(number: int) -> Path:
     return copy
 
 
-def tests_of(place: Place) -> list[tuple[str, list[str]]]:
-    """Return test files, each time with the mark of the tests in them that run.
-
-    First are fast tests of the files that name most of what the module of the error defines, then those of further ones.
-    """
-    folders = TESTS.get(place.package, (place.package,))
-    path, order = TOP / place.file, dict[Path, int]()
-    for i, name in enumerate(folders):
-        for found in (TOP / "tests").glob(name):
-            for test in found.rglob("test_*.py") if found.is_dir() else [found]:
-                order.setdefault(test, i)
-    names = {path.stem} | {name for name in _defined(path) if not name.startswith("_")}
-
-    def nearness(test: Path) -> tuple[int, str]:
-        words = set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
-        shared = len({*path.parts} & {*test.parts}) + 2 * (path.stem in test.stem)  # of folders, and the name itself
-        return 2 * order[test] - len(names & words) - 3 * shared, str(test)
-
-    tests = [test.relative_to(TOP).as_posix() for test in sorted(order, key=nearness)]
-    first = UNCOMPILED if place.package == "core" else []
-    tests = [test for test in tests if test not in first]
-    stages = (FAST, first), (FAST, tests[:NEAREST]), (FAST, tests[NEAREST:MOST]), (SLOW, tests[:NEAREST])
-    return [(mark, chosen) for mark, chosen in stages if chosen]
+def tests_of(place: Place, record: Record) -> list[list[str]]:
+    """Return the tests that an error meets first and those that it meets then."""
+    tests = record.tests_of(place.file, place.lines)
+    if not tests and not _in_function(place):
+        tests = record.nearest(place.file, OF_MODULE)
+    rest, seconds = [], 0.0
+    for test in sorted(tests[FIRST:], key=record.seconds.__getitem__):
+        seconds += record.seconds[test]
+        if seconds < MOST_SECONDS:
+            rest.append(test)
+    return [stage for stage in (tests[:FIRST], rest) if stage]
 
 
-def _defined(path: Path) -> Iterator[str]:
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        match node:
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                yield name
-            case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
-                yield name
+def _in_function(place: Place) -> bool:
+    functions = (
+        node for node in ast.walk(ast.parse("\n".join(_lines(place.file)))) if isinstance(node, ast.FunctionDef)
+    )
+    return any(node.body[0].lineno <= place.mutant.line <= (node.end_lineno or 0) for node in functions)
 
 
-def noticed_by(place: Place, copy: Path, sound: set[str]) -> str:
-    """Return the test that fails with the error in a copy of the project, and passes without it; "" if none does.
-
-    ``sound`` are tests that are known to pass without an error; this adds to them.
-    """
-    for mark, tests in tests_of(place):
-        unsound: list[str] = []
-        while True:
-            with _error_in(copy, place):
-                failed = _failure(mark, [*tests, *(f"--deselect={test}" for test in unsound)], copy)
-            if not failed or failed in unsound:
-                break
-            if failed in sound or failed.endswith(TOO_SLOW) or not _failure(mark, [failed], copy):
-                sound.add(failed)
-                return failed + BY_SLOW * (mark == SLOW)
-            unsound.append(failed)
-    return ""
-
-
-@contextlib.contextmanager
-def _error_in(copy: Path, place: Place) -> Iterator[None]:
-    path, compiled = copy / place.file, copy / "rockbatch/core/__pycache__"
-    source, times, kernels = path.read_text(encoding="utf-8"), path.stat(), set(compiled.glob("kernels-*"))
-    path.write_text(place.mutant.put_into(source), encoding="utf-8")
-    try:
-        yield
-    finally:
-        path.write_text(source, encoding="utf-8")
-        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
-        for wrong in set(compiled.glob("kernels-*")) - kernels:
-            if place.file.startswith("rockbatch/core/"):
-                shutil.rmtree(wrong)
-
-
-def _failure(mark: str, chosen: list[str], copy: Path) -> str:
-    """Return the test, of those ``chosen`` that have a mark, that fails in a copy of the project; "" if none does."""
-    limited = ["sh", "-c", 'ulimit -t "$0" && exec "$@"', str(limit := LONGEST * len(chosen))]
-    with TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
-        process = subprocess.Popen(
-            [*limited, sys.executable, "-m", "pytest", *PYTEST, "-m", mark, *chosen], cwd=copy, stdout=output, stderr=output,
-            env=os.environ | {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}, start_new_session=True,
-        )  # fmt: skip
-        try:
-            code = process.wait(10 * limit)
-        except subprocess.TimeoutExpired:
-            code = -signal.SIGXCPU
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-        output.seek(0)
-        failed = [line.split(" ", 1)[1].split(" - ")[0] for line in output if line.startswith(("FAILED", "ERROR "))]
-    if code in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
-        return ""
-    if code == pytest.ExitCode.USAGE_ERROR and "::" in chosen[0]:  # a test has another name with the error
-        return ""
-    return failed[0].strip() if failed else f"{chosen[0]}: {TOO_SLOW}"
-
-
-def judged(places: list[Place], copies: list[Path]) -> Iterator[tuple[Place, str]]:
+def judged(
+    places: list[Place], record: Record, copies: list[Path], uncompiled: bool = False
+) -> Iterator[tuple[Place, str]]:
     """Yield each place, and what notices its error; what earlier calls found with this product is kept.
 
     What survived meets the tests again if there are others.
@@ -238,27 +127,36 @@ def judged(places: list[Place], copies: list[Path]) -> Iterator[tuple[Place, str
         for entry in entries
         if entry["noticed_by"] or entry["tests"] == tests
     }
-    sound = {name.removesuffix(BY_SLOW) for name in known.values() if name}
-    free: Queue[Path] = Queue()
-    for copy in copies:
-        free.put(copy)
+    free: Queue[subprocess.Popen[str]] = Queue()
+    folders = [folder for folder in (PHYSICS if uncompiled else ("tests",)) if (TOP / folder).exists()]
 
     def judge(place: Place) -> str:
         key = place.name, place.mutant.line
         if key in known:
             return str(known[key])
-        copy = free.get()
-        try:
-            found = noticed_by(place, copy, sound)
-        finally:
-            free.put(copy)
+        process = free.get()
+        assert process.stdin
+        assert process.stdout
+        wrong = place.mutant.put_into((TOP / place.file).read_text(encoding="utf-8"))
+        request = {"file": place.file, "wrong": wrong, "tests": tests_of(place, record)}
+        print(json.dumps(request), file=process.stdin, flush=True)
+        found = str(json.loads(process.stdout.readline()))
+        free.put(process)
         entry = {"place": place.name, "line": place.mutant.line, "noticed_by": found, "tests": tests}
         with journal.open("a", encoding="utf-8") as file:
             file.write(json.dumps(entry, ensure_ascii=False) + "\n")
         return found
 
+    for copy in copies:
+        environment = {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+        environment |= {"NUMBA_DISABLE_JIT": "1"} if uncompiled else {}
+        command = [sys.executable, str(Path(__file__).with_name("judging.py")), *folders]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        free.put(subprocess.Popen(command, cwd=copy, env=os.environ | environment, **pipes))
     with ThreadPoolExecutor(len(copies)) as pool:
         yield from zip(places, pool.map(judge, places), strict=True)
+    while not free.empty():
+        free.get().communicate()
 
 
 def main() -> int:
@@ -274,23 +172,25 @@ def main() -> int:
     os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(BUILD / "bytecode")}
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
-    places = drawn(chosen.seed, chosen.count, chosen.only)
     copies = [copied(number) for number in range(chosen.jobs)]
-    for place, found in judged(places, copies):
-        kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
-        if not found or found.endswith((TOO_SLOW, BY_SLOW)):
-            print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
-        for package in (place.package, "all"):
-            counts.setdefault(package, Counter()).update([kind, BY_SLOW] if found.endswith(BY_SLOW) else [kind])
-    print(
-        f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'only by slow':>13} {'equivalent':>11} {'survived':>9}  rate"
-    )
+    for uncompiled in (False, True):
+        places = [
+            place for place in drawn(chosen.seed, chosen.count, chosen.only) if (place.package == "core") == uncompiled
+        ]
+        if not places:
+            continue
+        record = Record(TOP, BUILD / f"record-{_digest('rockbatch', 'tests')}{'-uncompiled' * uncompiled}", uncompiled)
+        for place, found in judged(places, record, copies, uncompiled):
+            kind = "noticed" if found else "equivalent" if place.name in equivalent else "survived"
+            if not found or found.endswith(TOO_SLOW):
+                print(f"{kind}: {place.file}:{place.mutant.line}: {place.mutant} {found}", flush=True)
+            for package in (place.package, "all"):
+                counts.setdefault(package, Counter())[kind] += 1
+    print(f"\nseed {chosen.seed}\n{'package':20} {'noticed':>8} {'equivalent':>11} {'survived':>9}  rate")
     for package, count in sorted(counts.items(), key=lambda item: (item[0] == "all", item[0])):
         matter = count["noticed"] + count["survived"]
         rate = f"{count['noticed'] / matter:.0%}" if matter else ""
-        print(
-            f"{package:20} {count['noticed']:8} {count[BY_SLOW]:13} {count['equivalent']:11} {count['survived']:9}  {rate}"
-        )
+        print(f"{package:20} {count['noticed']:8} {count['equivalent']:11} {count['survived']:9}  {rate}")
     return 0
 
 

@@ -1,0 +1,129 @@
+"""Which fast test runs which line of the product: recorded by pytest-cov, with how long each test takes.
+
+This module is a plugin of pytest, too: it keeps the seconds of tests that pass, and ends one that takes longer than LIMIT.
+"""
+
+import functools
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+FAST = "not slow"
+PHYSICS = "tests/core", "tests/simulation", "tests/verification"
+"""Tests that errors in the core meet: uncompiled, since all kernels would be compiled anew for each."""
+UNCOMPILED_LIMIT = "4"
+"""Seconds that a test may take uncompiled: those of functions and short runs do, others are not used."""
+LIMIT, SECONDS = "MUTANTS_LIMIT", "MUTANTS_SECONDS"
+"""Variables of the environment: a test's longest time, and the file for the times of all."""
+CONFIG = """
+[run]
+source = {top}/rockbatch
+data_file = {data}
+parallel = True
+patch = subprocess
+context = ${{PYTEST_CURRENT_TEST-}}
+"""
+_CONTEXT = re.compile(r"(.+?)(?:\|(run|setup|teardown)| \((call|setup|teardown)\))", re.DOTALL)
+"""A test and its phase, as pytest-cov names it, and as other processes that the test started find it in the environment."""
+
+
+@functools.cache
+def _seconds() -> Counter[str]:
+    return Counter()
+
+
+def pytest_runtest_logreport(report: pytest.TestReport) -> None:
+    """Add up how long a test takes; one that fails is never used."""
+    _seconds()[report.nodeid] += report.duration if report.passed else float("inf")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Iterator[None]:
+    """End a test that takes too long."""
+
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, float(os.environ.get(LIMIT, 0)))
+    try:
+        return (yield)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Write the times of all tests, in the process that has them all."""
+    if not hasattr(session.config, "workerinput"):
+        Path(os.environ[SECONDS]).write_text(json.dumps(_seconds()), encoding="utf-8")
+
+
+class Record:
+    """Fast tests by the lines that they run."""
+
+    def __init__(self, top: Path, folder: Path, uncompiled: bool = False):
+        """Open what was recorded of the project at ``top`` in ``folder``, or record it."""
+        from coverage import CoverageData
+
+        self.top, data, seconds = top, folder / "lines", folder / "seconds.json"
+        if not seconds.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            config = folder / "coverage.ini"
+            config.write_text(CONFIG.format(top=top, data=data), encoding="utf-8")
+            tests = PHYSICS if uncompiled else ("tests",)
+            environment = {"PYTHONPATH": str(Path(__file__).parent), SECONDS: str(seconds)}
+            environment |= {"NUMBA_DISABLE_JIT": "1", LIMIT: UNCOMPILED_LIMIT} if uncompiled else {}
+            options = "-q", "--tb=no", "-m", FAST, "-n", "auto", "--dist", "loadfile", "-p", "recording"
+            record = "--cov", f"--cov-config={config}", "--cov-context=test", "--cov-report="
+            command = [sys.executable, "-m", "pytest", *options, *record, *tests]
+            subprocess.run(command, cwd=top, env=os.environ | environment)
+        self.seconds: dict[str, float] = json.loads(seconds.read_text(encoding="utf-8"))
+        self._data = CoverageData(str(data))
+        self._data.read()
+
+    @functools.cache  # noqa: B019  one record for a process
+    def _lines(self, file: str) -> dict[int, set[str]]:
+        """Return tests by the lines of a file that they run; for a fixture that tests may share, these are all of its file."""
+        found: dict[int, set[str]] = defaultdict(set)
+        for number, contexts in self._data.contexts_by_lineno(str(self.top / file)).items():
+            for match in filter(None, map(_CONTEXT.fullmatch, contexts)):
+                test, phase = match[1], match[2] or match[3]
+                found[number] |= self._in_file[test.split("::")[0]] if phase == "setup" else {test}
+        return found
+
+    @functools.cached_property
+    def _in_file(self) -> dict[str, set[str]]:
+        found: dict[str, set[str]] = defaultdict(set)
+        for test in self.seconds:
+            found[test.split("::")[0]].add(test)
+        return found
+
+    def tests_of(self, file: str, lines: range) -> list[str]:
+        """Return the tests that run one of these lines of a file, in turn one of each test file, and its quickest first."""
+        return self._in_turn(set().union(*(self._lines(file).get(line, ()) for line in lines)))
+
+    def nearest(self, file: str, count: int) -> list[str]:
+        """Return the tests that run most of a file: for what runs when it is imported."""
+        runs = Counter(test for tests in self._lines(file).values() for test in tests)
+        return self._in_turn({test for test, _ in runs.most_common(count)})
+
+    def _in_turn(self, tests: set[str]) -> list[str]:
+        passing = sorted(
+            (seconds, test) for test in tests if (seconds := self.seconds.get(test, float("inf"))) < float("inf")
+        )
+        turns: Counter[str] = Counter()
+        ranked = []
+        for seconds, test in passing:
+            file = test.split("::")[0]
+            ranked.append((turns[file], seconds, test))
+            turns[file] += 1
+        return [test for _, _, test in sorted(ranked)]
