@@ -140,6 +140,8 @@ def _basic(text: str) -> str:
 
 
 def _written(value: Any) -> str:
+    if isinstance(value, str) and "\n" in value:
+        return '"""\n' + "\n".join(_basic(line)[1:-1] for line in value.split("\n")) + '"""'
     if isinstance(value, str):
         return _basic(value)
     if isinstance(value, dict):

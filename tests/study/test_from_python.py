@@ -49,6 +49,7 @@ def test_tables_text_and_file_make_the_same_study(tmp_path, pier4):
     assert facts(pier4) == facts(of_file)
     assert pier4.notes == TABLES["notes"]
     assert "\n[pier]\nwidth_m = 4.0\n" in pier4.text
+    assert pier4.text.splitlines()[1:5] == ['notes = """', 'Soil class \\"C\\".', "", 'A backslash \\\\n stays one."""']
     assert [case.name for case in pier4.cases] == ["rock", "pads", "pads"]
     assert pier4.motions.scale == (1.0, 1.5)
 
