@@ -383,6 +383,11 @@ def test_a_unit_that_is_not_understood_costs_its_channel_with_the_reason(text, n
             "x.V1A",
             r"line 10 says 44 points, line 20 \[43, 0, 0\]",
         ),
+        (
+            geonet_text().replace("43       0       0       0", "43      -1       0       0", 1),
+            "x.V1A",
+            r"\[43, -1, 0\]",
+        ),
         (geonet_text().replace(f"{A[20]:8.1f}", "    1_00", 1), "x.V1A", 'line 29: found "1_00"; expected a number'),
         (geonet_text() + "1.0\n", "x.V1A", r'line 94: found "1.0"; expected ".*after the last declared value"'),
         (dyna_text(NDATA="44", DURATION_S=None), "x.ASC", "says 44 values, 44 lines from line 19 on, but there are 43"),

@@ -11,6 +11,7 @@ from motion_files import at2_text, wiggle
 from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
+from rockbatch.motions.formats.time_steps import on_even_steps
 
 T = np.arange(60) * 0.005
 NS, EW, UD = (wiggle(60, seed, 100.0) for seed in (1, 2, 3))
@@ -227,6 +228,17 @@ def test_lost_samples_are_filled_linearly_and_it_is_said(tmp_path, lost):
 def test_gaps_and_times_that_stand_still_or_go_back_are_refused_with_the_sample(tmp_path, t, message):
     write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.9e}")
     assert message in reason(tmp_path)
+
+
+def test_steps_up_to_twenty_times_apart_come_on_one_grid_and_more_are_a_gap():
+    for usual, other in ((20.0, 1.0), (1.0, 20.0)):
+        t = np.cumsum([0.0, *[usual] * 30, other, *[usual] * 5])
+        dt, values, _ = on_even_steps(t, t[:, None])
+        assert dt == 1.0
+        np.testing.assert_allclose(values[:, 0], np.arange(t[-1] + 1))
+    for usual, other in ((21.0, 1.0), (1.0, 21.0)):
+        with pytest.raises(InputError, match=f"by {usual:g} as a rule, by {other:g} after sample 31 "):
+            on_even_steps(np.cumsum([0.0, *[usual] * 30, other, *[usual] * 5]), t[:, None])
 
 
 def test_uneven_times_without_a_common_step_go_to_the_shortest_and_the_lost_peak_is_said(tmp_path):

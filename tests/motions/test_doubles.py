@@ -2,19 +2,16 @@
 
 import gzip
 import zipfile
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from agency_files import geonet_text, renadic_channel
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
 from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
-from national_files import afad_text, bhrc_text, csmnc_text, unam_text, usc_text
+from national_files import csmnc_text
 
 from rockbatch.motions import read_motions
 from rockbatch.motions.component import Sensor
-from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.manifest_draft import draft
 
 
@@ -207,30 +204,6 @@ def test_of_a_csmnc_record_the_corrected_file_is_used_and_another_point_is_anoth
     assert [(motion.source, motion.processed) for motion in found.motions] == [("corrected.dat", True)]
     assert "less corrected" in left_out(found)["raw.dat"]
     assert "is in a structure" in found.unusable[0].reason
-
-
-@pytest.mark.parametrize(
-    ("text", "other"),
-    [
-        (afad_text(), {"20/07/2017": "21/07/2017"}),
-        (bhrc_text(), {"5522/01": "5522/02"}),
-        (unam_text(), {"2017/09/19": "2017/09/20"}),
-        (usc_text(), {"JAN 17, 1994": "FEB 17, 1994"}),
-    ],
-    ids=["AFAD", "BHRC", "UNAM", "USC"],
-)
-def test_national_files_tell_their_sensor_and_event_and_that_they_are_as_recorded(tmp_path, text, other):
-    """Read again at another gain it is the same recording; of another day it is another one."""
-    components = read_record(RecordFile(tmp_path / "x", "x", text.encode("latin-1")))
-    assert all(component.processed is False for component in components)
-    again = [replace(component, acceleration=1.3 * component.acceleration, source="y") for component in components]
-    kept, _ = without_doubles([replace(component, source="x") for component in components] + again)
-    assert len(kept) == len(components)
-    for found, changed in other.items():
-        text = text.replace(found, changed)
-    later = read_record(RecordFile(tmp_path / "y", "y", text.encode("latin-1")))
-    later = [replace(component, acceleration=1.3 * component.acceleration) for component in later]
-    assert len(without_doubles([*components, *later])[0]) == 2 * len(components)
 
 
 def test_smc_files_that_do_not_know_their_time_are_not_taken_for_one_recording(tmp_path):

@@ -1,6 +1,7 @@
 """What is odd about a record: it is told, and where it is gross, nothing is run until somebody confirms it."""
 
 import csv
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -15,13 +16,16 @@ from rockbatch.motions import fema_p695, measures, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.manifest_draft import draft
+from rockbatch.motions.motion import Finding, Motion
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
-from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating
+from rockbatch.motions.plausible import ALTERNATION, UNEQUAL, alternating, unlikely_samples
 from rockbatch.motions.stations import by_station
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
+
+G = 9.81
 
 
 def title(component: str, station: str = "STA") -> str:
@@ -134,6 +138,16 @@ def test_the_drafted_manifest_has_the_line_that_confirms_it(tmp_path, kind):
     (line,) = [line for line in text.splitlines() if line.startswith("# confirm = true   # ")]
     (tmp_path / "motions.toml").write_text(text.replace(line, line.removeprefix("# ")))
     assert len(read_motions(tmp_path).motions) == 1
+
+
+def test_motions_of_no_file_are_asked_about_their_unit_unless_somebody_has_looked_at_it():
+    high = Motion("m", 0.01, np.array([0.0, 5.0 * G, -5.1 * G]))
+    (asked,) = unlikely_samples(high, G)
+    assert asked.startswith('motion "m": PGA 5.1 g')
+    judged = replace(high, findings=(Finding("PGA", "PGA 5.1 g", gross=True),))
+    for known in (judged, replace(high, source="pulse"), replace(high, confirm=("pga",)), high.times(1.0 / 1.02)):
+        assert unlikely_samples(known, G) == []
+    assert len(unlikely_samples(replace(high, findings=(Finding("PGD", "47 m"),), confirm=()), G)) == 1
 
 
 # How they are found

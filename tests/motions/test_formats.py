@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from agency_files import knet_text
+from agency_files import knet_text, moment
 from motion_files import wiggle
 from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write_mseed
 
@@ -249,7 +249,8 @@ def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):
     (motion,) = read_motions(tmp_path).motions
     expected = (counts - counts.mean()) * 7845 / 8223790 / 100
     np.testing.assert_allclose(motion.horizontal, expected, atol=1e-12)
-    assert motion.name == "TST0031801241951"
+    assert (motion.name, motion.dt) == ("TST0031801241951", 0.01)
+    assert motion.start == moment(2018, 1, 24, 10, 51, 23)  # 19:51:38 in Japan, less the recorder's delay
     assert motion.vertical_source == "TST0031801241951.UD"
     assert any(note.startswith("offset 0.03") for note in motion.notes)
 

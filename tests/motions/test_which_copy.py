@@ -167,14 +167,18 @@ def test_records_that_only_look_alike_stay_two(tmp_path):
     assert len(read_motions(tmp_path).motions) == 2
 
 
-@pytest.mark.parametrize("seconds", [4, 40])
-def test_waves_of_a_few_long_periods_are_no_copies_of_each_other(seconds):
-    """Random walks have four independent values, whatever their length: of 120, several correlate by 0.95 and more."""
-    walks = np.cumsum(np.random.default_rng(5).standard_normal((120, 400)), axis=1)
-    walks -= walks.mean(axis=1, keepdims=True)
-    north = Orientation("NS", azimuth=0.0)
-    components = [Component(f"r{i}", seconds / 400, walk, north, source=f"r{i}") for i, walk in enumerate(walks)]
-    assert len(doubles.without_doubles(components)[0]) == 120
+@pytest.mark.parametrize(
+    ("cycles", "stretched", "one"),
+    [((2,), 1.02, False), ((2, 5, 8), 1.03, False), ((2, 5, 8, 11), 1.04, False), ((2, 5, 8), 1.02, True),
+     ((2, 5, 8, 11), 1.03, True)],
+)  # fmt: skip
+def test_a_few_waves_are_no_copies_of_each_other_however_they_correlate(cycles, stretched, one):
+    """Two to seven independent values each: what they correlate by is 4 standard deviations above chance in the last two only."""
+    t, north = np.linspace(0.0, 1.0, 400), Orientation("NS", azimuth=0.0)
+    waves = (np.hanning(400) * sum(np.sin(2 * np.pi * c * k * t) for c in cycles) for k in (1.0, stretched))
+    first, second = (Component("r", 0.01, wave, north) for wave in waves)
+    assert likeness.correlation(first.acceleration, second.acceleration) > 0.95
+    assert likeness._correlate(first, second) is one
 
 
 def test_a_copy_of_a_record_of_one_period_is_found_without_a_header(tmp_path):
@@ -357,6 +361,8 @@ def test_the_likeness_of_two_sets_is_the_greatest_of_all_shifts_rotations_and_re
     assert shift == 50
     assert found.correlation == pytest.approx(best, rel=2e-5)
     np.testing.assert_allclose(found.each, np.abs(each))
+    slow = np.sin(np.linspace(0.0, 30.0, 1000))[None]
+    assert likeness._coherence(slow, slow, 0.01) == 0.0  # of too few bands
 
 
 def test_a_decimated_and_turned_copy_is_left_out_whole(tmp_path):

@@ -93,7 +93,7 @@ def keys_of(lines: Sequence[str], *needed: str, once: bool = False) -> dict[str,
             raise InputError(
                 f'line {index + 1}: "{key.strip()[:40]}" a second time; expected the values of one component'
             )
-        if colon and key.strip():
+        if colon:
             header.setdefault(key.strip(), value.strip())
     require(header, *needed)
     return header
