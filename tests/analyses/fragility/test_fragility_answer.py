@@ -9,14 +9,8 @@ from rockbatch.analyses.fragility.answer import of_curves, of_rates
 
 LEVELS = (0.2, 0.5, 1.0, 2.0)
 INFO = {
-    "method": "stripes",
-    "measure": "PGV",
-    "unit": "m/s",
-    "levels": LEVELS,
-    "confidence": 0.95,
-    "records": 10,
-    "stations": 10,
-}
+    "method": "stripes", "measure": "PGV", "unit": "m/s", "levels": LEVELS, "confidence": 0.95, "records": 10, "stations": 10,
+}  # fmt: skip
 
 
 def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9), interval=None, **more):

@@ -24,13 +24,9 @@ COARSE = {"method": "ida", "hunt_step": 0.1, "window": 0.01}
 
 def study(tmp_path, fragility, motions=None):
     text = study_text(
-        pier={"alpha": 0.2, "p": 2.0},
-        motions=motions or {},
-        pulses=seven_pulses(PGA),
-        cases=({"name": "rigid", "base": "rigid"},),
-        numerics={"tolerance": 1e-3},
-        fragility={"measure": "PGA"} | fragility,
-    )
+        pier={"alpha": 0.2, "p": 2.0}, motions=motions or {}, pulses=seven_pulses(PGA),
+        cases=({"name": "rigid", "base": "rigid"},), numerics={"tolerance": 1e-3}, fragility={"measure": "PGA"} | fragility,
+    )  # fmt: skip
     return write_study(tmp_path, text)
 
 

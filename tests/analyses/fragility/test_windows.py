@@ -177,13 +177,3 @@ def test_windows_are_run_on_springs_only_where_the_study_asks_for_them(tmp_path)
     of_pads = plain.fragility["case"] == "pads"
     assert plain.fragility.loc[of_pads, "window_share"].isna().all()
     assert plain.fragility.loc[~of_pads, "window_n"].eq(2).all()
-
-
-@pytest.mark.parametrize("method", ["stripes", "cloud"])
-def test_other_methods_have_no_windows(tmp_path, method):
-    settings = {"method": method} | ({"levels_g": None} if method == "cloud" else {})
-    path = study(tmp_path, method, settings)
-    result = rb.fragility(path)
-    assert result.curves[0].windows is None
-    assert not any(name.startswith("window") for name in result.fragility.columns)
-    assert "windows" not in result.info["curves"][0]

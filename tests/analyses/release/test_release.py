@@ -114,12 +114,8 @@ def covered(tests: list[Fit]) -> float:
 
 
 KINDS = [
-    (0.0, (0.003, 1e-3)),
-    (0.02, (1e-4, 1e-4)),
-    (0.01, (0.002, 5e-4)),
-    (0.005, (0.002, math.nan)),
-    (0.02, (math.nan, 5e-4)),
-]
+    (0.0, (0.003, 1e-3)), (0.02, (1e-4, 1e-4)), (0.01, (0.002, 5e-4)), (0.005, (0.002, math.nan)), (0.02, (math.nan, 5e-4)),
+]  # fmt: skip
 """Scatter of the restitution, errors of reading of times [s] and amplitudes [rad]; NaN where nothing is measured."""
 
 
