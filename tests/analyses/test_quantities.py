@@ -26,8 +26,10 @@ SENSITIVITY = study_text(
 )
 FRAGILITY = study_text(
     pier={"alpha": 0.2, "p": 2.0}, pulses=PULSES, cases=(RIGID,), numerics={"tolerance": 1e-3},
-    fragility={"method": "ida", "measure": "PGA", "levels_g": [0.2, 0.25, 0.266], "dispersion": [{"name": "modelling",
-     "value": 0.3}], "hazard": {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], "years": [50]}},
+    fragility={
+        "method": "ida", "measure": "PGA", "levels_g": [0.2, 0.25, 0.266], "dispersion": [{"name": "modelling", "value": 0.3}],
+        "hazard": {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], "years": [50]},
+    },
 )  # fmt: skip
 ACCURACY = study_text(pulses=PULSES[:2], cases=(RIGID,))
 

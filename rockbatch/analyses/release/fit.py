@@ -85,19 +85,17 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
         linear = _linear(measured, model, value, bounds)._replace(shared=shared)
         posterior, centre = _posterior(linear), value
         value = min(max(centre + posterior.quantile(0.5), bounds[0]), bounds[1])
-        if abs(value - centre) <= 1e-9 * (bounds[1] - bounds[0]):
+        if abs(value - centre) <= 1e-9:
             break
     low, high = (centre + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
     t_rms, amplitude_rms = (
         math.sqrt(float(np.nanmean((data - modelled) ** 2))) if not np.isnan(data).all() else math.nan
         for data, modelled in zip(measured, model(value), strict=True)
     )
-    near = 1e-6 * (bounds[1] - bounds[0])
-    at_end = min(value - bounds[0], bounds[1] - value) <= near
     low, high = (min(max(end, bounds[0]), bounds[1]) for end in (low, high))
     scatter = float(posterior.weights @ posterior.spread)
     stretch = _stretch(linear, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
-    return Fit(value, low, high, scatter, t_rms, amplitude_rms, at_end, *stretch)
+    return Fit(value, low, high, scatter, t_rms, amplitude_rms, value in bounds, *stretch)
 
 
 def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:

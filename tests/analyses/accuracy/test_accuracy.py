@@ -27,8 +27,10 @@ from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
     title="two pulses, three bases", pier={"alpha": 0.15, "p": 1.0}, motions={"scale": [0.9, 1.0]},
-    pulses=(SINE | {"name": "ricker", "shape": "ricker", "amplitude_g": 0.6, "period_s": 1.0, "dt_s": 0.02},
-     SINE | {"name": "sine", "amplitude_g": 0.5, "period_s": 0.8, "dt_s": 0.02}),
+    pulses=(
+        SINE | {"name": "ricker", "shape": "ricker", "amplitude_g": 0.6, "period_s": 1.0, "dt_s": 0.02},
+        SINE | {"name": "sine", "amplitude_g": 0.5, "period_s": 0.8, "dt_s": 0.02},
+    ),
     cases=(RIGID, PADS | {"beta": [20, 40], "epsilon": 0.1}), numerics={"tolerance": 1e-5}, output={"histories": "all"},
 )  # fmt: skip
 

@@ -15,7 +15,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
-from rockbatch.analyses.fragility.curves import Curve, Undecided, assess
+from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided, assess
 from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
@@ -36,12 +36,11 @@ from rockbatch.common.errors import EditedTable, InputError
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
-from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.reporting import finished_analysis
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.results.columns import columns
-from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import Case, load_study
 from rockbatch.study.spec import Output
 from rockbatch.study.suite import ground_motions
@@ -58,11 +57,16 @@ def written(tmp_path, fragility):
     shapes = [("sine", 0.6), ("sine", 1.0), ("cosine", 0.7), ("ricker", 0.9), ("ricker", 1.4)]
     text = study_text(
         title="Fragility of a small pier", pier={"alpha": 0.2, "p": 2.0}, motions={"polarity": ["+", "-"]},
-        pulses=[SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t,
-         "duration_s": 4.5} for shape, t in shapes],
+        pulses=[
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 4.5}
+            for shape, t in shapes
+        ],
         cases=(RIGID, PADS | {"beta": 60, "eta": 3.0, "epsilon": 0.1, "flight": "guided"}), numerics={"tolerance": 1e-3},
-        check=[check("half way", "theta_max_over_alpha", "margin", at_most=0.5), check("settlement", "settlement_m", "bearings",
-         at_most=0.005), check("bearing", "eta", "of the case, about no record", at_least=2.0)],
+        check=[
+            check("half way", "theta_max_over_alpha", "margin", at_most=0.5),
+            check("settlement", "settlement_m", "bearings", at_most=0.005),
+            check("bearing", "eta", "of the case, about no record", at_least=2.0),
+        ],
     )  # fmt: skip
     return write_study(tmp_path, f"{text}\n[fragility]\n{fragility}\n")
 
@@ -79,22 +83,6 @@ def ida(tmp_path_factory):
 def read(path):
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
-
-
-class Interrupted(Threads):
-    """Breaks off in the middle of the wave ``last``."""
-
-    def __init__(self, last):
-        super().__init__(1)
-        object.__setattr__(self, "left", [last])
-
-    def outcomes(self, runs, numerics, output):
-        for group in super().outcomes(runs, numerics, output):
-            if self.left[0] == 0:
-                yield dict(list(group.items())[: len(group) // 2])
-                raise KeyboardInterrupt
-            yield group
-        self.left[0] -= 1
 
 
 def journal_of(study, spec, directory):
@@ -213,30 +201,6 @@ def test_the_amplitude_of_overturning_is_that_of_the_closed_form(tmp_path, shape
 
 
 # The whole
-
-
-def test_a_search_that_is_interrupted_goes_on_to_the_same_runs_and_curves(tmp_path):
-    study = load_study(written(tmp_path, f"{IDA}\nhunt_step = 0.1"))
-    spec = read_fragility(study)
-
-    def searched(folder, engines):
-        motions, journal = journal_of(study, spec, folder)
-        for engine in engines:
-            try:
-                with journal:
-                    waves = Waves(study, journal, engine)
-                    curves = assess(study, spec, motions[:3], waves)
-                    journal.write_in_order(folder / "runs.csv")
-            except KeyboardInterrupt:
-                assert (folder / "runs.csv.part").exists()
-        return waves.finished, curves, (folder / "runs.csv").read_bytes()
-
-    straight = searched(tmp_path / "straight", [Threads(1)])
-    resumed = searched(tmp_path / "resumed", [Interrupted(0), Interrupted(2), Threads(2)])
-    assert straight[0] == resumed[0] > 3 * 4 * 2
-    assert straight[2] == resumed[2]
-    for one, other in zip(straight[1], resumed[1], strict=True):
-        assert (one.stripes, one.capacities) == (other.stripes, other.capacities)
 
 
 def test_the_command_writes_points_curves_capacities_and_all_runs(ida):
@@ -434,6 +398,13 @@ def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
     assert curve.fitted == curve.readings.withstood == "no record exceeds the limit up to 0.8: the median is beyond"
     assert curve.readings.medians == (curve.readings.exceeded.median, math.inf)
     assert curve.undecided.other == curve.undecided.number > 0
+    x, beyond = np.array([0.3, 0.5]), curve.readings.exceeded
+    for readings, expected in (
+        (curve.readings, (np.zeros(2), beyond.probability(x))),
+        (Readings("none", beyond), (beyond.probability(x), np.ones(2))),
+    ):
+        np.testing.assert_array_equal(readings.probability(x), expected)
+    assert Readings("none", beyond).medians == (0.0, beyond.median)
 
 
 def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
@@ -616,35 +587,3 @@ def test_an_edited_or_damaged_analysis_is_reported(tmp_path, stripes):
     found = finished_analysis.read(out, "fragility", study["sha256"])
     with pytest.warns(EditedTable, match=r"fragility\.csv: not as it was written"):
         assert found.table("fragility.csv", ()) is not None
-
-
-def test_lists_of_dampers_and_of_zeta_are_cases_with_curves_of_their_own(tmp_path):
-    """Their runs are those of the pier with the value, at the scale of the level."""
-    text = study_text(
-        pulses=[SINE | {"duration_s": 1.0}],
-        cases=(
-            RIGID | {"damper": [{"kind": "friction", "f": [0.02, 0.2]}]},
-            {"name": "damped", "base": "elastic", "beta": 30, "zeta": [0.02, 0.2]},
-        ),
-        fragility={"measure": "PGA", "levels_g": [0.6, 0.9]},
-        check=[check("an eighth", "theta_max_over_alpha", "margin", at_most=0.125)],
-    )
-    path = write_study(tmp_path, text)
-    found = rb.fragility(path)
-    (motion,) = ground_motions(load_study(path)).motions
-    for key, value, base in (
-        ("damper_1_f", 0.02, RigidBase(restraints=(Damper("friction", f=0.02),))),
-        ("damper_1_f", 0.2, RigidBase(restraints=(Damper("friction", f=0.2),))),
-        ("zeta", 0.2, ElasticBase(30.0, zeta=0.2)),
-    ):
-        rows = found.fragility_runs[found.fragility_runs[key] == value]
-        assert len(rows) == 2
-        for _, row in rows.iterrows():
-            scaled = replace(motion, horizontal=motion.horizontal * row["scale"])
-            outcome = run_to_tolerance(Pier(0.2, 1.0), base, scaled, 1e-4)
-            assert row["theta_max_over_alpha"] == pytest.approx(outcome.theta_max / 0.2, rel=1e-8)
-    eighth = found.fragility[found.fragility["limit_state"] == "an eighth"].set_index(["damper_1_f", "level"])[
-        "exceeded"
-    ]
-    assert eighth[0.02].to_list() == [0, 1]
-    assert eighth[0.2].to_list() == [0, 0]

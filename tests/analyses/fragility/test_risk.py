@@ -19,7 +19,7 @@ import rockbatch as rb
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
-from rockbatch.analyses.fragility.risk import Risk, described, note, probability, risk_table, risks
+from rockbatch.analyses.fragility.risk import Risk, described, note, risk_table, risks
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -90,12 +90,6 @@ def test_added_dispersion_is_a_capacity_times_an_independent_lognormal():
     expected = 1 / 475 * 2.0**-2 * math.exp(2.0 * (0.3**2 + 0.5**2))
     assert rate_of(curve.widened(0.5), hazard) == pytest.approx(expected, rel=1e-9)
     assert curve.widened(0.0) is curve
-
-
-def test_the_probability_is_that_of_one_event_or_more():
-    assert probability(1 / 475, 50) == pytest.approx(0.0999, abs=1e-4)
-    assert probability(1e-12, 50) == pytest.approx(5e-11)
-    assert probability(math.inf, 50) == 1.0
 
 
 # The interval
@@ -176,23 +170,42 @@ def test_where_the_dispersion_is_open_the_rate_is_too():
 @pytest.mark.parametrize(("most", "said"), [(math.inf, True), (0.01, False)])
 def test_an_open_upper_bound_of_a_rate_is_said(most, said):
     risk = Risk(None, exactly(0.5, 0.4), 1e-3, (1e-4, most), None, 0.0, 0.0, (1e-3, 1e-3), (0.0, 0.0), (0.2, 0.6))
-    assert ("leave the upper bound of the rate open" in note(risk, FragilitySpec("ida", "PGA", (0.2, 0.4), ()))) == said
+    spec = FragilitySpec("ida", "PGA", (0.2, 0.4), (), hazard=Hazard(TABLE))
+    assert ("leave the upper bound of the rate open" in note(risk, spec)) == said
+
+
+def curve_of(fitted, readings=None):
+    case = Case("rigid", Pier(0.2, 1.0), RigidBase(), {})
+    return Curve(case, OVERTURNING, (), fitted, Undecided(0, 0, 0, 0), readings)
+
+
+@pytest.mark.parametrize(("levels", "is_open"), [([0.25, 0.5], True), ([0.25], False)])
+def test_an_upper_bound_above_the_rate_of_the_lowest_point_says_nothing_where_there_are_two(levels, is_open):
+    """ν ∝ x⁻² either way, and a region that reaches down to a median of 0.05: ν(θ) exp(2β²)."""
+    rates = [0.25**2 / 475 / x**2 for x in levels]
+    hazard = HazardCurve(levels, rates, slope=None if len(levels) > 1 else 2.0)
+    region = np.array([[-math.log(0.5), 1.0], [-math.log(0.05), 1.0]]) / 0.3
+    spec = FragilitySpec("ida", "PGA", (0.2, 0.6), (), hazard=Hazard(hazard))
+    found, never = risks([curve_of(replace(exactly(0.5, 0.3), region=region)), curve_of(exactly(1e30, 0.3))], spec)
+    assert found.interval == pytest.approx((found.rate, math.inf if is_open else 25 / 475 * math.exp(0.18)), rel=1e-6)
+    assert (never.rate, np.isfinite(never.contributing).all()) == (0.0, True)
+    (row,) = risk_table([never.curve], [never], spec, ()).to_dict("records")
+    assert (row["p_in_50_years"], "density" in described(never, spec)) == (0.0, False)
 
 
 def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
     """400 000 steps over eight decades; 3e-4, and 0.02 where one of our steps of 5 % is cut."""
-    fitted, total = exactly(0.4, 0.3), math.hypot(0.3, 0.4)
+    fitted, total = exactly(0.4, 0.3), math.hypot(0.3, 1.2)
     levels, years = (0.2, 0.6), (50.0, 10.0)
-    spec = FragilitySpec("ida", "PGA", levels, (), hazard=Hazard(TABLE, years), dispersions=(Dispersion("a", 0.4),))
-    case = Case("rigid", Pier(0.2, 1.0), RigidBase(), {})
-    curve = Curve(case, OVERTURNING, (), fitted, Undecided(0, 0, 0, 0), Readings(exactly(0.35, 0.3), "none"))
+    spec = FragilitySpec("ida", "PGA", levels, (), hazard=Hazard(TABLE, years), dispersions=(Dispersion("a", 1.2),))
+    curve = curve_of(fitted, Readings(exactly(0.35, 0.3), "none"))
     edges = np.geomspace(1e-5, 1e3, 400_001)
     x, rare = np.sqrt(edges[1:] * edges[:-1]), TABLE.rate([0.7])[0]
     parts = norm.cdf(np.log(x / 0.4) / total) * -np.diff(TABLE.rate(edges))
     rate, above = parts.sum(), parts[x > 0.7].sum()
     of_others = (norm.cdf(np.log(x / 0.35) / total) * -np.diff(TABLE.rate(edges))).sum()
     expected = {
-        "median": 0.4, "dispersion": 0.3, "dispersion_added": 0.4, "dispersion_total": total, "rate_per_year": rate,
+        "median": 0.4, "dispersion": 0.3, "dispersion_added": 1.2, "dispersion_total": total, "rate_per_year": rate,
         "rate_low": rate, "rate_high": rate, "rate_if_withstood": 0.0, "rate_if_exceeded": of_others,
         "rate_below_points": parts[x < 0.05].sum(), "rate_above_points": above,
         "rate_least": rate - above + rare * norm.cdf(math.log(0.7 / 0.4) / total), "rate_most": rate - above + rare,
@@ -240,8 +253,11 @@ def study(tmp_path, hazard, fragility=None, name="study.toml", **more):
     shapes = [("sine", 0.4), ("sine", 0.6), ("sine", 1.0), ("cosine", 0.5), ("cosine", 0.8), ("ricker", 0.9)]
     text = study_text(
         title="Rates of a small pier", pier={"alpha": 0.2, "p": 2.0}, motions={},
-        pulses=[SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t,
-        "duration_s": 4.0} for shape, t in shapes], cases=({"name": "rigid", "base": "rigid"},), numerics={"tolerance": 1e-3},
+        pulses=[
+            SINE | {"name": f"{shape} {t} s", "shape": shape, "amplitude_g": 0.4, "period_s": t, "duration_s": 4.0}
+            for shape, t in shapes
+        ],
+        cases=({"name": "rigid", "base": "rigid"},), numerics={"tolerance": 1e-3},
         fragility=(fragility or levels) | ({} if hazard is None else {"hazard": hazard}) | more,
     )  # fmt: skip
     return write_study(tmp_path, text, name)
@@ -304,7 +320,7 @@ def test_one_point_and_a_slope_are_said_to_be_that_and_no_curve_no_table(tmp_pat
     one = {"levels_g": [0.25], "return_period_years": [475], "slope": 3.0}
     found = rb.fragility(study(tmp_path, one))
     assert "all of the rate rests on the slope through one point" in found.fragility_risk["note"].iloc[0]
-    assert "highest point" not in found.fragility_risk["note"].iloc[0]
+    assert "est point" not in found.fragility_risk["note"].iloc[0]  # neither the highest nor the lowest
     weak = study(tmp_path, one, fragility={"measure": "PGA", "levels_g": [0.01, 0.02]}, name="weak.toml")
     assert main(["fragility", str(weak), "--out", str(tmp_path / "weak")]) == 0
     assert "No annual rates: no curve could be fitted" in capsys.readouterr().out

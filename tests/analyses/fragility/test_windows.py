@@ -155,12 +155,9 @@ def test_windows_keep_to_the_limits_on_factors_and_to_the_levels_of_each_record(
 def study(tmp_path, name, settings, cases=(RIGID,)):
     pulses = [SINE | {"name": f"sine {t}", "period_s": t, "amplitude_g": 0.5, "duration_s": 3.0} for t in (0.6, 0.9)]
     text = study_text(
-        pier={"alpha": 0.2, "p": 2.0},
-        pulses=pulses,
-        cases=cases,
-        numerics={"tolerance": 1e-3},
+        pier={"alpha": 0.2, "p": 2.0}, pulses=pulses, cases=cases, numerics={"tolerance": 1e-3},
         fragility={key: value for key, value in (IDA | {"levels_g": [0.4, 0.8]} | settings).items() if value},
-    )
+    )  # fmt: skip
     folder = tmp_path / name
     folder.mkdir()
     return write_study(folder, text)

@@ -94,8 +94,8 @@ def block():
     return lambda e: Passages(t(e), amplitude(e))
 
 
-def fits(block, spread: float, reading: tuple[float, float], seeds: int) -> list[Fit]:
-    """Return the fits to tests of a block whose mean restitution is 0.9, with intervals of 95 %."""
+def fits(block, spread: float, reading: tuple[float, float], seeds: int, confidence: float = 0.95) -> list[Fit]:
+    """Return the fits to tests of a block whose mean restitution is 0.9."""
     result = []
     for seed in range(seeds):
         random = np.random.default_rng(seed)
@@ -104,7 +104,7 @@ def fits(block, spread: float, reading: tuple[float, float], seeds: int) -> list
             exact.t + reading[0] * random.standard_normal(IMPACTS),
             exact.amplitude + reading[1] * random.standard_normal(IMPACTS),
         )
-        result.append(fitted(measured, block, GRID, 0.95))
+        result.append(fitted(measured, block, GRID, confidence))
     return result
 
 
@@ -127,6 +127,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
     """
     tests = fits(block, spread, reading, 24)
     assert covered(tests) >= 0.87
+    (middle,) = fits(block, spread, reading, 1, confidence=1e-6)  # the median, of which the value is one
+    assert (middle.low, middle.high) == pytest.approx((tests[0].value, tests[0].value), abs=1e-6)
     scatter = np.std([fit.value for fit in tests])
     assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.3)
 
@@ -284,6 +286,8 @@ def test_a_value_at_the_end_of_what_can_be_is_named():
     (row,) = rb.release(study_of({"impact_s": (1.02 * passages([1.0] * 4).t).tolist()})).release.to_dict("records")
     assert (row["value"], row["high"]) == (1.0, 1.0)
     assert row["remark"].startswith("the best value is at the end")
+    near = fitted(passages([0.06] * 3), lambda e: passages([e] * 3), GRID, 0.95)
+    assert (near.value, near.at_end) == (pytest.approx(0.06, abs=1e-6), False)  # between the first two of the grid
 
 
 WRONG = [

@@ -31,11 +31,15 @@ from rockbatch.study.inputs import varied
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
-    pulses=(SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 1.0}, SINE | {"name": "long",
-     "amplitude_g": 0.35, "period_s": 1.0, "duration_s": 1.0}),
+    pulses=(
+        SINE | {"name": "short", "amplitude_g": 0.5, "period_s": 0.6, "duration_s": 1.0},
+        SINE | {"name": "long", "amplitude_g": 0.35, "period_s": 1.0, "duration_s": 1.0},
+    ),
     cases=(RIGID | {"restitution": 0.9}, PADS | {"beta": 30, "eta": 3, "epsilon": 0.1}),
-    sensitivity={"statistic": "max", "samples": 8, "uniform": {"alpha": [0.18, 0.22], "mu": [2.0, 4.0], "eta": [2.5, 3.5]},
-     "log_uniform": {"p": [0.8, 1.2]}, "choice": {"vertical": [True, False], "polarity": ["+", "-"]}},
+    sensitivity={
+        "statistic": "max", "samples": 8, "uniform": {"alpha": [0.18, 0.22], "mu": [2.0, 4.0], "eta": [2.5, 3.5]},
+        "log_uniform": {"p": [0.8, 1.2]}, "choice": {"vertical": [True, False], "polarity": ["+", "-"]},
+    },
 )  # fmt: skip
 
 
@@ -189,13 +193,12 @@ def varying(uniform, *, cases=(TIED,), pier=PIER, **more):
 
 def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_their_own(tmp_path):
     uniform = {
-        "zeta": [0.02, 0.1],
-        "damper": {"f": [0.01, 0.1]},
-        "damper_2": {"nu": [0.1, 0.5]},
-        "tendon": {"psi": [0.1, 0.4]},
-    }
+        "zeta": [0.02, 0.1], "damper": {"f": [0.01, 0.1]}, "damper_2": {"nu": [0.1, 0.5]}, "tendon": {"psi": [0.1, 0.4]},
+    }  # fmt: skip
     path = written(tmp_path, varying(uniform, cases=(TIED, DAMPED)))
-    found = rb.sensitivity(path).sensitivity.set_index(["case", "parameter"])
+    result = rb.sensitivity(path)
+    found = result.sensitivity.set_index(["case", "parameter"])
+    assert result.sobol.index.to_list() == [0, 1, 2, 3]
     assert set(found.index) == {
         ("tied", "damper.f"), ("tied", "damper_2.nu"), ("tied", "tendon.psi"), ("damped", "zeta"),
     }  # fmt: skip
@@ -219,14 +222,13 @@ def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_the
 
 HEAVY = {"width_m": 2.0, "height_m": 10.0, "mass_t": 100.0}
 IN_KN = {
-    "name": "tied",
-    "base": "rigid",
+    "name": "tied", "base": "rigid",
     "damper": [
         {"kind": "hysteretic", "force_kN": 50.0, "yield_mm": 5.0},
         {"kind": "viscous", "coefficient_kN_s_m": 40.0, "exponent": 0.5},
     ],
     "tendon": [{"prestress_kN": 100.0, "stiffness_kN_m": 4000.0, "yield_kN": 500.0}, {"lambda": 0.5, "at": "left"}],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "place", "value"), [

@@ -210,10 +210,12 @@ def test_impacts_tell_the_ways_to_overturn_on_a_rigid_base_only():
 
 STUDY = study_text(
     pier={"alpha": [0.1, 0.2], "p": 2.0}, pulses=(SINE | {"name": "not used"},), cases=(RIGID,),
-    spectrum={"map": [{"name": "one", "shape": "sine", "frequency": [3.0, 5.0], "frequencies": 3, "amplitude": [1.0, 8.0],
-     "amplitudes": 8, "tolerance": 0.05, "width": 0.5}, {"name": "near-fault", "shape": "mavroeidis-papageorgiou",
-     "gamma": 1.5, "nu": 0.0, "frequency": [3.0, 5.0], "frequencies": 2, "amplitude": [1.0, 4.0], "amplitudes": 4,
-     "width": 0.5}]},
+    spectrum={"map": [
+        {"name": "one", "shape": "sine", "frequency": [3.0, 5.0], "frequencies": 3, "amplitude": [1.0, 8.0]}
+        | {"amplitudes": 8, "tolerance": 0.05, "width": 0.5},
+        {"name": "near-fault", "shape": "mavroeidis-papageorgiou", "gamma": 1.5, "nu": 0.0, "frequency": [3.0, 5.0]}
+        | {"frequencies": 2, "amplitude": [1.0, 4.0], "amplitudes": 4, "width": 0.5},
+    ]},
 )  # fmt: skip
 
 
