@@ -12,7 +12,7 @@ EXACT = 1e-7
 """Of the greatest value: least misfit of a value, so that a fit to exact ones has a logarithm."""
 
 NEAR = 1e-4
-"""Of its range: change of the parameter by which slopes are taken."""
+"""Change of the parameter by which slopes are taken."""
 
 ROUNDS = 6
 """Steps of the fit with unknown scatters; a few are enough."""
@@ -132,8 +132,7 @@ def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float,
 
     Each impact before it has the same part in the energy of a half cycle, hence in its amplitude and its duration.
     """
-    step = NEAR * (bounds[1] - bounds[0])
-    below, above = max(value - step, bounds[0]), min(value + step, bounds[1])
+    below, above = max(value - NEAR, bounds[0]), min(value + NEAR, bounds[1])
     first, centre, last = model(below), model(value), model(above)
     n = len(measured.t)
     earlier = np.tril(np.ones((n, n)))  # amplitude k has impacts 1 to k before it

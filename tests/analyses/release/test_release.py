@@ -14,7 +14,7 @@ from scipy.stats import t as student
 
 import rockbatch as rb
 from rockbatch.analyses.release.analysis import GRIDS, _Test
-from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _Posterior, fitted
+from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _linear, _Posterior, fitted
 from rockbatch.analyses.release.study import ReleaseSpec
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -406,6 +406,20 @@ def test_the_density_of_ratios_and_the_parts_of_the_posterior_are_those_of_resid
         logs.append(likelihood + 0.5 * np.linalg.slogdet(information)[1])
     assert freedom == 8
     assert np.diff(found) == pytest.approx(np.diff(logs), rel=1e-8)
+
+
+def test_each_impact_changes_what_follows_it_as_in_the_closed_form():
+    """Central differences over the restitution of one impact at a time; of what was not measured there is no row."""
+    each, step, known = np.full(FEW, 0.9), 1e-5, np.arange(2 * FEW) != FEW + 1
+    measured = passages(each + 0.01)
+    measured.amplitude[1] = math.nan
+    linear = _linear(measured, lambda e: passages([e] * FEW), 0.9, (0.05, 1.0))
+    ends = [[np.concatenate(passages(each + way * step * unit)) for way in (-1, 1)] for unit in np.eye(FEW)]
+    columns = np.column_stack([(after - before)[known] / (2.0 * step) for before, after in ends])
+    np.testing.assert_allclose(linear.by_impact, columns, rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(linear.slopes[:, 0], columns.sum(axis=1), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(linear.misses, (np.concatenate(measured) - np.concatenate(passages(each)))[known])
+    assert linear.kinds.tolist() == [0] * FEW + [1] * (FEW - 1)
 
 
 def test_a_quantile_is_that_of_the_mixture():
