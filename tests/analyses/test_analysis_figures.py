@@ -87,12 +87,8 @@ def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):
         "looked": [[0.2, 0.8]],
     }
     cases = [
-        entry("rock"),
-        entry("pads", **whole),
-        entry("soil", **unsure),
-        entry("sand"),
-        entry("sand", columns={"beta": 30.0}),
-    ]
+        entry("rock"), entry("pads", **whole), entry("soil", **unsure), entry("sand"), entry("sand", columns={"beta": 30.0}),
+    ]  # fmt: skip
     info = {"measure": "PGA", "unit": "g", "levels": [0.2, 0.5, 0.8, 2.0], "curves": [*cases, entry("pads", "uplift")]}
     first, second, third = curves(info).panels
     assert [panel.caption for panel in (first, second, third)] == ["overturning", "overturning", "uplift"]

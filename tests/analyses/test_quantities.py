@@ -16,32 +16,21 @@ PULSES = [
     for period in (0.6, 0.9, 1.2, 1.5)
 ]
 RELEASE = study_text(
-    pier={"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": 0.1},
-    motions={"still_s": 5.0},
-    cases=(RIGID,),
-    release={
-        "impact_s": [0.324, 0.858, 1.313, 1.707, 2.048],
-        "amplitude_rad": [0.0794, 0.0632, 0.0519, 0.0415, 0.0334],
-    },
-)
+    pier={"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": 0.1}, motions={"still_s": 5.0}, cases=(RIGID,),
+    release={"impact_s": [0.324, 0.858, 1.313, 1.707, 2.048], "amplitude_rad": [0.0794, 0.0632, 0.0519, 0.0415, 0.0334]},
+)  # fmt: skip
 SENSITIVITY = study_text(
     pulses=PULSES[:1],
     cases=(RIGID,),
     sensitivity={"samples": 8, "uniform": {"p": [0.9, 1.1], "alpha": [0.18, 0.22]}},
 )
 FRAGILITY = study_text(
-    pier={"alpha": 0.2, "p": 2.0},
-    pulses=PULSES,
-    cases=(RIGID,),
-    numerics={"tolerance": 1e-3},
+    pier={"alpha": 0.2, "p": 2.0}, pulses=PULSES, cases=(RIGID,), numerics={"tolerance": 1e-3},
     fragility={
-        "method": "ida",
-        "measure": "PGA",
-        "levels_g": [0.2, 0.25, 0.266],
-        "dispersion": [{"name": "modelling", "value": 0.3}],
+        "method": "ida", "measure": "PGA", "levels_g": [0.2, 0.25, 0.266], "dispersion": [{"name": "modelling", "value": 0.3}],
         "hazard": {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], "years": [50]},
     },
-)
+)  # fmt: skip
 ACCURACY = study_text(pulses=PULSES[:2], cases=(RIGID,))
 
 

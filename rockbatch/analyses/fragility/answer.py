@@ -38,7 +38,7 @@ def of_rates(info: Info) -> Markup:
     by_limit = grouped(info["curves"], lambda curve: curve["limit_state"])
     known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
     overturning, *_ = known
-    often = max(known, key=lambda name: max(map(_rate, known[name]), default=-1.0))
+    often = max(known, key=lambda name: max(map(_rate, known[name]), default=0.0))
     subjects = {name: _capital(name) for name in (overturning, often)}
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
@@ -158,9 +158,8 @@ def _strength(curve: Curve) -> float:
     if curve["median"] is not None:
         return float(curve["median"])
     half = (
-        point["level"] for point in _decided(curve)
-        if point["exceeded"] and 2 * point["exceeded"] >= point["records"] - point["undecided"]
-    )  # fmt: skip
+        point["level"] for point in _decided(curve) if 2 * point["exceeded"] >= point["records"] - point["undecided"]
+    )
     return min(half, default=float("inf"))
 
 

@@ -67,15 +67,6 @@ class Risk:
     beyond_levels: tuple[float, float]
     contributing: tuple[float, float]
 
-    def probability(self, years: float) -> float:
-        """Return the probability of at least one exceedance in that time."""
-        return probability(self.rate, years)
-
-
-def probability(rate: float, years: float) -> float:
-    """Return 1 − exp(−λT), the probability of at least one event of a Poisson process in ``years``."""
-    return -math.expm1(-rate * years)
-
 
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
     """Return the risk of every curve that has a fit; none without a hazard."""
@@ -129,36 +120,36 @@ def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[fl
 
 def note(risk: Risk, spec: FragilitySpec) -> str:
     """Return what the number does not say by itself; empty if there is nothing."""
-    notes = []
+    assert spec.hazard is not None
+    notes, points = [], spec.hazard.curve.levels
     if math.isinf(risk.interval[1]):
         notes.append(
             "the records leave the upper bound of the rate open: more often than the weakest motions of the hazard"
         )
-    points = spec.hazard.curve.levels if spec.hazard else ()
     if len(points) == 1:
         notes.append("all of the rate rests on the slope through one point of the hazard")
-    elif risk.rate > 0 and risk.above > NOTABLE * risk.rate:
+    elif risk.above > NOTABLE * risk.rate:
         low, high = risk.bounds
         notes.append(
             f"{_share(risk.above, risk)} of the rate comes from above the hazard's highest point, where its last slope goes on: "
             f"whatever the hazard is there, the rate is between {low:.3g} and {high:.3g}"
         )
-    if len(points) > 1 and risk.rate > 0 and risk.below > NOTABLE * risk.rate:
+    if len(points) > 1 and risk.below > NOTABLE * risk.rate:
         notes.append(
             f"{_share(risk.below, risk)} comes from below its lowest point, where its first slope goes on, though hazard curves "
             "flatten there: too much, rather"
         )
     weaker, stronger = risk.beyond_levels
-    if risk.rate > 0 and weaker > NOTABLE * risk.rate:
+    if weaker > NOTABLE * risk.rate:
         notes.append(
             f"{_share(weaker, risk)} comes from below the lowest intensity that was run, {spec.levels[0]:.3g} {spec.unit}: "
             "from the tail of the fitted curve, which no run has tried"
         )
-    if risk.rate > 0 and stronger > NOTABLE * risk.rate:
+    if stronger > NOTABLE * risk.rate:
         notes.append(
             f"{_share(stronger, risk)} comes from above the highest that was run, {spec.levels[-1]:.3g} {spec.unit}"
         )
-    if risk.rate * max(spec.hazard.years if spec.hazard else (0.0,)) > 3.0:
+    if risk.rate * max(spec.hazard.years) > 3.0:
         notes.append(
             "several exceedances in the longest of the periods: the probability is all but 1 whatever the pier"
         )
@@ -183,9 +174,14 @@ def risk_table(
 
 def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
     curve, hazard = risk.curve, spec.hazard
+    assert hazard is not None
+    assert not isinstance(curve.fitted, str)
     row = curve.identity(varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
-    dispersion = math.nan if isinstance(curve.fitted, str) else curve.fitted.dispersion
-    row |= {"dispersion": dispersion, "dispersion_added": spec.added, "dispersion_total": risk.total.dispersion}
+    row |= {
+        "dispersion": curve.fitted.dispersion,
+        "dispersion_added": spec.added,
+        "dispersion_total": risk.total.dispersion,
+    }
     low, high = map(finite_or_nan, risk.interval)
     within, beyond = map(finite_or_nan, risk.undecided or (math.nan, math.nan))
     row |= {"rate_per_year": risk.rate, "rate_low": low, "rate_high": high}
@@ -194,10 +190,9 @@ def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, An
     row |= {"rate_least": risk.bounds[0], "rate_most": risk.bounds[1]}
     row |= {"rate_below_levels": risk.beyond_levels[0], "rate_above_levels": risk.beyond_levels[1]}
     row |= {"contributing_from": risk.contributing[0], "contributing_to": risk.contributing[1]}
-    for years in hazard.years if hazard else ():
-        name = f"p_in_{years:g}_years"
-        row |= {name: risk.probability(years), f"{name}_low": probability(risk.interval[0], years)}
-        row[f"{name}_high"] = probability(risk.interval[1], years)
+    for years in hazard.years:
+        for end, rate in zip(("", "_low", "_high"), (risk.rate, *risk.interval), strict=True):
+            row[f"p_in_{years:g}_years{end}"] = -math.expm1(-rate * years)
     return row | {"note": note(risk, spec)}
 
 
@@ -226,8 +221,7 @@ def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, st
 
     Ten of a decade, cut at the hazard's ends; those of less than a thousandth of the rate at either end are joined.
     """
-    if spec.hazard is None:
-        return []
+    assert spec.hazard is not None
     x, rates = spec.hazard.curve.quadrature()
     passed = np.cumsum(risk.total.probability(x) * rates)
     ends = spec.hazard.curve.ends

@@ -12,7 +12,7 @@ EXACT = 1e-7
 """Of the greatest value: least misfit of a value, so that a fit to exact ones has a logarithm."""
 
 NEAR = 1e-4
-"""Of its range: change of the parameter by which slopes are taken."""
+"""Change of the parameter by which slopes are taken."""
 
 ROUNDS = 6
 """Steps of the fit with unknown scatters; a few are enough."""
@@ -85,19 +85,17 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
         linear = _linear(measured, model, value, bounds)._replace(shared=shared)
         posterior, centre = _posterior(linear), value
         value = min(max(centre + posterior.quantile(0.5), bounds[0]), bounds[1])
-        if abs(value - centre) <= 1e-9 * (bounds[1] - bounds[0]):
+        if abs(value - centre) <= 1e-9:
             break
     low, high = (centre + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
     t_rms, amplitude_rms = (
         math.sqrt(float(np.nanmean((data - modelled) ** 2))) if not np.isnan(data).all() else math.nan
         for data, modelled in zip(measured, model(value), strict=True)
     )
-    near = 1e-6 * (bounds[1] - bounds[0])
-    at_end = min(value - bounds[0], bounds[1] - value) <= near
     low, high = (min(max(end, bounds[0]), bounds[1]) for end in (low, high))
     scatter = float(posterior.weights @ posterior.spread)
     stretch = _stretch(linear, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
-    return Fit(value, low, high, scatter, t_rms, amplitude_rms, at_end, *stretch)
+    return Fit(value, low, high, scatter, t_rms, amplitude_rms, value in bounds, *stretch)
 
 
 def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
@@ -134,8 +132,7 @@ def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float,
 
     Each impact before it has the same part in the energy of a half cycle, hence in its amplitude and its duration.
     """
-    step = NEAR * (bounds[1] - bounds[0])
-    below, above = max(value - step, bounds[0]), min(value + step, bounds[1])
+    below, above = max(value - NEAR, bounds[0]), min(value + NEAR, bounds[1])
     first, centre, last = model(below), model(value), model(above)
     n = len(measured.t)
     earlier = np.tril(np.ones((n, n)))  # amplitude k has impacts 1 to k before it

@@ -26,17 +26,13 @@ from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
-    title="two pulses, three bases",
-    pier={"alpha": 0.15, "p": 1.0},
-    motions={"scale": [0.9, 1.0]},
+    title="two pulses, three bases", pier={"alpha": 0.15, "p": 1.0}, motions={"scale": [0.9, 1.0]},
     pulses=(
         SINE | {"name": "ricker", "shape": "ricker", "amplitude_g": 0.6, "period_s": 1.0, "dt_s": 0.02},
         SINE | {"name": "sine", "amplitude_g": 0.5, "period_s": 0.8, "dt_s": 0.02},
     ),
-    cases=(RIGID, PADS | {"beta": [20, 40], "epsilon": 0.1}),
-    numerics={"tolerance": 1e-5},
-    output={"histories": "all"},
-)
+    cases=(RIGID, PADS | {"beta": [20, 40], "epsilon": 0.1}), numerics={"tolerance": 1e-5}, output={"histories": "all"},
+)  # fmt: skip
 
 
 SMALL = study_text(
@@ -255,18 +251,15 @@ OWN = {
 FIXED = OWN | {"method": "located", "substeps": "2", "tolerance": "", "error_max": "1e-3"}
 
 
-@pytest.mark.parametrize(
-    ("change", "words", "marked"),
-    [
-        ({}, "(tolerance 1e-05) the peak θmax/α is off by 3.0e-06 at most over 4 runs, and a run takes 2 ms.", []),
-        ({"tolerance": "", "substeps": "8"}, "(8 steps per sample) the peak", []),
-        ({"error_max": "2e-5"}, "off by 2.0e-05 at most", ["that is more than the tolerance"]),
-        ({"status_differs": "1"}, "", ["1 of these runs ends otherwise than the reference, and has no error"]),
-        ({"status_differs": "2"}, "", ["2 of these runs end otherwise than the reference, and have no error"]),
-        ({"reference_change": "1e-5"}, "", ["the references themselves are known to 1e-05 only"]),
-        ({"error_max": ""}, "", ["no run was measured with it that stands as its reference does"]),
-    ],
-)
+@pytest.mark.parametrize(("change", "words", "marked"), [
+    ({}, "(tolerance 1e-05) the peak θmax/α is off by 3.0e-06 at most over 4 runs, and a run takes 2 ms.", []),
+    ({"tolerance": "", "substeps": "8"}, "(8 steps per sample) the peak", []),
+    ({"error_max": "2e-5"}, "off by 2.0e-05 at most", ["that is more than the tolerance"]),
+    ({"status_differs": "1"}, "", ["1 of these runs ends otherwise than the reference, and has no error"]),
+    ({"status_differs": "2"}, "", ["2 of these runs end otherwise than the reference, and have no error"]),
+    ({"reference_change": "1e-5"}, "", ["the references themselves are known to 1e-05 only"]),
+    ({"error_max": ""}, "", ["no run was measured with it that stands as its reference does"]),
+])  # fmt: skip
 def test_the_page_opens_with_error_and_time_of_the_study_and_marks_what_they_leave_out(tmp_path, change, words, marked):
     with open(tmp_path / "accuracy.csv", "w", encoding="utf-8", newline="") as file:
         rows = csv.DictWriter(file, COLUMNS)

@@ -4,7 +4,6 @@ import math
 from types import SimpleNamespace
 
 import numpy as np
-import pandas as pd
 import pytest
 from report_page import Page
 from scipy.optimize import brentq, minimize
@@ -15,7 +14,7 @@ from studies import seven_pulses, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.cloud import Cloud, Demands, Logistic, Regression, fit, fit_event
-from rockbatch.analyses.fragility.cloud_tables import counts
+from rockbatch.analyses.fragility.cloud_tables import counts, note_on_cloud
 from rockbatch.analyses.fragility.curves import CloudPoint
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
 from rockbatch.analyses.fragility.study import read_fragility
@@ -242,15 +241,11 @@ def test_events_without_a_curve_say_why():
 
 def study(tmp_path, fragility=None, motions=None, check=0.5, **more):
     text = study_text(
-        pier={"alpha": 0.2, "p": 2.0},
-        motions=motions or {"scale": [0.6, 1.0, 1.7, 2.6]},
-        pulses=seven_pulses(0.3),
-        cases=({"name": "rigid", "base": "rigid"},),
-        numerics={"tolerance": 1e-3},
+        pier={"alpha": 0.2, "p": 2.0}, motions=motions or {"scale": [0.6, 1.0, 1.7, 2.6]}, pulses=seven_pulses(0.3),
+        cases=({"name": "rigid", "base": "rigid"},), numerics={"tolerance": 1e-3},
         check=[{"name": "rotation", "demand": "theta_max_over_alpha", "at_most": check, "reason": "margin"}],
-        fragility={"method": "cloud", "measure": "PGV"} | (fragility or {}),
-        **more,
-    )
+        fragility={"method": "cloud", "measure": "PGV"} | (fragility or {}), **more,
+    )  # fmt: skip
     return write_study(tmp_path, text)
 
 
@@ -268,15 +263,9 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
         assert row["demand"] == pytest.approx(runs[row["record"], round(scale, 6)], rel=1e-8)
     curve = next(curve for curve in found.curves if curve.limit.name == "rotation")
     expected = fit(
-        Demands(
-            of_rotation["intensity"].to_numpy(),
-            of_rotation["demand"].to_numpy(),
-            (of_rotation["counts"] == "overturned").to_numpy(),
-            np.zeros(len(of_rotation), dtype=bool),
-        ),
-        0.5,
-        0.005,
-    )
+        Demands(of_rotation["intensity"].to_numpy(), of_rotation["demand"].to_numpy(),
+        (of_rotation["counts"] == "overturned").to_numpy(), np.zeros(len(of_rotation), dtype=bool)), 0.5, 0.005,
+    )  # fmt: skip
     assert curve.fitted.median == pytest.approx(expected.median, rel=1e-8)
     overturning = next(curve for curve in found.curves if curve.limit.name == "overturning")
     assert overturning.fitted.line is None
@@ -286,39 +275,32 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     assert "each counts once at every scale, as if these were records of their own" in found.info["scales"]["said"]
 
 
-def test_with_a_hazard_a_cloud_has_rates(tmp_path, monkeypatch):
-    whole = HazardCurve.quadrature
-    monkeypatch.setattr(HazardCurve, "quadrature", lambda hazard: tuple(part[::20] for part in whole(hazard)))
-    hazard = {"levels_m_s": [0.05, 0.2, 0.6], "return_period_years": [30, 300, 3000]}
-    found = rb.fragility(study(tmp_path, {"hazard": hazard, "dispersion": [{"name": "limit", "value": 0.3}]}))
-    rates = found.fragility_risk.set_index("limit_state")
-    assert rates.loc["rotation", "rate_per_year"] > rates.loc["overturning", "rate_per_year"] > 0
-    assert (rates["rate_low"] < rates["rate_per_year"]).all()
-    for curve in found.curves:
-        rate, *_ = curve.fitted.widened(0.3).rate(*found.spec.hazard.curve.quadrature())
-        assert rates.loc[curve.limit.name, "rate_per_year"] == pytest.approx(rate, rel=1e-8)
-    assert isinstance(found.fragility_deaggregation, pd.DataFrame)
+@pytest.mark.parametrize(("beyond", "words"), [
+    (0, "only 0 records of 9 exceed the limit: the curve extrapolates"), (1, "only one record exceeds the limit"),
+    (2, "only 2 records of 9 exceed the limit"), (3, ""),
+])  # fmt: skip
+def test_what_a_curve_rests_on_is_said(tmp_path, beyond, words):
+    """Nine records, of which two are below a hundredth of the limit, 0.5; and one overturned, or none."""
+    spec = read_fragility(load_study(study(tmp_path)))
+    runs = [
+        CloudPoint(n, 0.3, 0.7 if n < beyond else 0.1, "ok", EXCEEDED if n < beyond else WITHSTOOD) for n in range(7)
+    ]
+    runs += 2 * [CloudPoint(8, 0.3, 0.004, "ok", WITHSTOOD)]
+    for curve in (exactly(), exactly(share=None)):
+        said = note_on_cloud(SimpleNamespace(limit=spec.limits[1], cloud=runs, fitted=curve), spec)
+        assert said.pop() == "2 records below 1 % of the limit count as small, without their value"
+        assert (curve.overturning is None) == (
+            "no record overturns: their share counts as 0 at every intensity" in said
+        )
+        assert said[0].startswith(words) if words else len(said) == (curve.overturning is None)
 
 
-def test_what_a_curve_rests_on_is_said(tmp_path):
-    found = rb.fragility(study(tmp_path, motions={"scale": [0.3, 0.5, 0.7]}, check=0.9))
-    notes = {curve["limit_state"]: curve["note"] for curve in found.info["curves"]}
-    assert "exceed the limit: the curve extrapolates" in notes["rotation"] or "exceeds the limit" in notes["rotation"]
-    assert "count as small, without their value" in notes["rotation"]
-
-
-@pytest.mark.parametrize(
-    ("fragility", "message"),
-    [
-        ({"levels_m_s": [0.2, 0.4]}, 'levels_m_s = [0.2, 0.4]: does not apply to method = "cloud"'),
-        ({"most_scale": 4.0}, 'most_scale = 4.0: does not apply to method = "cloud"'),
-        ({"censored_below": 1.5}, "censored_below = 1.5: expected a number above 0 and below 1"),
-        (
-            {"method": "stripes", "levels_m_s": [0.2, 0.4], "censored_below": 0.1},
-            'does not apply to method = "stripes"',
-        ),
-    ],
-)
+@pytest.mark.parametrize(("fragility", "message"), [
+    ({"levels_m_s": [0.2, 0.4]}, 'levels_m_s = [0.2, 0.4]: does not apply to method = "cloud"'),
+    ({"most_scale": 4.0}, 'most_scale = 4.0: does not apply to method = "cloud"'),
+    ({"censored_below": 1.5}, "censored_below = 1.5: expected a number above 0 and below 1"),
+    ({"method": "stripes", "levels_m_s": [0.2, 0.4], "censored_below": 0.1}, 'does not apply to method = "stripes"'),
+])  # fmt: skip
 def test_keys_of_other_methods_are_named(tmp_path, fragility, message):
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, fragility)))
@@ -334,20 +316,17 @@ def test_a_share_that_is_never_small_or_never_large_has_no_bounded_dispersion(in
     assert curve.dispersion_interval == (math.inf, math.inf)
 
 
-@pytest.mark.parametrize(
-    ("demand", "state", "status", "counted", "of_an_event"),
-    [
-        (0.2, WITHSTOOD, "ok", "line", "within"),
-        (0.0051, WITHSTOOD, "ok", "line", "within"),
-        (0.0049, WITHSTOOD, "ok", "below", "within"),
-        (0.7, EXCEEDED, "ok", "line", "exceeds"),
-        (0.51, UNDECIDED, "ok", "line", "within"),
-        (math.inf, EXCEEDED, "overturned", "overturned", "exceeds"),
-        (math.nan, UNDECIDED, "failed", "undecided", "undecided"),
-        (math.nan, UNDECIDED, "flight", "undecided", "undecided"),
-        (0.2, LEFT_OUT, "ok", "left out", "left out"),
-    ],
-)
+@pytest.mark.parametrize(("demand", "state", "status", "counted", "of_an_event"), [
+    (0.2, WITHSTOOD, "ok", "line", "within"),
+    (0.0051, WITHSTOOD, "ok", "line", "within"),
+    (0.0049, WITHSTOOD, "ok", "below", "within"),
+    (0.7, EXCEEDED, "ok", "line", "exceeds"),
+    (0.51, UNDECIDED, "ok", "line", "within"),
+    (math.inf, EXCEEDED, "overturned", "overturned", "exceeds"),
+    (math.nan, UNDECIDED, "failed", "undecided", "undecided"),
+    (math.nan, UNDECIDED, "flight", "undecided", "undecided"),
+    (0.2, LEFT_OUT, "ok", "left out", "left out"),
+])  # fmt: skip
 def test_how_a_run_counts_is_said_in_a_word(tmp_path, demand, state, status, counted, of_an_event):
     """A limit of 0.5, of which demands up to a hundredth are censored; and an event, to which no demand matters."""
     loaded = load_study(study(tmp_path))

@@ -9,14 +9,8 @@ from rockbatch.analyses.fragility.answer import of_curves, of_rates
 
 LEVELS = (0.2, 0.5, 1.0, 2.0)
 INFO = {
-    "method": "stripes",
-    "measure": "PGV",
-    "unit": "m/s",
-    "levels": LEVELS,
-    "confidence": 0.95,
-    "records": 10,
-    "stations": 10,
-}
+    "method": "stripes", "measure": "PGV", "unit": "m/s", "levels": LEVELS, "confidence": 0.95, "records": 10, "stations": 10,
+}  # fmt: skip
 
 
 def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9), interval=None, **more):
@@ -73,6 +67,8 @@ def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
     assert line == (
         "Overturning is reached by every record from PGV 0.2 m/s on for pads, the lowest of 2 cases: its median is below that."
     )
+    (same, *_), _ = said(curve("rock", median=0.6), curve("pads", exceeded=(8, 10, 9, 10), undecided=(2, 0, 1, 0)))
+    assert same.startswith(line.removesuffix("."))
     assert lost == "1 of 2 curves could not be fitted: the table says why."
     assert marked == [lost]
 
@@ -93,6 +89,16 @@ def test_undecided_runs_at_the_highest_level_are_said_beside_a_limit_that_no_dec
 def test_without_a_decided_run_nothing_is_claimed():
     (line,), _ = said(curve(exceeded=(0, 0, 0, 0), undecided=(10, 10, 10, 10)))
     assert line == "Overturning is decided by no run; 40 of 40 runs undecided."
+    nothing = curve(exceeded=(0, 0, 0, 0))
+    nothing["points"] = [point | {"records": 0} for point in nothing["points"]]
+    line, lost = said(nothing, curve(median=0.8))[0]
+    assert "not reached" not in line
+    assert lost.startswith("1 of 2 curves could not be fitted")
+
+
+def test_without_medians_the_weakest_is_where_half_of_the_decided_records_exceed_the_limit_first():
+    pads, rock = curve("pads", exceeded=(4, 4, 4, 5)), curve("rock", exceeded=(3, 1, 4, 3), undecided=(0, 0, 2, 0))
+    assert said(pads, rock)[0][0].startswith("Overturning has no median for rock")
 
 
 def test_too_many_undecided_runs_stand_in_the_sentence_with_the_median_that_they_allow():
@@ -120,10 +126,10 @@ def test_an_interval_without_a_bound_is_said_so(interval, words):
     assert f"(95 % from 10 records: {words})" in line
 
 
-@pytest.mark.parametrize("median", [0.1, 3.4])
-def test_a_median_beyond_the_levels_is_called_an_extrapolation(median):
+@pytest.mark.parametrize(("median", "beyond"), [(0.1, True), (0.2, False), (2.0, False), (3.4, True)])
+def test_a_median_beyond_the_levels_is_called_an_extrapolation(median, beyond):
     _, marked = said(curve(median=median))
-    assert marked == ["an extrapolation, as runs are at 0.2 to 2 m/s"]
+    assert marked == ["an extrapolation, as runs are at 0.2 to 2 m/s"] * beyond
 
 
 def test_a_curve_whose_shares_do_not_grow_has_no_median():
@@ -135,6 +141,7 @@ def test_a_cloud_with_few_records_beyond_the_limit_says_how_few():
     (line, narrow), _ = said(curve(median=0.8, exceeded=(0, 0, 1, 1), cloud={}), method="cloud", records=2, stations=2)
     assert line.endswith("from 40 records: 0.64 to 1.04) and a dispersion of 0.40; only 2 records beyond the limit.")
     assert narrow.startswith("Each record counts at every scale as one of its own")
+    assert len(said(curve(median=0.8, cloud={}), method="cloud", records=4, stations=4)[0]) == 1
 
 
 def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
@@ -145,6 +152,9 @@ def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
         "Between the levels nothing was run in pads: a first exceedance there is missed, and medians may be too high.",
     ]
     assert marked == lines[1:]
+    many = [curve(f"pads {n}", median=0.8, **alone) for n in range(4)]
+    assert "was run in pads 0, pads 1, pads 2: a" in said(*many[:3])[0][1]
+    assert "was run in 4 cases: a" in said(*many)[0][1]
 
 
 def rate(per_year, **more):

@@ -175,18 +175,15 @@ def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve
     assert wide.median_interval[0] < narrow.median_interval[0] < narrow.median_interval[1] < wide.median_interval[1]
 
 
-@pytest.mark.parametrize(
-    ("exceeded", "words"),
-    [
-        ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is beyond"),
-        ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),
-        ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3: the median is between"),
-        ([0, 2, 5], "some records exceed the limit at 0.2, none below and all above"),
-        ([3, 2, 1], "does not grow with the intensity"),
-        ([2, 2, 2], "does not grow with the intensity"),
-        ([5, 0, 0], "does not grow with the intensity"),
-    ],
-)
+@pytest.mark.parametrize(("exceeded", "words"), [
+    ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is beyond"),
+    ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),
+    ([0, 0, 5], "no record exceeds the limit at 0.2, every one at 0.3: the median is between"),
+    ([0, 2, 5], "some records exceed the limit at 0.2, none below and all above"),
+    ([3, 2, 1], "does not grow with the intensity"),
+    ([2, 2, 2], "does not grow with the intensity"),
+    ([5, 0, 0], "does not grow with the intensity"),
+])  # fmt: skip
 def test_data_without_a_maximum_give_the_reason(exceeded, words):
     found = fit(fresh_records(np.array([0.1, 0.2, 0.3]), np.full(3, 5), np.array(exceeded)))
     assert isinstance(found, str)

@@ -48,19 +48,16 @@ def test_runs_that_overturned_exceed_whatever_their_demand():
     assert with_fallen.median < without.median
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: fragility([0.1, 0.2], [0, 5], 4), r"exceeded\[1\]: must be from 0 to n"),
-        (lambda: fragility([0.0, 0.2], [0, 3], 4), r"levels\[0\]: must be above 0"),
-        (lambda: fragility([0.1, 0.2], [0, 0], 4), "no record exceeds the limit up to 0.2"),
-        (lambda: fragility([0.1, 0.2], [1], 4), "as long as each other"),
-        (lambda: cloud([0.1, np.nan], [1, 1], 1.0), r"im\[1\]: must be above 0"),
-        (lambda: cloud([0.1, 0.2], [1, 1], 0.0), "limit = 0: must be above 0"),
-        (lambda: cloud([0.1, 0.2], [1, 1], 1.0), "where a line needs 4"),
-        (lambda: cloud([0.1, 0.2, 0.3, 0.4], [1, 2, 3, 4], 1.0), "all demands are on one line"),
-    ],
-)
+@pytest.mark.parametrize(("call", "message"), [
+    (lambda: fragility([0.1, 0.2], [0, 5], 4), r"exceeded\[1\]: must be from 0 to n"),
+    (lambda: fragility([0.0, 0.2], [0, 3], 4), r"levels\[0\]: must be above 0"),
+    (lambda: fragility([0.1, 0.2], [0, 0], 4), "no record exceeds the limit up to 0.2"),
+    (lambda: fragility([0.1, 0.2], [1], 4), "as long as each other"),
+    (lambda: cloud([0.1, np.nan], [1, 1], 1.0), r"im\[1\]: must be above 0"),
+    (lambda: cloud([0.1, 0.2], [1, 1], 0.0), "limit = 0: must be above 0"),
+    (lambda: cloud([0.1, 0.2], [1, 1], 1.0), "where a line needs 4"),
+    (lambda: cloud([0.1, 0.2, 0.3, 0.4], [1, 2, 3, 4], 1.0), "all demands are on one line"),
+])  # fmt: skip
 def test_arrays_that_determine_no_curve_are_refused_with_the_reason(call, message):
     with pytest.raises(InputError, match=message):
         call()

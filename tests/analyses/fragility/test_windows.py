@@ -155,12 +155,9 @@ def test_windows_keep_to_the_limits_on_factors_and_to_the_levels_of_each_record(
 def study(tmp_path, name, settings, cases=(RIGID,)):
     pulses = [SINE | {"name": f"sine {t}", "period_s": t, "amplitude_g": 0.5, "duration_s": 3.0} for t in (0.6, 0.9)]
     text = study_text(
-        pier={"alpha": 0.2, "p": 2.0},
-        pulses=pulses,
-        cases=cases,
-        numerics={"tolerance": 1e-3},
+        pier={"alpha": 0.2, "p": 2.0}, pulses=pulses, cases=cases, numerics={"tolerance": 1e-3},
         fragility={key: value for key, value in (IDA | {"levels_g": [0.4, 0.8]} | settings).items() if value},
-    )
+    )  # fmt: skip
     folder = tmp_path / name
     folder.mkdir()
     return write_study(folder, text)
@@ -177,13 +174,3 @@ def test_windows_are_run_on_springs_only_where_the_study_asks_for_them(tmp_path)
     of_pads = plain.fragility["case"] == "pads"
     assert plain.fragility.loc[of_pads, "window_share"].isna().all()
     assert plain.fragility.loc[~of_pads, "window_n"].eq(2).all()
-
-
-@pytest.mark.parametrize("method", ["stripes", "cloud"])
-def test_other_methods_have_no_windows(tmp_path, method):
-    settings = {"method": method} | ({"levels_g": None} if method == "cloud" else {})
-    path = study(tmp_path, method, settings)
-    result = rb.fragility(path)
-    assert result.curves[0].windows is None
-    assert not any(name.startswith("window") for name in result.fragility.columns)
-    assert "windows" not in result.info["curves"][0]

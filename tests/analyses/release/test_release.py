@@ -14,7 +14,7 @@ from scipy.stats import t as student
 
 import rockbatch as rb
 from rockbatch.analyses.release.analysis import GRIDS, _Test
-from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _Posterior, fitted
+from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _linear, _Posterior, fitted
 from rockbatch.analyses.release.study import ReleaseSpec
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -94,8 +94,8 @@ def block():
     return lambda e: Passages(t(e), amplitude(e))
 
 
-def fits(block, spread: float, reading: tuple[float, float], seeds: int) -> list[Fit]:
-    """Return the fits to tests of a block whose mean restitution is 0.9, with intervals of 95 %."""
+def fits(block, spread: float, reading: tuple[float, float], seeds: int, confidence: float = 0.95) -> list[Fit]:
+    """Return the fits to tests of a block whose mean restitution is 0.9."""
     result = []
     for seed in range(seeds):
         random = np.random.default_rng(seed)
@@ -104,7 +104,7 @@ def fits(block, spread: float, reading: tuple[float, float], seeds: int) -> list
             exact.t + reading[0] * random.standard_normal(IMPACTS),
             exact.amplitude + reading[1] * random.standard_normal(IMPACTS),
         )
-        result.append(fitted(measured, block, GRID, 0.95))
+        result.append(fitted(measured, block, GRID, confidence))
     return result
 
 
@@ -114,12 +114,8 @@ def covered(tests: list[Fit]) -> float:
 
 
 KINDS = [
-    (0.0, (0.003, 1e-3)),
-    (0.02, (1e-4, 1e-4)),
-    (0.01, (0.002, 5e-4)),
-    (0.005, (0.002, math.nan)),
-    (0.02, (math.nan, 5e-4)),
-]
+    (0.0, (0.003, 1e-3)), (0.02, (1e-4, 1e-4)), (0.01, (0.002, 5e-4)), (0.005, (0.002, math.nan)), (0.02, (math.nan, 5e-4)),
+]  # fmt: skip
 """Scatter of the restitution, errors of reading of times [s] and amplitudes [rad]; NaN where nothing is measured."""
 
 
@@ -131,6 +127,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
     """
     tests = fits(block, spread, reading, 24)
     assert covered(tests) >= 0.87
+    (middle,) = fits(block, spread, reading, 1, confidence=1e-6)  # the median, of which the value is one
+    assert (middle.low, middle.high) == pytest.approx((tests[0].value, tests[0].value), abs=1e-6)
     scatter = np.std([fit.value for fit in tests])
     assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.3)
 
@@ -288,6 +286,8 @@ def test_a_value_at_the_end_of_what_can_be_is_named():
     (row,) = rb.release(study_of({"impact_s": (1.02 * passages([1.0] * 4).t).tolist()})).release.to_dict("records")
     assert (row["value"], row["high"]) == (1.0, 1.0)
     assert row["remark"].startswith("the best value is at the end")
+    near = fitted(passages([0.06] * 3), lambda e: passages([e] * 3), GRID, 0.95)
+    assert (near.value, near.at_end) == (pytest.approx(0.06, abs=1e-6), False)  # between the first two of the grid
 
 
 WRONG = [
@@ -406,6 +406,20 @@ def test_the_density_of_ratios_and_the_parts_of_the_posterior_are_those_of_resid
         logs.append(likelihood + 0.5 * np.linalg.slogdet(information)[1])
     assert freedom == 8
     assert np.diff(found) == pytest.approx(np.diff(logs), rel=1e-8)
+
+
+def test_each_impact_changes_what_follows_it_as_in_the_closed_form():
+    """Central differences over the restitution of one impact at a time; of what was not measured there is no row."""
+    each, step, known = np.full(FEW, 0.9), 1e-5, np.arange(2 * FEW) != FEW + 1
+    measured = passages(each + 0.01)
+    measured.amplitude[1] = math.nan
+    linear = _linear(measured, lambda e: passages([e] * FEW), 0.9, (0.05, 1.0))
+    ends = [[np.concatenate(passages(each + way * step * unit)) for way in (-1, 1)] for unit in np.eye(FEW)]
+    columns = np.column_stack([(after - before)[known] / (2.0 * step) for before, after in ends])
+    np.testing.assert_allclose(linear.by_impact, columns, rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(linear.slopes[:, 0], columns.sum(axis=1), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(linear.misses, (np.concatenate(measured) - np.concatenate(passages(each)))[known])
+    assert linear.kinds.tolist() == [0] * FEW + [1] * (FEW - 1)
 
 
 def test_a_quantile_is_that_of_the_mixture():

@@ -12,6 +12,7 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.analyses.sensitivity import sampled
 from rockbatch.analyses.sensitivity.analysis import answers, counted_as, tornado, values_of
 from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, design, indices, low_base_high
 from rockbatch.analyses.sensitivity.section import section
@@ -36,13 +37,10 @@ STUDY = study_text(
     ),
     cases=(RIGID | {"restitution": 0.9}, PADS | {"beta": 30, "eta": 3, "epsilon": 0.1}),
     sensitivity={
-        "statistic": "max",
-        "samples": 8,
-        "uniform": {"alpha": [0.18, 0.22], "mu": [2.0, 4.0], "eta": [2.5, 3.5]},
-        "log_uniform": {"p": [0.8, 1.2]},
-        "choice": {"vertical": [True, False], "polarity": ["+", "-"]},
+        "statistic": "max", "samples": 8, "uniform": {"alpha": [0.18, 0.22], "mu": [2.0, 4.0], "eta": [2.5, 3.5]},
+        "log_uniform": {"p": [0.8, 1.2]}, "choice": {"vertical": [True, False], "polarity": ["+", "-"]},
     },
-)
+)  # fmt: skip
 
 
 def written(tmp_path, text=STUDY):
@@ -65,12 +63,13 @@ def folder(tmp_path_factory):
 # Sobol's indices
 
 
-def test_the_indices_of_the_ishigami_function_are_the_known_ones():
+def test_the_indices_of_the_ishigami_function_are_the_known_ones(monkeypatch):
     """sin x + 7 sin² y + 0.1 z⁴ sin x on (−π, π)³ (Ishigami & Homma 1990).
 
     Its variances are V_x = (1 + π⁴/50)²/2, V_y = 49/8 and V_xz = 8 π⁸/22500. 2048 × 5 points: within 0.02, half the
     interval that the bootstrap gives.
     """
+    monkeypatch.setattr(sampled, "RESAMPLES", 250)
     inputs = [Input(name, "uniform", (-math.pi, math.pi)) for name in "xyz"]
     points = design(inputs, 2048, seed=1)
     found = [math.sin(p["x"]) * (1 + 0.1 * p["z"] ** 4) + 7 * math.sin(p["y"]) ** 2 for p in points]
@@ -194,13 +193,12 @@ def varying(uniform, *, cases=(TIED,), pier=PIER, **more):
 
 def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_their_own(tmp_path):
     uniform = {
-        "zeta": [0.02, 0.1],
-        "damper": {"f": [0.01, 0.1]},
-        "damper_2": {"nu": [0.1, 0.5]},
-        "tendon": {"psi": [0.1, 0.4]},
-    }
+        "zeta": [0.02, 0.1], "damper": {"f": [0.01, 0.1]}, "damper_2": {"nu": [0.1, 0.5]}, "tendon": {"psi": [0.1, 0.4]},
+    }  # fmt: skip
     path = written(tmp_path, varying(uniform, cases=(TIED, DAMPED)))
-    found = rb.sensitivity(path).sensitivity.set_index(["case", "parameter"])
+    result = rb.sensitivity(path)
+    found = result.sensitivity.set_index(["case", "parameter"])
+    assert result.sobol.index.to_list() == [0, 1, 2, 3]
     assert set(found.index) == {
         ("tied", "damper.f"), ("tied", "damper_2.nu"), ("tied", "tendon.psi"), ("damped", "zeta"),
     }  # fmt: skip
@@ -224,29 +222,25 @@ def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_the
 
 HEAVY = {"width_m": 2.0, "height_m": 10.0, "mass_t": 100.0}
 IN_KN = {
-    "name": "tied",
-    "base": "rigid",
+    "name": "tied", "base": "rigid",
     "damper": [
         {"kind": "hysteretic", "force_kN": 50.0, "yield_mm": 5.0},
         {"kind": "viscous", "coefficient_kN_s_m": 40.0, "exponent": 0.5},
     ],
     "tendon": [{"prestress_kN": 100.0, "stiffness_kN_m": 4000.0, "yield_kN": 500.0}, {"lambda": 0.5, "at": "left"}],
-}
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "place", "value"),
-    [
-        ("damper.force_kN", ("damper", 0), 60.0),
-        ("damper_1.yield_mm", ("damper", 0), 3.0),
-        ("damper.coefficient_kN_s_m", ("damper", 1), 70.0),
-        ("damper_2.exponent", ("damper", 1), 0.8),
-        ("tendon_1.prestress_kN", ("tendon", 0), 150.0),
-        ("tendon_1.stiffness_kN_m", ("tendon", 0), 3000.0),
-        ("tendon.yield_kN", ("tendon", 0), 600.0),
-        ("tendon_2.lambda", ("tendon", 1), 0.7),
-    ],
-)
+@pytest.mark.parametrize(("name", "place", "value"), [
+    ("damper.force_kN", ("damper", 0), 60.0),
+    ("damper_1.yield_mm", ("damper", 0), 3.0),
+    ("damper.coefficient_kN_s_m", ("damper", 1), 70.0),
+    ("damper_2.exponent", ("damper", 1), 0.8),
+    ("tendon_1.prestress_kN", ("tendon", 0), 150.0),
+    ("tendon_1.stiffness_kN_m", ("tendon", 0), 3000.0),
+    ("tendon.yield_kN", ("tendon", 0), 600.0),
+    ("tendon_2.lambda", ("tendon", 1), 0.7),
+])  # fmt: skip
 def test_an_input_is_what_the_case_has_with_the_value_written_there(tmp_path, name, place, value):
     """To the bit; and what the study says itself, in the key's own unit, is the base of the range."""
     study = load_study(written(tmp_path, study_text(pier=HEAVY, cases=[IN_KN])))
@@ -265,79 +259,32 @@ def test_an_input_is_what_the_case_has_with_the_value_written_there(tmp_path, na
 TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind": "friction", "f": 0.1, "at": 0.2}]}
 
 
-@pytest.mark.parametrize(
-    ("uniform", "more", "line", "words"),
-    [
-        (
-            {"damper": {"f": [0.06, 0.1]}},
-            {},
-            "f = ",
-            'does not hold the 0.05 of case "tied"; write damper.f = [0.05, 0.1]',
-        ),
-        (
-            {"damper": {"f": [0.02, 20.0]}},
-            {},
-            "f = ",
-            "[sensitivity.uniform.damper]: f = 20.0: its force over the weight must be within 0..10",
-        ),
-        ({"damper": {"f": [0.1, 0.02]}}, {}, "f = ", "expected a range; write for example f = [0.02, 0.1]"),
-        ({"damper": {"force": [1.0, 2.0]}}, {}, "force = ", "force: unknown key; did you mean force_kN?"),
-        (
-            {"damper": {"force_kN": [1.0, 2.0]}},
-            {},
-            "force_kN",
-            "damper.force_kN: it goes with a pier of known mass (mass_t)",
-        ),
-        (
-            {"damper": {"yield_mm": [1.0, 2.0]}},
-            {},
-            "yield_mm",
-            'damper.yield_mm: it goes with kind = "hysteretic"; leave it',
-        ),
-        ({"damper_3": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_3.f: no case of the study has a damper 3; leave it out"),
-        ({"damper_2": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_2.f: no damper of that number has it; leave it out"),
-        ({"tendon": {"psi": [0.1, 0.4]}}, {"cases": (RIGID,)}, "psi", "tendon.psi: no case of the study has a tendon"),
-        (
-            {"tendon": {"yield_kN": [1.0, 4.0]}},
-            {"pier": HEAVY},
-            "yield_kN",
-            "tendon.yield_kN: it goes with a tendon that yields; give its yield_kN in the case",
-        ),
-        (
-            {"damper": {"f": [0.01, 0.1]}},
-            {"cases": (TWO,)},
-            "f = ",
-            'damper.f: case "tied" has 2 of them; write damper_1.f or damper_2.f',
-        ),
-        (
-            {"damper": {"f": [0.01, 0.1]}, "damper_1": {"f": [0.01, 0.1]}},
-            {},
-            "f = ",
-            "damper.f and damper_1.f are given, which fix the same; keep one",
-        ),
-        (
-            {"tendon": {"psi": [0.1, 0.4]}},
-            {"log_uniform": {"tendon": {"psi": [0.1, 0.4]}}},
-            "psi",
-            "tendon.psi is given under uniform and log_uniform; keep one",
-        ),
-        (
-            {"alpha": [0.1, 0.3]},
-            {"choice": {"damper": {"f": [0.1, 0.2]}}},
-            "damper",
-            "belongs under [sensitivity.uniform]",
-        ),
-        ({"zeta": [0.0, 0.1]}, {}, "zeta", "zeta: no case of the study has it"),
-        ({"beta": [20.0, 60.0]}, {}, "beta", "beta: no case of the study has it"),
-        (
-            {"zeta": [0.0, 0.1]},
-            {"cases": (PADS,)},
-            "zeta",
-            "zeta: it goes with springs that have one; write zeta in the case; leave it out",
-        ),
-        ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon", "epsilon: zeta takes its place; leave it out"),
-    ],
-)
+@pytest.mark.parametrize(("uniform", "more", "line", "words"), [
+    ({"damper": {"f": [0.06, 0.1]}}, {}, "f = ", 'does not hold the 0.05 of case "tied"; write damper.f = [0.05, 0.1]'),
+    ({"damper": {"f": [0.02, 20.0]}}, {}, "f = ",
+     "[sensitivity.uniform.damper]: f = 20.0: its force over the weight must be within 0..10"),
+    ({"damper": {"f": [0.1, 0.02]}}, {}, "f = ", "expected a range; write for example f = [0.02, 0.1]"),
+    ({"damper": {"force": [1.0, 2.0]}}, {}, "force = ", "force: unknown key; did you mean force_kN?"),
+    ({"damper": {"force_kN": [1.0, 2.0]}}, {}, "force_kN", "damper.force_kN: it goes with a pier of known mass (mass_t)"),
+    ({"damper": {"yield_mm": [1.0, 2.0]}}, {}, "yield_mm", 'damper.yield_mm: it goes with kind = "hysteretic"; leave it'),
+    ({"damper_3": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_3.f: no case of the study has a damper 3; leave it out"),
+    ({"damper_2": {"f": [0.01, 0.1]}}, {}, "f = ", "damper_2.f: no damper of that number has it; leave it out"),
+    ({"tendon": {"psi": [0.1, 0.4]}}, {"cases": (RIGID,)}, "psi", "tendon.psi: no case of the study has a tendon"),
+    ({"tendon": {"yield_kN": [1.0, 4.0]}}, {"pier": HEAVY}, "yield_kN",
+     "tendon.yield_kN: it goes with a tendon that yields; give its yield_kN in the case"),
+    ({"damper": {"f": [0.01, 0.1]}}, {"cases": (TWO,)}, "f = ",
+     'damper.f: case "tied" has 2 of them; write damper_1.f or damper_2.f'),
+    ({"damper": {"f": [0.01, 0.1]}, "damper_1": {"f": [0.01, 0.1]}}, {}, "f = ",
+     "damper.f and damper_1.f are given, which fix the same; keep one"),
+    ({"tendon": {"psi": [0.1, 0.4]}}, {"log_uniform": {"tendon": {"psi": [0.1, 0.4]}}}, "psi",
+     "tendon.psi is given under uniform and log_uniform; keep one"),
+    ({"alpha": [0.1, 0.3]}, {"choice": {"damper": {"f": [0.1, 0.2]}}}, "damper", "belongs under [sensitivity.uniform]"),
+    ({"zeta": [0.0, 0.1]}, {}, "zeta", "zeta: no case of the study has it"),
+    ({"beta": [20.0, 60.0]}, {}, "beta", "beta: no case of the study has it"),
+    ({"zeta": [0.0, 0.1]}, {"cases": (PADS,)}, "zeta",
+     "zeta: it goes with springs that have one; write zeta in the case; leave it out"),
+    ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon", "epsilon: zeta takes its place; leave it out"),
+])  # fmt: skip
 def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp_path, uniform, more, line, words):
     path = written(tmp_path, varying(uniform, **more))
     with pytest.raises(InputError) as caught:
@@ -351,18 +298,15 @@ def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp
 # How runs count
 
 
-@pytest.mark.parametrize(
-    ("status", "theta", "counts"),
-    [
-        ("ok", 0.3, 0.3),
-        ("ok", 1.4, 1.0),
-        ("overturned", 9.0, 1.0),
-        ("overturned", 0.2, 1.0),
-        ("flight", 0.2, 1.0),
-        ("failed", 0.2, 0.2),
-        ("failed", math.nan, 1.0),
-    ],
-)
+@pytest.mark.parametrize(("status", "theta", "counts"), [
+    ("ok", 0.3, 0.3),
+    ("ok", 1.4, 1.0),
+    ("overturned", 9.0, 1.0),
+    ("overturned", 0.2, 1.0),
+    ("flight", 0.2, 1.0),
+    ("failed", 0.2, 0.2),
+    ("failed", math.nan, 1.0),
+])  # fmt: skip
 def test_runs_count_at_most_as_overturned(status, theta, counts):
     assert counted_as(status, theta, 1.0) == counts
 
@@ -407,27 +351,16 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
         assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), told
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        (
-            "alpha = [0.18, 0.22]",
-            "alpha = [0.21, 0.22]",
-            'does not hold the 0.2 of case "rigid"; write alpha = [0.2, 0.22]',
-        ),
-        ("eta = [2.5, 3.5]", "beta = [4, 30]", "beta = 4: the pier topples on its springs"),
-        ("eta = [2.5, 3.5]", "eta = [0.5, 3.5]", "eta = 0.5: the springs cannot carry the weight"),
-        ("alpha = [0.18, 0.22]", "alpha = [0.02, 0.22]", "beta = 30: the pier topples on its springs"),
-        ("mu = [2.0, 4.0]", "n = [0.5, 6]", "n = 0.5: the Bouc–Wen exponent must be at least 1"),
-        (
-            STUDY[STUDY.index('[[case]]\nname = "pads"') : STUDY.index("[sensitivity]")],
-            "",
-            "eta: no case of the study has it",
-        ),
-        (STUDY[STUDY.index("[sensitivity.uniform]") :], "", "nothing is varied"),
-        (STUDY[STUDY.index("[sensitivity]") :], "", "[sensitivity] is missing"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ("alpha = [0.18, 0.22]", "alpha = [0.21, 0.22]", 'does not hold the 0.2 of case "rigid"; write alpha = [0.2, 0.22]'),
+    ("eta = [2.5, 3.5]", "beta = [4, 30]", "beta = 4: the pier topples on its springs"),
+    ("eta = [2.5, 3.5]", "eta = [0.5, 3.5]", "eta = 0.5: the springs cannot carry the weight"),
+    ("alpha = [0.18, 0.22]", "alpha = [0.02, 0.22]", "beta = 30: the pier topples on its springs"),
+    ("mu = [2.0, 4.0]", "n = [0.5, 6]", "n = 0.5: the Bouc–Wen exponent must be at least 1"),
+    (STUDY[STUDY.index('[[case]]\nname = "pads"') : STUDY.index("[sensitivity]")], "", "eta: no case of the study has it"),
+    (STUDY[STUDY.index("[sensitivity.uniform]") :], "", "nothing is varied"),
+    (STUDY[STUDY.index("[sensitivity]") :], "", "[sensitivity] is missing"),
+])  # fmt: skip
 def test_inputs_that_cannot_be_varied_so_are_refused(tmp_path, old, new, words):
     assert old in STUDY
     with pytest.raises(InputError) as caught:

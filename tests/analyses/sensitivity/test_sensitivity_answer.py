@@ -55,13 +55,10 @@ def test_an_input_whose_interval_reaches_far_is_not_said_to_hardly_matter():
     assert "; n may matter, too (0.21 at most)." in line
 
 
-@pytest.mark.parametrize(
-    ("inputs", "words"),
-    [
-        ([("p", 0.5, 0.2, 0.1, 0.3), ("beta", 0.4, 0.2, 0.1, 0.3)], "more samples would tell p and β apart"),
-        ([("p", 0.5, 0.4, 0.1, 0.3), ("beta", 0.02, 0.01, 0.1, 0.3)], "more samples would narrow that interval"),
-    ],
-)
+@pytest.mark.parametrize(("inputs", "words"), [
+    ([("p", 0.5, 0.2, 0.1, 0.3), ("beta", 0.4, 0.2, 0.1, 0.3)], "more samples would tell p and β apart"),
+    ([("p", 0.5, 0.4, 0.1, 0.3), ("beta", 0.02, 0.01, 0.1, 0.3)], "more samples would narrow that interval"),
+])  # fmt: skip
 def test_indices_that_do_not_tell_the_order_are_marked_so(inputs, words):
     _, marked = said({"rock": inputs})
     assert marked == [words]

@@ -85,11 +85,8 @@ ROCK = [
 
 def test_the_least_amplitude_is_that_of_the_worst_case_with_its_frequency():
     pads = [
-        ("pads", 1.0, "safe", 1, 9),
-        ("pads", 2.0, "safe", 1, 1.5),
-        ("pads", 2.0, FELL, 1.5, 9),
-        ("pads", 3.0, "safe", 1, 9),
-    ]
+        ("pads", 1.0, "safe", 1, 9), ("pads", 2.0, "safe", 1, 1.5), ("pads", 2.0, FELL, 1.5, 9), ("pads", 3.0, "safe", 1, 9),
+    ]  # fmt: skip
     (said,), remarks = of_maps(INFO, regions(*ROCK, *pads))
     assert (
         said
