@@ -630,17 +630,6 @@ def test_the_worst_comes_first_overturned_then_ended_by_flight_then_by_rotation_
     assert rotations == sorted(rotations, reverse=True)
 
 
-def test_of_many_records_those_that_overturn_the_pier_stand_first_whatever_their_rotation(tmp_path):
-    records = [(f"R{i}", 0.1 + 0.001 * i) for i in range(20)]
-    still = {("R14", name): {"theta_max_over_alpha": 0} for name, _ in FOUNDATIONS}
-    over = still | {("R14", "1"): {"theta_max_over_alpha": 0, "status": "overturned"}}
-    places = [
-        [row.words for row in dot_rows(report(tmp_path, records=records, changes=changes))].index("R14")
-        for changes in (over, still)
-    ]
-    assert (places[0], places[1] > 13) == (0, True)
-
-
 @pytest.mark.parametrize("count", [1, 3, 20])
 def test_the_suite_s_spectra_are_drawn_with_names_while_they_are_few_and_as_a_spread_beyond(tmp_path, count):
     names = [(f"record {i}", 0.1 + 0.01 * i) for i in range(count)]
