@@ -145,6 +145,7 @@ def test_a_limit_far_above_all_peaks_does_not_crowd_them(tmp_path):
     after = of_the_answer(write_report(tmp_path, []))
     dots = [re.findall(r'<use [^>]*x="([\d.]+)%"', text) for text in (before, after)]
     assert dots[0] == dots[1] != []
+    assert 0.0 < min(map(float, dots[0])) < 80.0 < max(map(float, dots[0])) < 97.0  # of the width, the axis ends at 97
     assert "beyond the axis, at θ/α = " in Page(after).text
 
 

@@ -154,7 +154,9 @@ def test_references_are_compared_with_every_run_they_fit(tmp_path):
         reference | {"record": "*LGP*", "case": "rigid"},
         reference | {"record": "*LGP*", "case": "rigid", "columns": {"p": 0.35}},
         reference | {"record": "*TCU*", "case": "rigid"},
+        reference | {"record": "CPM*", "case": "4", "columns": {"p": 0.36}},
     ]
+    changes["CPM000", "4"] = {"status": "overturned", "theta_max_over_alpha": 2.0}
     text = report(tmp_path, cases=three_piers(), varied=("p",), changes=changes, references=references)
     _, *rows = Page(text).tables["references"]
     run = ["RSN779_LOMAP_LGP000", "rigid"]
@@ -163,6 +165,7 @@ def test_references_are_compared_with_every_run_they_fit(tmp_path):
         *([*run, p, *agreement] for p in ("0.38", "0.36", "0.35")),
         [*run, "0.35", *agreement],
         ["*TCU*", "rigid", "", "no such run", "0.1", "", "Palmeri & Makris (2007)"],
+        ["CPM000", "4", "0.36", "overturned", "0.1", "", "Palmeri & Makris (2007)"],
     ]
 
 
