@@ -163,6 +163,14 @@ def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
     assert legend.height < axes.get_window_extent().height < 0.8 * whole.height
 
 
+def test_on_paper_the_second_of_two_rigid_lines_is_paler_and_open_marks_are_hollow():
+    marks = [Rule("y", np.ones(1), look=Look("rigid", open=is_open)) for is_open in (False, True)]
+    marks += [Points(X, Y, look=Look("", 1, open=is_open)) for is_open in (False, True)]
+    (axes,) = paper.drawn(figure(*marks), 88.0).axes
+    assert [line.get_alpha() is not None for line in axes.lines] == [False, True, False, False]
+    assert [line.get_markerfacecolor() == "none" for line in axes.lines] == [False, False, False, True]
+
+
 @pytest.mark.parametrize(
     ("x", "y", "pieces"),
     [
