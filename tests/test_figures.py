@@ -158,6 +158,17 @@ def test_every_kind_of_mark_is_drawn_on_paper_with_its_legend():
     assert axes.texts[0].get_text() == axes.get_title() == r" _\$x_1\$ <b>&"
     assert axes.get_xlabel() == r"θ$_\mathrm{max}$/α"
     assert drawn.get_figwidth() == pytest.approx(88.0 / 25.4)
+    legend, whole = (each.get_window_extent() for each in (drawn.legends[0], drawn))
+    assert legend.width < 1.1 * whole.width
+    assert legend.height < axes.get_window_extent().height < 0.8 * whole.height
+
+
+def test_on_paper_the_second_of_two_rigid_lines_is_paler_and_open_marks_are_hollow():
+    marks = [Rule("y", np.ones(1), look=Look("rigid", open=is_open)) for is_open in (False, True)]
+    marks += [Points(X, Y, look=Look("", 1, open=is_open)) for is_open in (False, True)]
+    (axes,) = paper.drawn(figure(*marks), 88.0).axes
+    assert [line.get_alpha() is not None for line in axes.lines] == [False, True, False, False]
+    assert [line.get_markerfacecolor() == "none" for line in axes.lines] == [False, False, False, True]
 
 
 @pytest.mark.parametrize(
@@ -229,6 +240,10 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     stacked = Figure([panel, half, half], "two rows", stacked=True)
     assert [len(row) for row in stacked.rows] == [1, 2]
     assert svg.drawn(stacked).count("<svg") == 1
+    heights = [
+        float(parsed(svg.drawn(figure(y=Axis(label, 0.0, 1.0))))[0].get("viewBox").split()[3]) for label in ("", "y")
+    ]
+    assert 10.0 < heights[1] - heights[0] < 20.0  # room for a label above, where there is one
 
 
 def test_stretched_panels_have_words_of_one_size_at_shares_of_the_width_in_either_view():
@@ -271,6 +286,8 @@ def test_many_panels_that_share_their_axes_fit_a_page_and_are_numbered_at_its_ed
     assert len({axes.get_position().x0 for axes in numbered}) == 1
     assert [axes.get_ylabel() for axes in drawn.axes if axes.get_ylabel().strip()] == [r"θ$_\mathrm{max}$/α"]
     assert drawn.axes[0].yaxis.label.get_rotation() == 0.0
+    foot = [axes.get_position().x0 for axes in drawn.axes if axes.get_xticklabels()[0].get_text()]
+    assert len(foot) == len(set(foot)) == len({axes.get_position().x0 for axes in drawn.axes})
 
 
 def test_a_plot_is_drawn_in_axes_of_a_figure_that_exists():

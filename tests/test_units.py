@@ -5,7 +5,7 @@ import re
 import pint
 import pytest
 
-from rockbatch.common.units import acceleration_factor
+from rockbatch.common.units import Bounds, acceleration_factor
 from rockbatch.toml.meant import in_another_unit, quantity_of
 
 
@@ -74,3 +74,15 @@ def test_a_value_in_another_unit_is_told_with_what_to_write(key, own, others):
         assert found
         assert float(found[1]) == pytest.approx(meant, rel=5e-4)
     assert in_another_unit(key, 1.0, lambda value: False) == ""
+
+
+@pytest.mark.parametrize(
+    ("bounds", "value", "words"),
+    [
+        (Bounds(0.0, 1.0), -1.0, "must be within 0 and 1"), (Bounds(0.0, 1.0, above=True), 0.0, "must be a number above 0"),
+        (Bounds(0.5, 1.0), 0.0, "must be a number above 0"), (Bounds(-1.0, 1.0), -2.0, "must be within -1 and 1"),
+        (Bounds(0.5, 1.0), 2.0, "must be within 0.5 and 1"),
+    ],
+)  # fmt: skip
+def test_what_must_be_above_0_says_so_of_others_their_bounds_are_said(bounds, value, words):
+    assert bounds.message(value) == words

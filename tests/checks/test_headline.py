@@ -1,37 +1,16 @@
-"""The headline of whole studies: cases that no check chooses, and stations that could not be used, on terminal and page."""
+"""The headline of a whole study with a station that could not be used, on terminal and page."""
 
 from motion_files import wiggle, write_at2
 from report_page import Page
-from studies import RIGID, SINE, study_text, toml, write_study
+from studies import RIGID, toml, write_study
 
 from rockbatch.commands.cli import main
 
 LIMIT = {"name": "rotation", "demand": "theta_max_over_alpha", "at_most": 0.9, "reason": "half"}
-TENDON = RIGID | {"name": "with tendon", "tendon": [{"psi": 0.5, "lambda": 3.0}]}
 
 
 def page_of(folder):
     return Page((folder / "report.html").read_text(encoding="utf-8")).text
-
-
-def test_a_case_that_no_check_chooses_is_amber_and_exits_with_0(tmp_path, capsys):
-    """The wide pier overturns under the stronger of two pulses, and nobody asked."""
-    pulses = [SINE | {"name": name, "amplitude_g": a, "period_s": 1.5} for name, a in (("weak", 0.3), ("strong", 2.0))]
-    study = write_study(
-        tmp_path,
-        study_text(
-            pulses=pulses,
-            cases=[RIGID, TENDON],
-            check=[LIMIT | {"case": "with tendon", "at_most": 3.1, "confirm": ["at_most"]}],
-        ),
-    )
-    assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 0
-    headline, detail = "? 1 of 2 cases passes; 1 is not checked.", "Not checked: rigid, 1 of 2 runs overturned."
-    told = capsys.readouterr().out
-    assert headline in told
-    assert detail in told
-    assert headline in page_of(tmp_path / "out")
-    assert detail in page_of(tmp_path / "out")
 
 
 def test_a_missing_station_is_amber_until_the_study_leaves_it_out(tmp_path, capsys):

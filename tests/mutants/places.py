@@ -14,7 +14,19 @@ COMPUTED = {
     ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd,
 }  # fmt: skip
 SYMMETRIC = (
-    *("min", "max", "isinstance", "cast", "checked", "np.minimum", "np.maximum", "np.fmin", "np.fmax", "math.hypot"),
+    *(
+        "min",
+        "max",
+        "isinstance",
+        "cast",
+        "checked",
+        "np.minimum",
+        "np.maximum",
+        "np.fmin",
+        "np.fmax",
+        "math.hypot",
+        "np.hypot",
+    ),
     *("windows", "same_counts", "_apart", "_residuals_apart", "correlation", "self._fitting"),
 )
 """Functions to which the order of arguments means nothing, or that fail at once with another."""

@@ -58,13 +58,6 @@ def test_cases_that_pass_fail_and_are_not_decided_are_named(tmp_path):
     ]  # fmt: skip
 
 
-def test_all_passing_is_said_in_so_many_words_and_nothing_is_listed_as_failing(tmp_path):
-    shown = page(tmp_path, *(verdict("1", "pass", demand=demand, check=demand) for demand in GOVERNING))
-    assert "✓ Every check passes in the only case." in shown.text
-    assert "Closest to its limit: theta_max_over_alpha at 50 %." in shown.text
-    assert "What does not pass" not in shown.text
-
-
 FELL = {"status": "overturned", "theta_max_over_alpha": 9.0}
 
 

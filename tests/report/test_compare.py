@@ -128,10 +128,13 @@ def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tm
     ]  # fmt: skip
     a, b = two(tmp_path)
     info = json.loads((b / "run.json").read_text(encoding="utf-8"))
-    (b / "run.json").write_text(json.dumps(info | {"records": horizontal}), encoding="utf-8")
+    others = {"rockbatch": "0.2.0", "study": info["study"] | {"text": info["study"]["text"].replace("0.13", "0.14")}}
+    (b / "run.json").write_text(json.dumps(info | {"records": horizontal} | others), encoding="utf-8")
     page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
     assert page.tables["suite"][1][1:3] == ["A, with vertical", "B, without vertical"]
     assert "Not the same motion in both, though of one name: ERZ-NS" in page.text
+    assert "-alpha = 0.13\n+alpha = 0.14\n" in page.text
+    assert "Versions: A rockbatch 0.1.0 python 3.11.2 numpy 2.3.1 numba 0.62.0; B rockbatch 0.2.0 " in page.text
 
 
 def test_a_folder_without_results_is_refused_in_words(tmp_path, capsys):

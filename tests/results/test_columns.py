@@ -125,6 +125,18 @@ def test_a_name_ends_with_its_unit():
         assert column.kind == "number" or column.unit == "1"
 
 
+def test_the_page_shows_a_column_in_the_unit_of_its_heading():
+    """A column of errors has no unit in its heading, but that of the quantity beside it, unless it is a share of several."""
+    named = {"g": "standard_gravity", "kN m": "kN*m"}
+    of_errors = {(column.error, column.unit): column for column in COLUMNS.values()}
+    for column in COLUMNS.values():
+        if column.page is not None:
+            shown = of_errors.get((column.name, column.unit), column)
+            unit = re.search(r"\[(.+)\]", shown.page.head)
+            unit = named.get(unit[1], unit[1].replace("²", "**2").replace(" ", "*")) if unit else column.unit
+            assert pint.Quantity(1.0, column.unit).to(unit).magnitude == pytest.approx(column.page.factor), column.name
+
+
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
     of_functions = {"energies", "forces", "device_work"}  # each of theirs has a column of its own

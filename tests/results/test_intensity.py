@@ -217,35 +217,6 @@ def test_pairs_without_intensity_are_answered(tmp_path):
         rb.load_study(write_study(tmp_path, study_text(output={"intensity": True, "sa_pairs": ["srss"]})))
 
 
-def test_a_suite_has_the_mean_of_those_that_stood_and_none_without_any():
-    found = suite_statistics.suite(np.array([-0.2, 0.4, np.nan, 0.9]), ["ok", "ok", "overturned", "failed"])
-    assert (found.count, found.standing, found.mean) == (3, 2, pytest.approx(0.3))
-    assert (found.low, found.median, found.high, found.largest) == (
-        pytest.approx(0.2 + 0.32 * 0.2),
-        0.4,
-        math.inf,
-        math.inf,
-    )
-    assert (found.overturned, found.flight, found.failed) == (1, 0, 1)
-    fallen = suite_statistics.suite(np.array([np.nan, np.nan]), ["overturned", "flight"])
-    assert math.isnan(fallen.mean)
-    assert (fallen.count, fallen.standing, fallen.median, fallen.overturned, fallen.flight) == (2, 0, math.inf, 1, 1)
-    none = suite_statistics.suite(np.array([np.nan]), ["failed"])
-    assert (none.count, none.standing, none.failed) == (0, 0, 1)
-    assert math.isnan(none.mean)
-
-
-def test_records_count_once_with_their_worst_run_and_are_unknown_where_that_may_have_failed():
-    """Of a record that failed once and overturned once the worst is known; of one that failed once and stood once it is not."""
-    values = np.array([0.1, -0.3, np.nan, 0.2, np.nan, np.nan, np.nan])
-    status = ["ok", "ok", "failed", "ok", "failed", "overturned", "flight"]
-    found = suite_statistics.suite(values, status, ["a", "a", "b", "b", "c", "c", "d"])
-    assert (found.count, found.standing, found.mean) == (3, 1, pytest.approx(0.3))
-    assert (found.overturned, found.flight, found.failed) == (1, 1, 1)
-    stood, shares = suite_statistics.distribution(values, status, ["a", "a", "b", "b", "c", "c", "d"])
-    assert (stood.tolist(), shares.tolist()) == ([0.3], [pytest.approx(1 / 3)])
-
-
 def test_the_worst_records_and_the_most_frequent_reasons_come_first():
     table = pd.DataFrame({
         "record": ["a", "b", "b", "c", "d", "e"],

@@ -107,9 +107,9 @@ def test_errors_longer_than_their_marker_have_bars_also_those_of_a_line(results)
 def test_three_sides_and_more_have_colours_of_their_own(results):
     peaks = results.peaks[results.peaks["mirror_of"] == ""]
     thrice = replace(results, peaks=peaks.assign(scale=np.where(peaks["record"] == "weak", 1.0, 2.0)))
-    looks = {mark.look for panel in peaks_of(thrice)[1].values() for mark in panel.marks
-             if isinstance(mark, Points) and mark.label not in ENDED.values()}  # fmt: skip
-    assert len(looks) == 4
+    marks = [mark for panel in peaks_of(thrice)[1].values() for mark in panel.marks if mark.label not in ENDED.values()]
+    looks = {mark.look for mark in marks if isinstance(mark, Points | Rule)}
+    assert len(looks) == 2 * 4  # of the pads and of the rigid base
     assert not any(look.open for look in looks)
 
 
