@@ -172,11 +172,6 @@ def test_wrong_input_runs_nothing_and_exits_with_2(study, tmp_path, capsys):
     assert "Traceback" not in told
 
 
-def test_a_missing_study_is_reported_and_exits_with_2(tmp_path, capsys):
-    assert main(["run", str(tmp_path / "none.toml")]) == 2
-    assert "none.toml" in capsys.readouterr().err
-
-
 def test_a_misspelt_option_is_answered_with_the_one_of_its_command(study, capsys):
     for words, end in (
         (["run", str(study), "--dryrun"], "unrecognized arguments: --dryrun; did you mean --dry-run?"),

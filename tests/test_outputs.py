@@ -191,7 +191,6 @@ NAMED = {
     "report": lambda path, places: ["report", str(places["results"]), "--out", path],
     "two": lambda path, places: ["report", str(places["results"]), str(places["results"]), "--out", path],
 }
-EACH_NAMED = pytest.mark.parametrize("command", NAMED)
 
 
 @pytest.fixture
@@ -233,7 +232,7 @@ def reading(pipe):
     texts.append(b"".join(parts).decode())
 
 
-@EACH_NAMED
+@pytest.mark.parametrize("command", NAMED)
 def test_a_pipe_is_written_into(places, tmp_path, command):
     path = tmp_path / "out"
     assert main(NAMED[command](str(path), places)) == 0
@@ -245,17 +244,6 @@ def test_a_pipe_is_written_into(places, tmp_path, command):
     assert read[0].splitlines()[0] == text.splitlines()[0]
     assert len(read[0]) == len(text)
     assert stat.S_ISFIFO(path.lstat().st_mode)
-
-
-@EACH_NAMED
-def test_a_device_is_written_into(places, tmp_path, command):
-    make_device(tmp_path / "out")
-    before = state(tmp_path)
-    try:
-        assert main(NAMED[command](str(tmp_path / "out"), places)) == 0
-    except PermissionError:
-        pytest.skip("devices do not work here")
-    assert state(tmp_path) == before
 
 
 def test_a_disk_is_not(tmp_path):

@@ -28,7 +28,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.bases import OTHER_LAW, RATCHETING
+from rockbatch.pier.bases import OTHER_LAW, RATCHETING, fastest
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import LAWS, springs
 
@@ -182,6 +182,17 @@ def test_deflections_and_frequency_follow_from_each_other():
     assert static_deflection(FIG5, soft) * vertical_frequency(FIG5, soft) ** 2 == pytest.approx(FIG5.gravity, rel=1e-14)
     assert yield_deflection(FIG5, soft) == pytest.approx(2.5 * static_deflection(FIG5, soft), rel=1e-14)
     assert yield_deflection(FIG5, elastic) == static_deflection(FIG5, elastic)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.3, 0.9, 1.0])
+@pytest.mark.parametrize("alpha", [0.2, 1.2])
+def test_the_fastest_rate_is_the_largest_root_of_heave_and_rocking_in_full_contact(alpha, zeta):
+    """By NumPy's roots, per unit mass: two springs ω_v²/2 and two dashpots ζ ω_v at ±b; the weight tips by g h."""
+    pier, omega = Pier(alpha, 1.0), 20.0
+    b, h = pier.half_width, pier.height
+    heave = np.roots([1.0, 2.0 * zeta * omega, omega**2])
+    rocking = np.roots([pier.inertia + h**2, 2.0 * zeta * omega * b**2, (omega * b) ** 2 - pier.gravity * h])
+    assert fastest(pier, ElasticBase(omega, zeta=zeta)) == pytest.approx(np.abs([*heave, *rocking]).max(), rel=1e-6)
 
 
 def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_to_toppling():

@@ -185,12 +185,6 @@ def test_a_file_that_is_not_utf8_is_refused_with_its_line(tmp_path):
         TomlFile.read(path)
 
 
-def test_a_byte_order_mark_does_no_harm(tmp_path):
-    path = tmp_path / "study.toml"
-    path.write_bytes('\ufefftitle = "a"\r\n'.encode())
-    assert TomlFile.read(path).data == {"title": "a"}
-
-
 @pytest.mark.parametrize("text", ["x = " + "[" * 5000 + "]" * 5000, "x = " + "9" * 5000])
 def test_absurd_values_are_refused_without_a_crash(tmp_path, text):
     path = tmp_path / "study.toml"

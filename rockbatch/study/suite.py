@@ -64,9 +64,8 @@ def _azimuths(study: Study) -> tuple[float, ...]:
     """Return the directions that pairs are turned to: along the pier's axis, and across it if the study asks for their spectra
     or for runs on both axes."""
     spec = study.motions
-    of_pairs = spec.target is not None and (spec.target.pairs in DIRECTIONS or getattr(spec.target, "both", False))
-    of_pairs = of_pairs or study.output.sa_pairs or _both_axes(study)
-    if not of_pairs or len(spec.azimuths) != 1:
+    in_directions = spec.target is not None and spec.target.pairs in DIRECTIONS
+    if not (in_directions or study.output.sa_pairs or _both_axes(study)) or len(spec.azimuths) != 1:
         return spec.azimuths
     return spec.azimuths[0], (spec.azimuths[0] + 90.0) % 360.0
 

@@ -60,12 +60,6 @@ def test_the_message_on_a_misplaced_table_or_key_names_its_place(tmp_path, table
     assert message in problem
 
 
-def test_the_message_on_a_table_before_its_case_says_to_move_it_below(tmp_path):
-    damper = '[[case.damper]]\nkind = "friction"\nf = 0.1\n'
-    (problem,) = said(tmp_path, damper + study_text())
-    assert "[[case.damper]] in line 1 stands before it: write it below the [[case]] that it belongs to" in problem
-
-
 def test_a_device_is_called_by_its_case_and_number_and_its_kind_by_all_there_are(tmp_path):
     dampers = [{"kind": "friction", "f": 0.1, "at": "left"}, {"f": 0.1}]
     (problem,) = said(tmp_path, study_text(cases=[PADS | {"damper": dampers}]))

@@ -215,9 +215,6 @@ def test_given_motions_replace_all_sources_even_a_path_that_is_missing(tmp_path)
     assert study.motions.paths == (tmp_path,)
     assert study.motions.scale == (2.0,)
     assert (study.motions.fema_p695, study.motions.pulses) == ((), ())
-
-
-def test_given_motions_do_without_a_motions_table(tmp_path):
     assert study_of(tmp_path, PIER, RIGID, motions=tmp_path).motions.paths == (tmp_path,)
 
 
@@ -483,6 +480,7 @@ def test_without_a_readable_pier_a_base_is_still_checked_but_not_against_a_pier(
         ('vertical = "always"', '5: [motions]: vertical = "always": expected true, false or "required"'),
         ("vertical = 1", '5: [motions]: vertical = 1: did you mean true? expected true, false or "required"'),
         ("confirm = [1]", "5: [motions]: confirm = 1: expected text in quotes"),
+        ('columns = ["time", "-"]', "5: [motions]: columns = ['time', '-']: no component among them"),
         ('strict = "yes"', '5: [motions]: strict = "yes": did you mean true? expected true or false'),
     ],
 )  # fmt: skip
@@ -509,11 +507,6 @@ target = { sa_g = 0.5, period_s = 1.2, damping = 0.02 }
     assert motions.vertical == "required"
     assert motions.select == Selection(pga_g=(0.1, math.inf), magnitude=(6.0, 8.0))
     assert motions.target == Target(sa_g=0.5, period_s=1.2, damping=0.02)
-
-
-def test_columns_without_a_component_are_refused(tmp_path):
-    problem = problem_of(tmp_path, PIER, '[motions]\ncolumns = ["time", "-"]\n', PULSE, RIGID)
-    assert problem.startswith("5: [motions]: columns = ['time', '-']: no component among them")
 
 
 def test_a_reference_to_a_value_that_no_case_has_is_refused(tmp_path):
