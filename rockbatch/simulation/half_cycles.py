@@ -60,9 +60,9 @@ def half_cycles(path: Path, landed: Rows | None) -> HalfCycles:
     else:
         before, after, t = landed - 1, landed, path.t[landed]
         rates = path.omega[before], path.omega[after]
-    ends = np.concatenate([before, [len(path.t) - 1]])
+    ends = np.concatenate([before + 1, [len(path.t)]])
     starts = np.concatenate([[0], after])
-    peaks = [_peak(path, int(first), int(last)) for first, last in zip(starts, ends, strict=True)]
+    peaks = [_peak(path, int(first), int(end)) for first, end in zip(starts, ends, strict=True)]
     amplitude, times = np.array(peaks).reshape(-1, 2).T
     nothing = [math.nan]
     return HalfCycles(
@@ -105,9 +105,9 @@ def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tup
     return value, rate / h
 
 
-def _peak(path: Path, first: int, last: int) -> tuple[float, float]:
-    """Return the greatest |θ| [rad] of the rows from ``first`` to ``last``, and its time [s]; NaN if θ does not turn there."""
-    theta, omega = path.theta[first : last + 1], path.omega[first : last + 1]
+def _peak(path: Path, first: int, end: int) -> tuple[float, float]:
+    """Return the greatest |θ| [rad] of the rows from ``first`` until ``end``, and its time [s]; NaN if θ does not turn there."""
+    theta, omega = path.theta[first:end], path.omega[first:end]
     top = int(np.abs(theta).argmax())
     best, t = abs(float(theta[top])), float(path.t[first + top])
     turned = top == 0 and omega[0] == 0.0 and best > 0.0

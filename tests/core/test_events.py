@@ -22,12 +22,8 @@ from rockbatch.core.springs.equations import holding, touching
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.system import rates
 from rockbatch.core.types import (
-    IMPACT_LEFT,
-    IMPACT_RIGHT,
     LEFT,
     RIGHT,
-    SEPARATION_LEFT,
-    SEPARATION_RIGHT,
     SURVIVED,
     Ground,
     Instant,
@@ -264,14 +260,6 @@ def test_both_pivots_landing_at_one_instant_keep_the_pier_upright(kinematics, ep
     assert rows[run.rows - 1].v == pytest.approx(expected.v, abs=1e-6)
 
 
-def test_flight_ends_the_run_where_a_base_says_stop():
-    stopped = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0, flight="stop"), bounce(), 8, 0.0, wait=False)
-    guided = run_fixed(FIG5, YieldingBase(20.0, 0.3, eta=3.0), bounce(), 8, 0.0, wait=False)
-    assert (stopped.status, guided.status) == ("flight", "ok")
-    assert stopped.t_flight == guided.t_flight == stopped.t_end
-    assert guided.t_end == pytest.approx(2.0)
-
-
 def test_a_brief_separation_inside_one_large_step_is_seen():
     """A vertical push that unloads both springs for less than a step: −z crosses zero twice between the ends.
 
@@ -427,11 +415,6 @@ def test_the_least_of_random_cubics_is_that_of_a_grid_whatever_was_least_before(
         for above in (-1.0, -1e-3, 1e-3, 1.0):
             best = min(least + above, f0)  # the start is the end of the step before
             assert lowest_within(f0, d0 / h, f1, d1 / h, h, best) == pytest.approx(min(best, least), abs=1e-5)
-
-
-def test_kinds_of_history_rows_are_the_ones_compared_here():
-    """The numbers that this file compares rows with."""
-    assert CONTACT_EVENTS == (SEPARATION_LEFT, SEPARATION_RIGHT, IMPACT_LEFT, IMPACT_RIGHT)
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])

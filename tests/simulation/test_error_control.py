@@ -2,6 +2,7 @@
 
 import math
 import threading
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,8 @@ from rockbatch.common.notes import OVERTURNS
 from rockbatch.core.clock import WINDOWS
 from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.pier.bending import mode_of
 from rockbatch.simulation import (
     Run,
     agreement,
@@ -27,7 +29,7 @@ from rockbatch.simulation import (
 )
 from rockbatch.simulation.agreement import windows
 from rockbatch.simulation.changes import Sized, greatest_change
-from rockbatch.simulation.models import elements, fastest_rate, readings
+from rockbatch.simulation.models import _vibration, elements, fastest_rate, readings
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
@@ -432,6 +434,22 @@ RATES = [
     ),
     ((DeckSpring(lam=0.5),), math.sqrt(0.5 * STIFF * (FIG5.deck**2 + B**2) / INERTIA)),
 ]  # fmt: skip
+
+
+@pytest.mark.parametrize("damping", [0.02, 1.5])
+def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(damping):
+    """The greatest eigenvalue of rotation and deflection, which share the inertia of their coupling."""
+    parts = [Part(100.0, 10.0, 3500.0, 20.0), Part(50.0, 21.0, 50.0, 0.0)]
+    pier, base = (
+        replace(Pier.of_parts(4.0, parts, top_m=20.0), flexural_period_s=0.4),
+        RigidBase(shaft="elastic", flexural_damping=damping),
+    )
+    mode, frequency, turning = mode_of(pier), 2.0 * math.pi / 0.4, pier.inertia + pier.height**2
+    mass = np.array([[turning, mode.coupling], [mode.coupling, mode.second]])
+    forces = np.diag([0.0, mode.second * frequency**2]), np.diag([0.0, 2.0 * damping * frequency * mode.second])
+    soft, slow = (-np.linalg.solve(mass, each) for each in forces)
+    rates = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [soft, slow]]))
+    assert _vibration(pier, base, turning) == pytest.approx(np.abs(rates).max(), rel=1e-6)
 
 
 @pytest.mark.parametrize(("devices", "rate"), RATES)

@@ -70,14 +70,6 @@ def test_amplitudes_of_free_rocking_fall_with_the_square_of_restitution():
     assert speeds == pytest.approx(exact_speeds, rel=1e-9)
 
 
-def test_free_rocking_without_loss_keeps_its_amplitude():
-    """e = 1: θ_max stays θ0 and impacts stay T/2 apart."""
-    rows, run = free_rocking(FIG5, 0.5 * FIG5.alpha, 20.0, restitution=1.0)
-    times = rows.t[rows.kind > 0]
-    assert run.impacts == len(times) >= 7
-    assert np.diff(times) == pytest.approx(2.0 * 1.31850439758, rel=1e-9)
-
-
 def test_greatest_rotation_is_found_between_samples():
     """After one impact the peak lies inside a step; energy gives it exactly. 1e-9 α: Hermite at p h = 1e-3."""
     e = 0.9

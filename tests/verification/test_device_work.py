@@ -121,6 +121,9 @@ def test_friction_takes_all_the_energy_of_a_block_that_impacts_do_not_slow():
     assert response.row["damper_work_J_kg"] == pytest.approx(each["energy_J_kg"].max(), rel=1e-3)
     assert response.row["damper_travel_m"] == pytest.approx(each["travel_m"].max(), rel=1e-3)
     assert response.row["damper_half_cycles"] == each["half_cycles"].max()
+    assert each["energy_kJ"].isna().all()
+    heavy = replace(response, pier=replace(FIG5, mass_t=50.0)).device_work()
+    assert heavy["energy_kJ"].to_numpy() == pytest.approx(50.0 * each["energy_J_kg"].to_numpy(), rel=1e-12)
 
 
 def test_work_closes_the_energy_balance_of_the_run():

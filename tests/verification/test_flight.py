@@ -1,7 +1,6 @@
 """Flight above the rigid base (THEORY.md, Rigid base): known motions and landings, order, energy, symmetry, a second solver.
 
-Values of motions and landings for α = 0.2, p = 1, μ = 3, g = 9.81 come from another event-driven solver; it printed heights
-of the highest of many samples, too low by 1e-8 m, which are replaced by those of its maxima (S1: in closed form).
+Values of motions and landings come from another event-driven solver (known_flights.py).
 """
 
 import math
@@ -9,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from known_flights import KNOWN_ENDS, KNOWN_LANDINGS, KNOWN_PEAKS, MOTIONS, PIER, check_ends, given
 
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
@@ -22,33 +22,18 @@ from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
     LEFT,
-    NEITHER,
     RIGHT,
     TAKE_OFF,
     Ground,
     Moment,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon
+from rockbatch.pier import ElasticBase, RigidBase, Tendon
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
 
-PIER = Pier(alpha=0.2, p=1.0)
 MODEL = block(PIER, RigidBase())
 STILL = Ground(0.0, 0.0, 0.0, 0.0)
 LANDINGS = (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH)
-
-
-def given(horizontal, vertical) -> Motion:
-    """Samples in g every 0.05 s, zeros after them, 3 s in all."""
-    ground = (np.pad(np.array(values, float) * GRAVITY, (0, 61 - len(values))) for values in (horizontal, vertical))
-    return Motion("given", 0.05, *ground)
-
-
-MOTIONS = {
-    "S1": given([0], [0, -1.5, -1.5, -1.5, 0]),
-    "S2": given([0, 0.3, 0.3, 0.3, -0.1, 0], [0, -0.5, -1.3, -1.3, -0.4, 0.3, 0]),
-    "S3": given([0, 0.4, 0.8, 0.4, 0, -0.3, -0.3, 0], [0, 0, 0, -1.6, -1.6, 0, 0.5, 0]),
-}
 
 
 def rows_of(motion: Motion, substeps: int, base: RigidBase | None = None):
@@ -60,35 +45,17 @@ def rows_of(motion: Motion, substeps: int, base: RigidBase | None = None):
 # Known motions
 
 
-@pytest.mark.parametrize(
-    ("name", "off", "on"),
-    [
-        ("S1", (0.033333333, 0.0, 0.0), (0.355826237, 0.0, 0.0)),
-        ("S2", (0.0840627, -2.35821e-4, -0.0108852), (0.2595392, -5.39385e-3, -0.0231916)),
-        ("S3", (0.1336854, -1.60352e-3, -0.0407583), (0.3401056, -0.01131013, -0.0121420)),
-    ],
-)
+@KNOWN_ENDS
 def test_known_flights_take_off_and_land(name, off, on):
-    """Time, θ and θ̇ as printed, to six to nine digits; after the landing for θ̇."""
     found, rows = rows_of(MOTIONS[name], 16)
     (left,) = np.flatnonzero(rows.kind == TAKE_OFF)
     landed = left + np.flatnonzero(np.isin(rows.kind[left:], LANDINGS))[0]
-    for row, expected in ((rows[left], off), (rows[landed], on)):
-        assert row.t == pytest.approx(expected[0], abs=6e-8)
-        assert row.theta == pytest.approx(expected[1], rel=3e-6, abs=1e-15)
-        assert row.omega == pytest.approx(expected[2], rel=5e-6, abs=1e-15)
+    check_ends(off, on, [(row.t, row.theta, row.omega) for row in (rows[left], rows[landed])])
     assert (found.flights, found.t_flight) == (1, rows[left].t)
     assert found.flight_duration == pytest.approx(rows[landed].t - found.t_flight, abs=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("name", "height", "theta_max", "t_max"),
-    [
-        ("S1", 0.06392395833, 0.0, 0.0),
-        ("S2", 0.01154272190, 0.033450660, 0.375071),
-        ("S3", 0.02934591372, 0.058402522, 0.402892),
-    ],
-)
+@KNOWN_PEAKS
 def test_known_flights_reach_their_height_and_rotation(name, height, theta_max, t_max):
     """Half a unit of the last digit, and 1e-10: RK4 at p h = 3e-3, whose rotations and heights are right to 1e-11."""
     found, _ = rows_of(MOTIONS[name], 16)
@@ -171,16 +138,8 @@ def pivot_velocity(m, y, pivot):
     return clearances(m, y, pivot)[2 if pivot == LEFT else 3]
 
 
-@pytest.mark.parametrize(
-    ("pivot", "theta", "omega", "v_rate", "speed", "after"),
-    [
-        (RIGHT, 0.02, 0.1, -0.5, -0.631721009, {RIGHT: 0.088471280, LEFT: 0.087884940, NEITHER: 0.088178110}),
-        (RIGHT, 0.02, -0.1, -0.5, -0.368278991, {RIGHT: -0.106720982, LEFT: -0.106134642, NEITHER: -0.106427812}),
-        (LEFT, -0.03, 0.05, -0.8, -0.737762043, {RIGHT: 0.062282879, LEFT: 0.062723376, NEITHER: 0.062503128}),
-    ],
-)
+@KNOWN_LANDINGS
 def test_known_landings(pivot, theta, omega, v_rate, speed, after):
-    """Printed to nine decimals."""
     y = in_flight(theta, omega, v_rate, pivot)
     assert pivot_velocity(MODEL, y, pivot) == pytest.approx(speed, abs=1e-9)
     for bore, expected in after.items():

@@ -1,6 +1,6 @@
 """The Taylor series that the survey of the rigid base leans on: zeros of polynomials, known motions, another reference.
 
-Values of motions for α = 0.2, p = 1, μ = 3, g = 9.81 come from another event-driven solver.
+Values of motions come from another event-driven solver (known_flights.py).
 """
 
 import importlib
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from known_flights import KNOWN_PEAKS, MOTIONS, PIER
 
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
@@ -44,16 +45,9 @@ def test_a_dip_that_stays_above_zero_is_no_fall(taylor):
     assert taylor.first_fall(poly, 1.0, taylor.room()) == -1.0
 
 
-@pytest.mark.parametrize(
-    ("horizontal", "vertical", "theta_max", "t_max"),
-    [
-        ((0.0, 0.3, 0.3, 0.3, -0.1, 0.0, 0.0), (0.0, -0.5, -1.3, -1.3, -0.4, 0.3, 0.0), 0.033450660, 0.375071),
-        ((0.0, 0.4, 0.8, 0.4, 0.0, -0.3, -0.3), (0.0, 0.0, 0.0, -1.6, -1.6, 0.0, 0.5), 0.058402522, 0.402892),
-    ],
-)
-def test_known_flights_reach_their_rotation(taylor, horizontal, vertical, theta_max, t_max):
-    across, up = (9.81 * np.pad(np.array(samples), (0, 54)) for samples in (horizontal, vertical))
-    truth = taylor.truth(Pier(0.2, 1.0), RigidBase(), Motion("known", 0.05, across, up))
+@KNOWN_PEAKS
+def test_known_flights_reach_their_rotation(taylor, name, height, theta_max, t_max):
+    truth = taylor.truth(PIER, RigidBase(), MOTIONS[name])
     assert (truth.status, truth.flights, truth.decided) == ("stands", 1, True)
     assert truth.theta_max / 0.2 == pytest.approx(theta_max, abs=6e-10)
     assert truth.t_max == pytest.approx(t_max, abs=6e-7)

@@ -6,6 +6,7 @@ that an element joins, not from the half angles of the core.
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from rockbatch.motions.motion import Motion
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Pier, RigidBase, Tendon, problems, recentres
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import block, elements
+from rockbatch.simulation.restraints import rests_on_rigid_base
 from rockbatch.simulation.runs import LEFT_ALONE
 
 ONE_SINE = pulse("sine", 0.5, 1.0, dt=1e-4, end=3.0)
@@ -348,6 +350,26 @@ def test_dampers_that_hold_the_block_give_its_residual_rotation(damper):
     ways = [law(offset, z) for offset, z in zip((-b, b), last.state, strict=True)]
     righting = GRAVITY * FIG5.size * math.sin(FIG5.alpha - abs(rests))
     assert sum(moments(FIG5, each, rests, 0.0) for each in ways) == pytest.approx(-righting, rel=1e-9)
+    rubs, end = base(damper, Damper("friction", f=0.1, at=0.0)), SimpleNamespace(theta_end=last.theta)
+    assert rests_on_rigid_base(FIG5, rubs, end, [*last.state, 0.0], [False] * 3) == pytest.approx(rests, rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_damper_at_the_deck_holds_the_block_where_it_balances_the_weight(side):
+    """Beside a spring. Points of the block about its pivot are complex numbers, turned by exp(−iθ); the damper is elastic from
+    the end on."""
+    damper, b, deck, theta, z = Damper("hysteretic", f=0.5, yield_m=0.02, at="deck"), FIG5.half_width, 7.0, 0.05, -0.1
+    pier = replace(FIG5, deck_height_m=deck)
+
+    def moment(tilt):
+        centre, top = ((-b + 1j * height) * np.exp(-1j * tilt) for height in (FIG5.height, deck))
+        steel = 0.5 * (z + (top - (-b + 1j * deck) * np.exp(-1j * theta)).real / 0.02)
+        spring = 0.01 * FIG5.size / b**2 * (top.real + b)
+        return GRAVITY * ((-1j * centre).imag + (steel + spring) * (-1j * top).real)
+
+    end, devices = SimpleNamespace(theta_end=side * theta), (damper, DeckSpring(0.01))
+    rests = rests_on_rigid_base(pier, base(*devices), end, [side * z, 0.0], [False] * 2)
+    assert rests == pytest.approx(side * brentq(moment, 0.0, theta, xtol=1e-15), rel=1e-10)
 
 
 @pytest.mark.parametrize("damper", [Damper("friction", f=2.0), Damper("hysteretic", f=2.0, yield_m=0.005)])

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,9 +15,10 @@ from stopped_piers import crossed
 import rockbatch as rb
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, ElasticBase, RigidBase, Tendon, YieldingBase, problems
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Tendon, YieldingBase, places, problems
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.restraints import rests_at
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)
@@ -251,6 +253,28 @@ def test_prestress_is_carried_from_the_start():
     assert rows.z_left[0] == pytest.approx(-2.0 / 2.5, rel=1e-15)
     assert np.abs(rows.theta).max() == 0.0
     assert np.ptp(rows.v) < 1e-14
+
+
+@pytest.mark.parametrize("sticks", [False, True])
+def test_a_pier_rests_where_springs_and_devices_balance_wherever_its_run_has_ended(sticks):
+    """Springs of any unstressed positions that carry the weight and the pulls at one rotation: a run that ends elsewhere, its
+    devices elastic on the way, comes to rest there; friction that holds gives what is missing, and lets only θ + v/s change."""
+    friction, b, g, h = (Damper("friction", f=0.1, at="right"),) * sticks, FIG5.half_width, GRAVITY, FIG5.height
+    steel, tie = Damper("hysteretic", f=0.1, yield_m=0.005, at="left"), Tendon(psi=0.3, lam=1.0, at=0.4)
+    base = tied(ELASTIC, (steel, tie, DeckSpring(lam=0.5), *friction))
+    level, v, theta, z, unit = -0.003, -0.004, 0.003, 0.4, g * FIG5.size / b**2
+    pulls = [(0.1 * g * z, -b), (0.3 * g + unit * (v - level - 0.4 * theta), 0.4), (0.02 * g * sticks, b)]
+    k, deck = 0.5 * (50.0 * FIG5.p) ** 2, places(FIG5, base.restraints[2])[0].height
+    load = g + sum(pull for pull, _ in pulls)
+    moment = 0.5 * unit * deck**2 * theta - g * h * theta - sum(pull * s for pull, s in pulls)
+    for turn in (0.0, 0.002, -0.001):
+        lift = b * turn if sticks else 0.3 * turn
+        end = SimpleNamespace(v_end=v + lift, theta_end=theta + turn)
+        end.base_left, end.base_right = (
+            0.5 * (load + side * moment / b) / k + v + side * b * theta - level - 0.65 * g / k for side in (1.0, -1.0)
+        )
+        states, holds = [z + (lift + b * turn) / 0.005, *[0.0] * (2 + sticks)], [False] * 3 + [True] * sticks
+        assert rests_at(FIG5, base, end, level, states, holds) == pytest.approx(theta, rel=1e-4 if sticks else 1e-9)
 
 
 @pytest.mark.parametrize(
