@@ -13,22 +13,10 @@ COMPUTED = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult, ast.Mod: ast.Mult,
     ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd,
 }  # fmt: skip
-SYMMETRIC = (
-    *(
-        "min",
-        "max",
-        "isinstance",
-        "cast",
-        "checked",
-        "np.minimum",
-        "np.maximum",
-        "np.fmin",
-        "np.fmax",
-        "math.hypot",
-        "np.hypot",
-    ),
-    *("windows", "same_counts", "_apart", "_residuals_apart", "correlation", "self._fitting"),
-)
+SYMMETRIC = {
+    "min", "max", "isinstance", "cast", "checked", "np.minimum", "np.maximum", "np.fmin", "np.fmax", "math.hypot", "np.hypot",
+    "windows", "same_counts", "_apart", "_residuals_apart", "correlation", "self._fitting",
+}  # fmt: skip
 """Functions to which the order of arguments means nothing, or that fail at once with another."""
 FACTOR = 1.1
 """By which a number with a point is wrong; a whole one is off by one."""
