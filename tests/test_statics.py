@@ -225,6 +225,8 @@ def test_the_first_loading_of_bouc_wen_is_that_of_the_core(n):
         deflection = deflection_under(force, n)
         assert deflection == pytest.approx(series(force, n), rel=1e-8)
         assert first_loading(np.array([deflection]), n) == pytest.approx([force], rel=1e-9)
+        braced = first_loading(np.array([deflection + 0.3 * force]), n, 0.3)  # a spring of 0.3 δ_y under F_y in series
+        assert braced == pytest.approx([force], rel=1e-6)
 
 
 @pytest.mark.parametrize("eta", [1.5, 2.5])
