@@ -137,6 +137,7 @@ def test_a_tendon_moves_the_unstable_equilibrium_out_and_a_stiff_one_takes_it_aw
     stiff = on_rigid(rb.Tendon(psi=0.3, lam=3.0))
     assert stiff.unstable_rad is stiff.strength_g is stiff.moment_over_weight_m is None
     assert "rises with the rotation" in repr(stiff)
+    assert rb.statics(TALL, RigidBase(restraints=(rb.Tendon(psi=0.3, lam=3.0),))).row["moment_kN_m"] is None
 
 
 def test_a_tendon_that_yields_rights_the_pier_by_its_strength_alone():
