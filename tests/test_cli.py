@@ -334,6 +334,7 @@ def test_wide_tables_fit_the_terminal(monkeypatch):
     assert "\\" not in "".join(lines)
     assert lines[2].startswith("long lo…")
     assert "(other)" in lines[2]
+    assert len(in_width(["", "a" * 100], [["one", "0"]]).splitlines()) == 2  # too wide for any block, and below none
     blocks = "\n".join(lines).split("\n\n")
     assert all(block.splitlines()[1].split()[0] == "one" for block in blocks)  # whose numbers they are
 

@@ -78,6 +78,8 @@ def test_every_impossible_value_is_named_with_its_limit():
     names = ["beta", "epsilon", "kinematics", "flight", "eta", "spring", "n"]
     assert [problem.split(" ")[0] for problem in found] == names
     assert f"{FIG5.least_beta:.4g}" in found[0]
+    found = problems(FIG5, RigidBase(restraints=(Tendon(psi=0.1, at="deck"),)))
+    assert found == ['tendon: at = "deck": must be "left", "right" or an offset in m']
 
 
 @pytest.mark.parametrize(

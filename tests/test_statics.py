@@ -137,6 +137,7 @@ def test_a_tendon_moves_the_unstable_equilibrium_out_and_a_stiff_one_takes_it_aw
     stiff = on_rigid(rb.Tendon(psi=0.3, lam=3.0))
     assert stiff.unstable_rad is stiff.strength_g is stiff.moment_over_weight_m is None
     assert "rises with the rotation" in repr(stiff)
+    assert rb.statics(TALL, RigidBase(restraints=(rb.Tendon(psi=0.3, lam=3.0),))).row["moment_kN_m"] is None
 
 
 def test_a_tendon_that_yields_rights_the_pier_by_its_strength_alone():
@@ -225,6 +226,8 @@ def test_the_first_loading_of_bouc_wen_is_that_of_the_core(n):
         deflection = deflection_under(force, n)
         assert deflection == pytest.approx(series(force, n), rel=1e-8)
         assert first_loading(np.array([deflection]), n) == pytest.approx([force], rel=1e-9)
+        braced = first_loading(np.array([deflection + 0.3 * force]), n, 0.3)  # a spring of 0.3 δ_y under F_y in series
+        assert braced == pytest.approx([force], rel=1e-6)
 
 
 @pytest.mark.parametrize("eta", [1.5, 2.5])
