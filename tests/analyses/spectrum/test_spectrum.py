@@ -9,7 +9,6 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
 from rockbatch.analyses.spectrum.study import read_spectrum
-from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
@@ -151,31 +150,6 @@ def test_impossible_slendernesses_are_reported_with_the_case(tmp_path):
 def test_missing_keys_are_reported(tmp_path, lines, words):
     with pytest.raises(InputError, match=words.replace("[", r"\[")):
         read(STUDY.split("[spectrum]")[0] + lines, tmp_path)
-
-
-def test_an_interrupted_spectrum_goes_on_and_ends_with_the_same_bytes(folder, tmp_path, monkeypatch, capsys):
-    """Ctrl-C after the first group: what it held is not run again."""
-    outcomes, out = Threads.outcomes, tmp_path / "out"
-    carried = []
-
-    def interrupted(self, runs, *more):
-        yield next(outcomes(self, runs, *more))
-        raise KeyboardInterrupt
-
-    def counted(self, runs, *more):
-        carried.append(len(runs))
-        yield from outcomes(self, runs, *more)
-
-    command = ["spectrum", str(written(tmp_path)), "--out", str(out), "--jobs", "1"]
-    monkeypatch.setattr(Threads, "outcomes", interrupted)
-    assert main(command) == 130
-    assert not (out / "spectrum.csv").exists()
-    monkeypatch.setattr(Threads, "outcomes", counted)
-    assert main(command) == 0
-    assert 0 < carried[0] < 72
-    for name in ("spectrum.csv", "spectrum_suite.csv"):
-        assert (out / name).read_bytes() == (folder / name).read_bytes()
-    assert not (out / "spectrum.csv.part").exists()
 
 
 def test_results_of_the_study_keep_the_spectrum_in_their_report(tmp_path):
