@@ -263,6 +263,20 @@ def test_a_spectrum_marks_the_sizes_that_overturn():
     assert (frame.axis, frame.low, frame.high) == ("y", panel.y.last, panel.y.high)
 
 
+def test_panels_are_named_by_what_differs_between_them():
+    """A value that one case alone has is named; the one scale and slenderness are not."""
+    points = pd.DataFrame(
+        {"case": ["rigid"] * 2 + ["pads"] * 2, "beta": [np.nan] * 2 + [40.0] * 2, "p": [1.0, 2.0] * 2}
+    )
+    points = points.assign(scale=1.0, alpha=0.2, count=1, median=[0.4, 0.3, np.inf, 0.2])
+    info = {"axis": "p", "varied": ["beta", "alpha", "p"]}
+    panels = spectra(points, None, info).panels
+    assert [panel.caption.replace("\u00a0", " ") for panel in panels] == ["rigid", "pads, β = 40"]
+    assert [mark.label.replace("\u00a0", " ") for mark in of_kind(panels[0].marks, Polyline)] == ["α = 0.2 rad"]
+    twice = pd.concat([points, points.assign(scale=2.0)])
+    assert len({panel.caption for panel in spectra(twice, None, info).panels}) == 4
+
+
 def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     result = rb.sensitivity(study(tmp_path, SENSITIVITY, (RIGID,)))
     tornado, indices = bars(result.sensitivity, result.sobol, result.study.varied).panels
