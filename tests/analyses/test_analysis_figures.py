@@ -65,6 +65,14 @@ def of_kind(marks, kind):
     return [mark for mark in marks if isinstance(mark, kind)]
 
 
+def hold_plot(result, folder, *, beside=frozenset()):
+    """Check that an analysis plots what its page draws, and the figures ``beside`` it, 160 mm wide."""
+    plots = []
+    made = makers(lambda: plots.append(result.plot()))
+    assert plots[0].get_size_inches()[0] == pytest.approx(160.0 / 25.4)
+    assert made - beside <= makers(lambda: result.save(folder / "out"))
+
+
 def entry(case, limit="overturning", **more):
     """A curve of fragility.json at four levels: some undecided, all decided, none decided, and no record."""
     counts = ((0.2, 10, 1, 2), (0.5, 10, 4, 0), (0.8, 9, 0, 9), (2.0, 0, 0, 0))
@@ -132,7 +140,7 @@ def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):
     assert (unsure_band.look.colour, unsure_band.y.tolist()) == (looks["soil"].colour, [0.0, 0.2, 0.5, 1.0, 0.6, 0.3])
     assert not [mark for mark in first.marks if mark.look.colour == looks["soil"].colour and mark.look.dash == 2]
     result = rb.fragility(study(tmp_path, FRAGILITY))
-    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
+    hold_plot(result, tmp_path)
 
 
 def test_a_cloud_has_its_demands_its_line_with_a_deviation_to_either_side_and_its_limit():
@@ -224,9 +232,7 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_a
     panels = [axes for axes in result.plot().axes if axes.lines]
     titles = [axes.get_title().rpartition(", ")[0] or axes.get_title() for axes in panels]
     assert titles == ["rigid", "pads", "sine (sine), rigid", "sine (sine), pads"]
-    assert makers(result.plot) - {"rockbatch.analyses.spectrum.analysis.plot"} <= makers(
-        lambda: result.save(tmp_path / "out")
-    )
+    hold_plot(result, tmp_path, beside={"rockbatch.analyses.spectrum.analysis.plot"})
 
 
 def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(spectrum):
@@ -310,7 +316,7 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
         pytest.approx([value - error, value + error]) for value, error in zip(of_indices, errors, strict=True)
     ]
     assert whiskers[0].title == f"{of_indices[0]:.3f} ± {errors[0]:.3f}"
-    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
+    hold_plot(result, tmp_path)
 
 
 def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the_computed_ones():

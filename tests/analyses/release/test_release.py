@@ -337,6 +337,7 @@ def test_the_command_leaves_what_python_has(tmp_path):
     for name, table in result.tables.items():
         pd.testing.assert_frame_equal(table, read_table(tmp_path / "out" / f"{name}.csv"), check_exact=True)
     assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
+    assert result.plot().get_size_inches()[0] == pytest.approx(160.0 / 25.4)
 
 
 def test_half_cycles_of_a_block_are_those_in_closed_form():
