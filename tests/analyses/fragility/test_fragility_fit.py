@@ -60,14 +60,6 @@ def test_stripes_are_a_probit_regression_on_ln_im():
     assert found.dispersion == pytest.approx(1 / ab[1], rel=1e-9)
 
 
-def test_capacities_of_all_records_give_the_mean_and_deviation_of_their_logarithms():
-    """Brackets of 1e-4 shift ln θ by less than 1e-8 and ln β by about their variance over 12 β²."""
-    capacities = np.exp(np.random.default_rng(1).normal(-0.3, 0.4, 44))
-    found = fitted(bracketed(capacities, 1e-4))
-    assert found.median == pytest.approx(math.exp(np.log(capacities).mean()), rel=1e-7)
-    assert found.dispersion == pytest.approx(np.log(capacities).std(), rel=1e-7)
-
-
 def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis():
     """The densities of the m collapses times (1 − Φ) for the others, maximised over θ and ln β; 1e-6: the search."""
     capacities = np.exp(np.random.default_rng(2).normal(0.0, 0.4, 40))
