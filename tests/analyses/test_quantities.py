@@ -104,6 +104,7 @@ def test_a_sensitivity(tmp_path, capsys):
     assert rows[0][1:] == ["answer at", "Sobol index"]
     assert rows[1] == ["input", *heads]
     assert " ".join(["input", *heads]) in plain(printed)
+    assert "vertical component" not in page.text  # none of the inputs
     agree(printed, rows[2:], texts_of(table, ends | answers | indices), 1)
 
 

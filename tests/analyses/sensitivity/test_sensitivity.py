@@ -196,9 +196,7 @@ def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_the
         "zeta": [0.02, 0.1], "damper": {"f": [0.01, 0.1]}, "damper_2": {"nu": [0.1, 0.5]}, "tendon": {"psi": [0.1, 0.4]},
     }  # fmt: skip
     path = written(tmp_path, varying(uniform, cases=(TIED, DAMPED)))
-    result = rb.sensitivity(path)
-    found = result.sensitivity.set_index(["case", "parameter"])
-    assert result.sobol.index.to_list() == [0, 1, 2, 3]
+    found = rb.sensitivity(path).sensitivity.set_index(["case", "parameter"])
     assert set(found.index) == {
         ("tied", "damper.f"), ("tied", "damper_2.nu"), ("tied", "tendon.psi"), ("damped", "zeta"),
     }  # fmt: skip
