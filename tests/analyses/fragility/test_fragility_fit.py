@@ -77,14 +77,6 @@ def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis()
     assert found.dispersion == pytest.approx(math.exp(searched.x[1]), rel=1e-6)
 
 
-def test_the_unit_of_the_levels_does_not_matter():
-    scaled = fitted(fresh_records(981.0 * LEVELS, RECORDS, EXCEEDED))
-    found = fitted(STRIPES)
-    assert scaled.median == pytest.approx(981.0 * found.median, rel=1e-9)
-    assert scaled.median_interval == pytest.approx([981.0 * bound for bound in found.median_interval], rel=1e-9)
-    assert scaled.dispersion_interval == pytest.approx(found.dispersion_interval, rel=1e-9)
-
-
 def test_intervals_end_where_the_profile_likelihood_has_fallen_by_half_the_chi_square_quantile():
     """The profile over the other parameter, by a bounded search, and its ends by root finding; 1e-4: between two of 360 rays."""
     found = fitted(STRIPES)
