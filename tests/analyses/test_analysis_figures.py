@@ -204,7 +204,7 @@ def test_rates_have_the_hazard_and_where_each_limit_comes_from():
     ]
     assert (both.x.low, both.x.high, both.x.log, both.y.low, both.y.high) == (0.15, 0.9, True, 0.0, pytest.approx(0.88))
     assert [rule.at.tolist() for rule in of_kind(both.marks, Rule)] == [[0.4]]  # 0.1 is out of the panel
-    assert (of_kind(none.marks, Polyline), none.x.low < none.x.high) == ([], True)
+    assert (of_kind(none.marks, Polyline), none.x.low < none.x.high, none.y.high) == ([], True, pytest.approx(1.1))
     assert of_kind(alone.marks, Polyline)[0].look == lines[1].look != lines[0].look
 
 
@@ -335,6 +335,7 @@ def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the
     ):  # fmt: skip
         (line,), (hits, highest) = of_kind(panel.marks, Polyline), of_kind(panel.marks, Points)
         np.testing.assert_array_equal([line.x, line.y], [t, factor * theta])
+        assert hits.look.colour == highest.look.colour != line.look.colour
         assert (hits.x.tolist(), hits.y.tolist()) == (at, [0.0] * len(at))
         np.testing.assert_allclose([highest.x, highest.y], [[0.25, 1.0, 2.0], amplitudes])
         assert (panel.x.low, panel.x.high, panel.y.low, panel.y.high) == pytest.approx(

@@ -70,12 +70,6 @@ def test_undecided_runs_are_in_no_share_and_records_without_a_decided_run_do_not
     assert found.undecided == (0, 0, 0, 5 + SAMPLES, 0)
 
 
-def test_shares_that_make_no_curve_say_why():
-    found = windows([looks_of(lambda x: x > 0.7)] * 3, LEVELS, 0.02, 0.95)
-    assert "no record exceeds the limit at 0.6, every one at 0.8" in found.fitted
-    assert found.above(None) is None
-
-
 # In an analysis
 
 CAPACITIES = 0.8 * np.exp(0.35 * ndtri((np.arange(30) + 0.5) / 30))
