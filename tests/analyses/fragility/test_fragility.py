@@ -521,15 +521,6 @@ def test_mistakes_in_the_settings_are_reported_with_their_line(tmp_path, capsys,
     assert not (tmp_path / "out").exists()
 
 
-def test_for_a_study_without_the_table_the_message_says_what_to_write(tmp_path, capsys):
-    path = written(tmp_path, STRIPES)
-    path.write_text(path.read_text(encoding="utf-8").replace("[fragility]", "[output]\n[other]"), encoding="utf-8")
-    text = path.read_text(encoding="utf-8").replace("[other]\n" + STRIPES, "")
-    path.write_text(text, encoding="utf-8")
-    assert main(["fragility", str(path)]) == 2
-    assert '[fragility] is missing; write [fragility] with measure = "PGV"' in capsys.readouterr().err
-
-
 # The report
 
 

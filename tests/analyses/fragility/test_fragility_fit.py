@@ -153,12 +153,6 @@ def test_one_record_that_comes_and_goes_has_a_curve_and_open_intervals():
     assert found.dispersion_interval[1] == math.inf
 
 
-def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve():
-    narrow, wide = fitted(STRIPES, 0.68), fitted(STRIPES, 0.95)
-    assert narrow.median == wide.median
-    assert wide.median_interval[0] < narrow.median_interval[0] < narrow.median_interval[1] < wide.median_interval[1]
-
-
 @pytest.mark.parametrize(("exceeded", "words"), [
     ([0, 0, 0], "no record exceeds the limit up to 0.3: the median is beyond"),
     ([5, 5, 5], "every record exceeds the limit from 0.1 on: the median is below"),

@@ -15,6 +15,7 @@ from scipy.stats import t as student
 import rockbatch as rb
 from rockbatch.analyses.release.analysis import GRIDS, _Test
 from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _linear, _Posterior, fitted
+from rockbatch.analyses.release.quantities import in_words
 from rockbatch.analyses.release.study import ReleaseSpec
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -294,6 +295,12 @@ def test_a_value_at_the_end_of_what_can_be_is_named():
     assert row["remark"].startswith("the best value is at the end")
     near = fitted(passages([0.06] * 3), lambda e: passages([e] * 3), GRID, 0.95)
     assert (near.value, near.at_end) == (pytest.approx(0.06, abs=1e-6), False)  # between the first two of the grid
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.99e-3, False), (1.01e-3, True)])
+def test_a_scatter_from_a_thousandth_on_is_said(share, said):
+    fit = {"parameter": "zeta", "value": 0.2, "low": 0.1, "high": 0.3, "confidence": 0.9, "over_housner": math.nan}
+    assert in_words(fit | {"scatter": 0.2 * share}).endswith("from impact to impact") == said
 
 
 WRONG = [

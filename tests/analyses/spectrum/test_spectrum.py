@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
+from rockbatch.analyses.spectrum.command import shown
 from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
 from rockbatch.analyses.spectrum.study import read_spectrum
 from rockbatch.commands.cli import main
@@ -73,6 +74,14 @@ def test_overturned_points_stay_in_the_spectrum_as_infinite(folder, capsys):
     report = (folder / "analyses.html").read_text(encoding="utf-8")
     assert "Rocking spectra and overturning" in report
     assert "∞" in report
+
+
+def test_the_terminal_shows_every_median(folder, tmp_path):
+    suite, lines = pd.read_csv(folder / "spectrum_suite.csv"), {}
+    for first, *medians in map(str.split, shown(suite, read(STUDY, tmp_path)[0]).splitlines()):
+        lines[first] = [*lines.get(first, []), *medians]
+    for size, of_size in suite.groupby("two_pi_over_p_s"):
+        assert lines[f"{size:.4g}"] == ["∞" if np.isinf(median) else f"{median:.4f}" for median in of_size["median"]]
 
 
 def test_quantiles_count_overturned_and_flight_as_infinite_and_failed_not_at_all():
