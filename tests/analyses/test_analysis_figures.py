@@ -65,6 +65,14 @@ def of_kind(marks, kind):
     return [mark for mark in marks if isinstance(mark, kind)]
 
 
+def hold_plot(result, folder, *, beside=frozenset()):
+    """Check that an analysis plots what its page draws, and the figures ``beside`` it, 160 mm wide."""
+    plots = []
+    made = makers(lambda: plots.append(result.plot()))
+    assert plots[0].get_size_inches()[0] == pytest.approx(160.0 / 25.4)
+    assert made - beside <= makers(lambda: result.save(folder / "out"))
+
+
 def entry(case, limit="overturning", **more):
     """A curve of fragility.json at four levels: some undecided, all decided, none decided, and no record."""
     counts = ((0.2, 10, 1, 2), (0.5, 10, 4, 0), (0.8, 9, 0, 9), (2.0, 0, 0, 0))
@@ -132,7 +140,7 @@ def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):
     assert (unsure_band.look.colour, unsure_band.y.tolist()) == (looks["soil"].colour, [0.0, 0.2, 0.5, 1.0, 0.6, 0.3])
     assert not [mark for mark in first.marks if mark.look.colour == looks["soil"].colour and mark.look.dash == 2]
     result = rb.fragility(study(tmp_path, FRAGILITY))
-    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
+    hold_plot(result, tmp_path)
 
 
 def test_a_cloud_has_its_demands_its_line_with_a_deviation_to_either_side_and_its_limit():
@@ -196,7 +204,7 @@ def test_rates_have_the_hazard_and_where_each_limit_comes_from():
     ]
     assert (both.x.low, both.x.high, both.x.log, both.y.low, both.y.high) == (0.15, 0.9, True, 0.0, pytest.approx(0.88))
     assert [rule.at.tolist() for rule in of_kind(both.marks, Rule)] == [[0.4]]  # 0.1 is out of the panel
-    assert (of_kind(none.marks, Polyline), none.x.low < none.x.high) == ([], True)
+    assert (of_kind(none.marks, Polyline), none.x.low < none.x.high, none.y.high) == ([], True, pytest.approx(1.1))
     assert of_kind(alone.marks, Polyline)[0].look == lines[1].look != lines[0].look
 
 
@@ -224,9 +232,7 @@ def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_a
     panels = [axes for axes in result.plot().axes if axes.lines]
     titles = [axes.get_title().rpartition(", ")[0] or axes.get_title() for axes in panels]
     assert titles == ["rigid", "pads", "sine (sine), rigid", "sine (sine), pads"]
-    assert makers(result.plot) - {"rockbatch.analyses.spectrum.analysis.plot"} <= makers(
-        lambda: result.save(tmp_path / "out")
-    )
+    hold_plot(result, tmp_path, beside={"rockbatch.analyses.spectrum.analysis.plot"})
 
 
 def test_a_map_has_the_colours_of_its_regions_and_their_boundaries(spectrum):
@@ -263,6 +269,20 @@ def test_a_spectrum_marks_the_sizes_that_overturn():
     assert (frame.axis, frame.low, frame.high) == ("y", panel.y.last, panel.y.high)
 
 
+def test_panels_are_named_by_what_differs_between_them():
+    """A value that one case alone has is named; the one scale and slenderness are not."""
+    points = pd.DataFrame(
+        {"case": ["rigid"] * 2 + ["pads"] * 2, "beta": [np.nan] * 2 + [40.0] * 2, "p": [1.0, 2.0] * 2}
+    )
+    points = points.assign(scale=1.0, alpha=0.2, count=1, median=[0.4, 0.3, np.inf, 0.2])
+    info = {"axis": "p", "varied": ["beta", "alpha", "p"]}
+    panels = spectra(points, None, info).panels
+    assert [panel.caption.replace("\u00a0", " ") for panel in panels] == ["rigid", "pads, β = 40"]
+    assert [mark.label.replace("\u00a0", " ") for mark in of_kind(panels[0].marks, Polyline)] == ["α = 0.2 rad"]
+    twice = pd.concat([points, points.assign(scale=2.0)])
+    assert len({panel.caption for panel in spectra(twice, None, info).panels}) == 4
+
+
 def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     result = rb.sensitivity(study(tmp_path, SENSITIVITY, (RIGID,)))
     tornado, indices = bars(result.sensitivity, result.sobol, result.study.varied).panels
@@ -296,7 +316,7 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
         pytest.approx([value - error, value + error]) for value, error in zip(of_indices, errors, strict=True)
     ]
     assert whiskers[0].title == f"{of_indices[0]:.3f} ± {errors[0]:.3f}"
-    assert makers(result.plot) <= makers(lambda: result.save(tmp_path / "out"))
+    hold_plot(result, tmp_path)
 
 
 def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the_computed_ones():
@@ -315,6 +335,7 @@ def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the
     ):  # fmt: skip
         (line,), (hits, highest) = of_kind(panel.marks, Polyline), of_kind(panel.marks, Points)
         np.testing.assert_array_equal([line.x, line.y], [t, factor * theta])
+        assert hits.look.colour == highest.look.colour != line.look.colour
         assert (hits.x.tolist(), hits.y.tolist()) == (at, [0.0] * len(at))
         np.testing.assert_allclose([highest.x, highest.y], [[0.25, 1.0, 2.0], amplitudes])
         assert (panel.x.low, panel.x.high, panel.y.low, panel.y.high) == pytest.approx(

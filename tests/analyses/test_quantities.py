@@ -20,10 +20,8 @@ RELEASE = study_text(
     release={"impact_s": [0.324, 0.858, 1.313, 1.707, 2.048], "amplitude_rad": [0.0794, 0.0632, 0.0519, 0.0415, 0.0334]},
 )  # fmt: skip
 SENSITIVITY = study_text(
-    pulses=PULSES[:1],
-    cases=(RIGID,),
-    sensitivity={"samples": 8, "uniform": {"p": [0.9, 1.1], "alpha": [0.18, 0.22]}},
-)
+    pulses=PULSES[:1], cases=(RIGID,), sensitivity={"samples": 8, "uniform": {"p": [0.9, 1.1], "alpha": [0.18, 0.22]}},
+)  # fmt: skip
 FRAGILITY = study_text(
     pier={"alpha": 0.2, "p": 2.0}, pulses=PULSES, cases=(RIGID,), numerics={"tolerance": 1e-3},
     fragility={
@@ -104,6 +102,7 @@ def test_a_sensitivity(tmp_path, capsys):
     assert rows[0][1:] == ["answer at", "Sobol index"]
     assert rows[1] == ["input", *heads]
     assert " ".join(["input", *heads]) in plain(printed)
+    assert "vertical component" not in page.text  # none of the inputs
     agree(printed, rows[2:], texts_of(table, ends | answers | indices), 1)
 
 

@@ -236,8 +236,8 @@ def fit_event(x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.
     if happened.all():
         return f"every record exceeds the limit from {x.min():.4g} on: the median is below"
     share = _share(log_x, happened)
-    if not isinstance(share, Logistic):
-        return share or "no record exceeds the limit"
+    if isinstance(share, str):
+        return share
     return Cloud(1.0, None, share, confidence, float(log_x.mean()))
 
 

@@ -152,7 +152,7 @@ def _write_tables(results: AnalysisFolder, spec: ReleaseSpec) -> dict[str, Any]:
     keys = ["case", *study.varied]
     results.keep_table("release.csv", pd.DataFrame(rows))
     for name, parts in (("release_impacts", impacts), ("release_history", histories)):
-        table = pd.concat(parts, ignore_index=True)
+        table = pd.concat(parts)
         results.keep_table(f"{name}.csv", table[[*keys, *(column for column in table if column not in keys)]])
     return {"spec": spec}
 

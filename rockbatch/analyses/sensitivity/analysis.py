@@ -211,5 +211,5 @@ def tables(
             shares.append(indices(inputs, results[many], spec.confidence, spec.seed).assign(**identity))
     return (
         pd.DataFrame(swings, columns=["case", *study.varied, *TORNADO]),
-        pd.concat(shares, ignore_index=True)[["case", *study.varied, *SOBOL]],
+        pd.concat(shares)[["case", *study.varied, *SOBOL]],
     )

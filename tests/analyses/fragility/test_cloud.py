@@ -122,8 +122,9 @@ def test_of_two_intensities_the_share_is_the_closed_form():
     """
     x = np.repeat([0.5, 2.0], [10, 12])
     happened = np.arange(22) % 11 < np.repeat([2, 9], [10, 12])
-    share = fit_event(x, happened).overturning
-    drawn = []
+    found = fit_event(x, happened)
+    assert (found.limit, found.line) == (1.0, None)
+    share, drawn = found.overturning, []
     for intensity in (0.5, 2.0):
         k, n = happened[x == intensity].sum(), (x == intensity).sum()
         assert share.intercept + share.slope * math.log(intensity) == pytest.approx(

@@ -19,12 +19,13 @@ from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided, asse
 from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
-from rockbatch.analyses.fragility.lognormal import Capacities, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
 from rockbatch.analyses.fragility.runs import ScaledRuns, intensities, output
 from rockbatch.analyses.fragility.section import section
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
-from rockbatch.analyses.fragility.tables import capacities, described, points
+from rockbatch.analyses.fragility.tables import capacities, described, note, points
+from rockbatch.analyses.fragility.windows import Windows
 from rockbatch.batch.digests import digests
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import simulations
@@ -257,6 +258,28 @@ def test_capacities_have_all_their_bounds_also_as_scales():
         [0.3, 0.31, 1.5, 1.55, 0, np.nan, np.nan, 3, 0.2],
         [0.8, np.nan, 4.0, np.nan, 1, 0.3, 0.8, 0, 0.1],
     ])  # fmt: skip
+
+
+def test_notes_say_why_there_is_no_curve_and_what_one_rests_on():
+    case, spec = Case("rigid", Pier(0.2, 1.0), RigidBase(), {}), FragilitySpec("ida", "PGA", (0.2, 0.8), ())
+    fitted = Lognormal(0.5, 0.4, (0.4, 0.6), (0.3, 0.5), np.zeros((1, 2)))
+
+    def said(fitted, undecided=(0, 0, 0, 0), **more):
+        return note(Curve(case, OVERTURNING, (), fitted, Undecided(*undecided), **more), spec)
+
+    assert (said("no record counts"), said(fitted)) == ("no record counts", "")
+    for median, words in ((0.19, "below the lowest level"), (0.2, ""), (0.8, ""), (0.81, "beyond the highest level")):
+        assert said(replace(fitted, median=median)) == bool(words) * f"the median is extrapolated {words}"
+    for name in ("median_interval", "dispersion_interval"):
+        assert said(replace(fitted, **{name: (0.3, math.inf)})).startswith("the records leave the intervals open")
+    assert (
+        said(fitted, windows=Windows(0.02, (0.0,), (1,), (0,), "none exceeds")) == "no median by shares: none exceeds"
+    )
+    returning = tuple((m, Capacity(*3 * (Bracket(0.3, 0.31),), 0, returns, 0.1)) for m, returns in enumerate((0, 2, 1)))
+    assert said(fitted, capacities=returning) == "2 of 3 records withstand a level above their first exceedance"
+    assert said(fitted, (10, 1, 2, 0)).startswith(
+        "3 of 10 runs undecided: 1 flew, 2 failed, above the first exceedance of"
+    )
 
 
 def test_stripes_count_a_record_once_in_whatever_polarities(tmp_path):
@@ -496,15 +519,6 @@ def test_mistakes_in_the_settings_are_reported_with_their_line(tmp_path, capsys,
         assert f"{path}:" in line
         assert "[fragility]" in line
     assert not (tmp_path / "out").exists()
-
-
-def test_for_a_study_without_the_table_the_message_says_what_to_write(tmp_path, capsys):
-    path = written(tmp_path, STRIPES)
-    path.write_text(path.read_text(encoding="utf-8").replace("[fragility]", "[output]\n[other]"), encoding="utf-8")
-    text = path.read_text(encoding="utf-8").replace("[other]\n" + STRIPES, "")
-    path.write_text(text, encoding="utf-8")
-    assert main(["fragility", str(path)]) == 2
-    assert '[fragility] is missing; write [fragility] with measure = "PGV"' in capsys.readouterr().err
 
 
 # The report

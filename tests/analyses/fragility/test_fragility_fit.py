@@ -60,14 +60,6 @@ def test_stripes_are_a_probit_regression_on_ln_im():
     assert found.dispersion == pytest.approx(1 / ab[1], rel=1e-9)
 
 
-def test_capacities_of_all_records_give_the_mean_and_deviation_of_their_logarithms():
-    """Brackets of 1e-4 shift ln θ by less than 1e-8 and ln β by about their variance over 12 β²."""
-    capacities = np.exp(np.random.default_rng(1).normal(-0.3, 0.4, 44))
-    found = fitted(bracketed(capacities, 1e-4))
-    assert found.median == pytest.approx(math.exp(np.log(capacities).mean()), rel=1e-7)
-    assert found.dispersion == pytest.approx(np.log(capacities).std(), rel=1e-7)
-
-
 def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis():
     """The densities of the m collapses times (1 − Φ) for the others, maximised over θ and ln β; 1e-6: the search."""
     capacities = np.exp(np.random.default_rng(2).normal(0.0, 0.4, 40))
@@ -83,14 +75,6 @@ def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis()
     assert others > 10
     assert found.median == pytest.approx(math.exp(searched.x[0]), rel=1e-6)
     assert found.dispersion == pytest.approx(math.exp(searched.x[1]), rel=1e-6)
-
-
-def test_the_unit_of_the_levels_does_not_matter():
-    scaled = fitted(fresh_records(981.0 * LEVELS, RECORDS, EXCEEDED))
-    found = fitted(STRIPES)
-    assert scaled.median == pytest.approx(981.0 * found.median, rel=1e-9)
-    assert scaled.median_interval == pytest.approx([981.0 * bound for bound in found.median_interval], rel=1e-9)
-    assert scaled.dispersion_interval == pytest.approx(found.dispersion_interval, rel=1e-9)
 
 
 def test_intervals_end_where_the_profile_likelihood_has_fallen_by_half_the_chi_square_quantile():
@@ -167,12 +151,6 @@ def test_one_record_that_comes_and_goes_has_a_curve_and_open_intervals():
     found = fitted(Capacities.of_same_records(np.array([0.1, 0.2, 0.3, 0.4]), ~beyond, beyond))
     assert found.median_interval == (0.0, math.inf)
     assert found.dispersion_interval[1] == math.inf
-
-
-def test_a_confidence_that_is_higher_gives_wider_intervals_around_the_same_curve():
-    narrow, wide = fitted(STRIPES, 0.68), fitted(STRIPES, 0.95)
-    assert narrow.median == wide.median
-    assert wide.median_interval[0] < narrow.median_interval[0] < narrow.median_interval[1] < wide.median_interval[1]
 
 
 @pytest.mark.parametrize(("exceeded", "words"), [

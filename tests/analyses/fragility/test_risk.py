@@ -399,15 +399,6 @@ def test_mistakes_of_added_dispersions_are_named(tmp_path):
         assert message in told
 
 
-def test_a_curve_of_python_names_its_mistakes():
-    with pytest.raises(InputError, match="a stronger motion is rarer"):
-        HazardCurve([0.1, 0.2], [0.1, 0.2])
-    with pytest.raises(InputError, match="levels = 'a': must be a tuple"):
-        HazardCurve("a", [0.1])
-    with pytest.raises(InputError, match="there is no point"):
-        HazardCurve([], [])
-
-
 def test_what_several_exceedances_and_tails_mean_is_said(tmp_path):
     """A site where the pier overturns every few years, by intensities far below those that were run."""
     often = {"levels_g": [0.02, 0.05, 0.5], "rate_per_year": [20.0, 5.0, 0.2], "confirm": "rate_per_year"}

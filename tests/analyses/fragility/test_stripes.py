@@ -41,6 +41,8 @@ def test_records_are_not_run_with_factors_beyond_the_limits(tmp_path, method):
     limits = {"least_scale": 0.8, "most_scale": 1.6} | method
     found = rb.fragility(study(tmp_path, LEVELS | limits))
     assert found.fragility_runs["scale"].between(0.8, 1.6).all()
+    ends = (0.8 - 1e-12, 1.6 + 1e-12, 0.8 - 1e-7, 1.6 + 1e-7)
+    assert [found.spec.allows(factor) for factor in ends] == [True, True, False, False]
     assert found.fragility["n"].to_list() == [0, 7, 7, 0]
     assert found.fragility["not_used"].to_list() == [7, 0, 0, 7]
     factors = found.fragility_scales

@@ -276,14 +276,6 @@ def test_without_scatter_everything_is_as_without_the_table(tmp_path, method):
     assert found[0] == found[1]
 
 
-def test_another_seed_is_another_state_of_the_runs(tmp_path):
-    one, other = (
-        read_fragility(load_study(written(tmp_path, {"seed": seed, "lognormal": {"alpha": 0.1}}))).of_runs
-        for seed in (1, 2)
-    )
-    assert repr(one) != repr(other)
-
-
 # Messages
 
 

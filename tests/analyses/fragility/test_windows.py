@@ -58,14 +58,6 @@ def test_the_curve_through_the_shares_has_the_greatest_binomial_likelihood_of_fr
     assert (found.fitted.median, found.fitted.dispersion) == pytest.approx(tuple(searched.x), rel=1e-5)
 
 
-def test_records_without_islands_have_the_median_of_their_capacities():
-    """400 lognormal capacities at even quantiles: sampling of the windows, 0.2 % of the scale, and five levels leave 0.5 %."""
-    edges = 0.75 * np.exp(0.35 * ndtri((np.arange(400) + 0.5) / 400))
-    found = windows([looks_of(lambda x, edge=edge: x >= edge) for edge in edges], LEVELS, 0.02, 0.95)
-    assert found.fitted.median == pytest.approx(0.75, rel=0.005)
-    assert found.fitted.dispersion == pytest.approx(0.35, rel=0.01)
-
-
 def test_undecided_runs_are_in_no_share_and_records_without_a_decided_run_do_not_count():
     one, other, out = (looks_of(lambda x: x > 0.7) for _ in range(3))
     for i, x in enumerate(samples(1.0, 0.02)):
@@ -76,12 +68,6 @@ def test_undecided_runs_are_in_no_share_and_records_without_a_decided_run_do_not
     assert found.shares == pytest.approx([0, 0, 1, 5 / 15, 1])
     assert found.records == (3, 3, 3, 1, 3)
     assert found.undecided == (0, 0, 0, 5 + SAMPLES, 0)
-
-
-def test_shares_that_make_no_curve_say_why():
-    found = windows([looks_of(lambda x: x > 0.7)] * 3, LEVELS, 0.02, 0.95)
-    assert "no record exceeds the limit at 0.6, every one at 0.8" in found.fitted
-    assert found.above(None) is None
 
 
 # In an analysis

@@ -15,6 +15,7 @@ from scipy.stats import t as student
 import rockbatch as rb
 from rockbatch.analyses.release.analysis import GRIDS, _Test
 from rockbatch.analyses.release.fit import Fit, Passages, _evaluated, _Linear, _linear, _Posterior, fitted
+from rockbatch.analyses.release.quantities import in_words
 from rockbatch.analyses.release.study import ReleaseSpec
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
@@ -196,6 +197,12 @@ def test_the_tables_of_exact_values_are_the_closed_form(clock):
     np.testing.assert_allclose(np.interp(highest[ahead], t, theta), (signs * exact.amplitude)[ahead], atol=1e-4)
 
 
+def test_times_and_amplitudes_are_also_fitted_apart():
+    each = Passages(passages([0.9] * FEW).t, passages([0.85] * FEW).amplitude)
+    (row,) = rb.release(study_of(lists(each))).release.to_dict("records")
+    assert (row["by_times"], row["by_amplitudes"]) == pytest.approx((0.9, 0.85), abs=1e-4)
+
+
 QUIET = Fit(0.9, 0.88, 0.92, 0.0, 0.02, 0.002, False, 1.0, 0.002)
 WORDS = (
     "measured values differ from computed ones by root mean square: times by 20 ms (0.05 of a mean half cycle), amplitudes by "
@@ -290,6 +297,12 @@ def test_a_value_at_the_end_of_what_can_be_is_named():
     assert (near.value, near.at_end) == (pytest.approx(0.06, abs=1e-6), False)  # between the first two of the grid
 
 
+@pytest.mark.parametrize(("share", "said"), [(0.99e-3, False), (1.01e-3, True)])
+def test_a_scatter_from_a_thousandth_on_is_said(share, said):
+    fit = {"parameter": "zeta", "value": 0.2, "low": 0.1, "high": 0.3, "confidence": 0.9, "over_housner": math.nan}
+    assert in_words(fit | {"scatter": 0.2 * share}).endswith("from impact to impact") == said
+
+
 WRONG = [
     ({"impact_s": [0.3, 0.8]}, "2 values were measured"),
     ({"impact_s": [0.3, 0.9, 0.8]}, "times have to rise"),
@@ -337,6 +350,7 @@ def test_the_command_leaves_what_python_has(tmp_path):
     for name, table in result.tables.items():
         pd.testing.assert_frame_equal(table, read_table(tmp_path / "out" / f"{name}.csv"), check_exact=True)
     assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
+    assert result.plot().get_size_inches()[0] == pytest.approx(160.0 / 25.4)
 
 
 def test_half_cycles_of_a_block_are_those_in_closed_form():

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
+from rockbatch.analyses.spectrum.command import shown
 from rockbatch.analyses.spectrum.rocking_spectrum import of_suite, row_of
 from rockbatch.analyses.spectrum.study import read_spectrum
-from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Pier, RigidBase, YieldingBase
@@ -74,6 +74,14 @@ def test_overturned_points_stay_in_the_spectrum_as_infinite(folder, capsys):
     report = (folder / "analyses.html").read_text(encoding="utf-8")
     assert "Rocking spectra and overturning" in report
     assert "∞" in report
+
+
+def test_the_terminal_shows_every_median(folder, tmp_path):
+    suite, lines = pd.read_csv(folder / "spectrum_suite.csv"), {}
+    for first, *medians in map(str.split, shown(suite, read(STUDY, tmp_path)[0]).splitlines()):
+        lines[first] = [*lines.get(first, []), *medians]
+    for size, of_size in suite.groupby("two_pi_over_p_s"):
+        assert lines[f"{size:.4g}"] == ["∞" if np.isinf(median) else f"{median:.4f}" for median in of_size["median"]]
 
 
 def test_quantiles_count_overturned_and_flight_as_infinite_and_failed_not_at_all():
@@ -151,31 +159,6 @@ def test_impossible_slendernesses_are_reported_with_the_case(tmp_path):
 def test_missing_keys_are_reported(tmp_path, lines, words):
     with pytest.raises(InputError, match=words.replace("[", r"\[")):
         read(STUDY.split("[spectrum]")[0] + lines, tmp_path)
-
-
-def test_an_interrupted_spectrum_goes_on_and_ends_with_the_same_bytes(folder, tmp_path, monkeypatch, capsys):
-    """Ctrl-C after the first group: what it held is not run again."""
-    outcomes, out = Threads.outcomes, tmp_path / "out"
-    carried = []
-
-    def interrupted(self, runs, *more):
-        yield next(outcomes(self, runs, *more))
-        raise KeyboardInterrupt
-
-    def counted(self, runs, *more):
-        carried.append(len(runs))
-        yield from outcomes(self, runs, *more)
-
-    command = ["spectrum", str(written(tmp_path)), "--out", str(out), "--jobs", "1"]
-    monkeypatch.setattr(Threads, "outcomes", interrupted)
-    assert main(command) == 130
-    assert not (out / "spectrum.csv").exists()
-    monkeypatch.setattr(Threads, "outcomes", counted)
-    assert main(command) == 0
-    assert 0 < carried[0] < 72
-    for name in ("spectrum.csv", "spectrum_suite.csv"):
-        assert (out / name).read_bytes() == (folder / name).read_bytes()
-    assert not (out / "spectrum.csv.part").exists()
 
 
 def test_results_of_the_study_keep_the_spectrum_in_their_report(tmp_path):
