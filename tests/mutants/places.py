@@ -14,20 +14,8 @@ COMPUTED = {
     ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd,
 }  # fmt: skip
 SYMMETRIC = (
-    *(
-        "min",
-        "max",
-        "isinstance",
-        "cast",
-        "checked",
-        "np.minimum",
-        "np.maximum",
-        "np.fmin",
-        "np.fmax",
-        "math.hypot",
-        "np.hypot",
-    ),
-    *("windows", "same_counts", "_apart", "_residuals_apart"),
+    *("min", "max", "isinstance", "cast", "checked", "np.minimum", "np.maximum", "np.fmin", "np.fmax", "math.hypot"),
+    *("np.hypot", "suppress", "windows", "same_counts", "_apart", "_residuals_apart"),
 )
 """Functions to which the order of arguments means nothing, or that fail at once with another."""
 FACTOR = 1.1
