@@ -220,6 +220,11 @@ def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):
     for together in (["theta_res_over_alpha", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])
         assert shown[start : start + len(together)] == together
+    behind = {column.name: column.page.behind for column in COLUMNS.values() if column.page and column.page.behind}
+    for name, first in behind.items():
+        between = shown[shown.index(first) + 1 : shown.index(name)]
+        assert shown.index(first) < shown.index(name)
+        assert all(behind.get(other) in (first, *between) for other in between), name
     write_results(tmp_path)
     text = write_report(tmp_path).read_text(encoding="utf-8")
     assert 'title="base_tilt_rad × 1000: residual tilt of the base">base tilt [mrad]</th>' in text
