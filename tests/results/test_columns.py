@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,7 @@ from studies import RIGID, study_text, write_study
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
+from rockbatch.motions.scaling import Target
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
@@ -194,6 +195,11 @@ def test_run_json_says_the_unit_of_every_number(study, table):
     texts = [column.name for column in COLUMNS.values() if column.kind == "text"]
     assert list(told) == [name for name in table if name not in (*texts, *study.varied)]
     assert (told["settlement_m"], told["theta_res_drift_per_s"], told["impacts"]) == ("m", "1/s", "1")
+
+
+def test_a_target_that_is_no_spectrum_is_none_that_the_suite_is_compared_with(study):
+    to_pga = replace(study, motions=replace(study.motions, target=Target(pga_g=0.3)))
+    assert "target" not in describe(to_pga, ground_motions(study))
 
 
 def test_demands_read_columns_of_the_table_only():
