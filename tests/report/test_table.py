@@ -38,8 +38,11 @@ def test_decimal_points_stand_below_each_other_whatever_the_digits():
         1,
     )
     assert shown == ["1.25", "20\u2008\u2007\u2007", "300.5\u2007", "", "none"]
-    fixed = cells(table([Head("name"), Head("value", ".2f")], [["a", 1.25], ["b", 20.0]]), 1)
-    assert fixed == ["1.25", "20.00"]
+    drawn = table([Head("name"), Head("value", ".2f"), Head("nothing")], [["a", 1.25, None], ["b", 20.0, math.nan]])
+    assert re.findall(r"<t[hd]\b([^>]*)>([^<]*)", drawn) == [
+        (' scope="col"', "name"), (' class="n" scope="col"', "value"),
+        *((' scope="row"', "a"), (' class="n"', "1.25")), *((' scope="row"', "b"), (' class="n"', "20.00")),
+    ]  # fmt: skip
 
 
 def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
