@@ -226,6 +226,7 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     stacked = Figure([panel, half, half], "two rows", stacked=True)
     assert [len(row) for row in stacked.rows] == [1, 2]
     assert svg.drawn(stacked).count("<svg") == 1
+    assert _laid_out(stacked, 160.0).axes[0].get_title() == "caption"
     heights = [
         float(parsed(svg.drawn(figure(y=Axis(label, 0.0, 1.0))))[0].get("viewBox").split()[3]) for label in ("", "y")
     ]
