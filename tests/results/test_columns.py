@@ -12,7 +12,7 @@ import pytest
 from check_samples import PADS, case
 from report_page import Page
 from report_samples import write_results
-from studies import RIGID, study_text, write_study
+from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
@@ -169,6 +169,20 @@ def test_a_row_of_the_catalogue_gives_column_heading_and_demands_in_two_units():
         ("slip_mm", "slip [mm]"),
     ]
     np.testing.assert_allclose(demands["slip_mm"].evaluate(runs, case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]])
+
+
+def test_columns_of_devices_that_are_for_runs_that_stood_are_empty_in_others(tmp_path):
+    devices = {"damper": [{"kind": "friction", "f": 0.05}], "tendon": {"psi": 0.1, "lambda": 0.5}}
+    pulses = [SINE, SINE | {"name": "strong", "amplitude_g": 2.0, "period_s": 2.0}]
+    text = study_text(pulses=pulses, cases=[RIGID | devices], output={"devices_work": True})
+    table = rb.run(write_study(tmp_path, text))
+    assert table["status"].tolist() == ["ok", "overturned"]
+    for column in (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"]):
+        if column.name in table:
+            upright, fallen = table[column.name].notna()
+            assert upright or column.sometimes, column.name
+            assert not (fallen and column.stood), column.name
+            assert fallen or column.stood or column.sometimes, column.name
 
 
 def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
