@@ -61,37 +61,22 @@ def parsed(drawn):
     return ET.fromstring(f"<div>{drawn}</div>")
 
 
-def test_every_kind_of_mark_is_drawn_on_the_page_with_its_tooltip_and_legend():
-    drawn = parsed(svg.drawn(figure(*MARKS, reads="plane")))
-    picture, key = drawn
-    of_class = {}
-    for node in picture.iter():
-        of_class.setdefault(node.get("class"), []).append(node)
-    assert {"band", "area s2", "level s3 d2", "s1", "bar", "limit d1", "event", "m none"} <= set(of_class)
-    assert len(of_class["s1"]) == 3
-    assert of_class["event"][0].get("d").count("M") == 2
-    assert [node.text for node in picture.iter("title")] == ["a", NASTY, "c", "at 1"]
-    assert NASTY in [node.text for node in picture.iter("text")]
-    assert {"plot", "marks", "readings", "alone"} == set(picture.get("class").split())
-    assert [item[1].text for item in key] == ["span", "area", "line", "points", "failed", "limit", "events"]
-    (group,) = of_class["axes"]
-    assert group.get("data-names") == "θmax/α|F [kN]"
-    assert [path.get("data-name") for path in group] == ["named"]
-
-
 def numbers_in(path):
     return [float(number) for number in re.findall(r"-?[\d.]+", path.get("d"))]
 
 
-def test_marks_lie_where_their_values_are_and_numbers_beside_their_lines():
+def test_every_mark_is_drawn_on_the_page_where_its_values_are_with_its_tooltip_and_legend():
     """Read them back by the frame, whose ends are those of the axes; words may stand some pixels beside their point."""
     y = Axis("F [kN]", -1.0, 3.0)
     more = Span("y", 1.5, 2.5, look=Look("strip")), Rule("x", X[1:2], 0.25, 0.5, look=Look("bar low"))
-    drawn = parsed(svg.drawn(figure(*MARKS, *more, Words(1.5, 2.0, "left", -1, 10.0), y=y, caption="c", reads="plane")))
-    picture = next(node for node in drawn.iter("svg") if "readings" in node.get("class"))
+    picture, key = parsed(svg.drawn(figure(*MARKS, *more, Words(1.5, 2.0, "left", -1, 10.0), y=y, reads="plane")))
     of_class = {}
     for node in picture.iter():
         of_class.setdefault(node.get("class"), []).append(node)
+    assert of_class["event"][0].get("d").count("M") == 2
+    assert [node.text for node in picture.iter("title")] == ["a", NASTY, "c", "at 1"]
+    assert {"plot", "marks", "readings", "alone"} == set(picture.get("class").split())
+    assert [item[1].text for item in key] == ["span", "area", "line", "points", "failed", "limit", "events"]
     left, top, foot, right = numbers_in(of_class["edge"][0])
     (x0, y0), (dx, dy) = (left, foot - (foot - top) / 4), ((right - left) / 2, (foot - top) / 4)
 
@@ -99,6 +84,7 @@ def test_marks_lie_where_their_values_are_and_numbers_beside_their_lines():
         return pytest.approx((x0 + x * dx, y0 - y * dy), abs=0.06)
 
     (group,) = of_class["axes"]
+    assert (group.get("data-names"), [path.get("data-name") for path in group]) == ("θmax/α|F [kN]", ["named"])
     assert [*map(float, group.get("data-box").split())] == pytest.approx(
         [left, top, right - left, foot - top], abs=0.06
     )
@@ -240,6 +226,7 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     stacked = Figure([panel, half, half], "two rows", stacked=True)
     assert [len(row) for row in stacked.rows] == [1, 2]
     assert svg.drawn(stacked).count("<svg") == 1
+    assert _laid_out(stacked, 160.0).axes[0].get_title() == "caption"
     heights = [
         float(parsed(svg.drawn(figure(y=Axis(label, 0.0, 1.0))))[0].get("viewBox").split()[3]) for label in ("", "y")
     ]

@@ -5,7 +5,7 @@ import re
 import pint
 import pytest
 
-from rockbatch.common.units import Bounds, acceleration_factor
+from rockbatch.common.units import Bounds, acceleration_factor, length_factor
 from rockbatch.toml.meant import in_another_unit, quantity_of
 
 
@@ -86,3 +86,10 @@ def test_a_value_in_another_unit_is_told_with_what_to_write(key, own, others):
 )  # fmt: skip
 def test_what_must_be_above_0_says_so_of_others_their_bounds_are_said(bounds, value, words):
     assert bounds.message(value) == words
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("mm", 1e-3), ("CM", 1e-2), (" cm/sec", 1e-2), ("m", 1.0), ("inch", None)]
+)
+def test_lengths_and_velocities_have_the_factor_of_their_length(unit, factor):
+    assert length_factor(unit) == factor

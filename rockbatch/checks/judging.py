@@ -316,7 +316,7 @@ def _too_few(rule: Rule, count: str, records: int) -> str:
     """Return the remark that too few records count, and the code that asks for more; empty if there are enough."""
     statistic = STATISTICS[rule.statistic or "max"]
     least, authority = statistic.least, statistic.code
-    if rule.least is not None and rule.least > least:
+    if rule.least is not None:
         least, authority = rule.least, "the check"
     if records >= least:
         return ""

@@ -174,7 +174,7 @@ def _over_mass(
             limits=(Limit(),),
             **facts,
         ),
-        _in_kilonewtons(second, field, _TIMES_MASS[unit], symbol, lambda pier: pier.mass_t, limit, behind and first),
+        _in_kilonewtons(second, field, _TIMES_MASS[unit], symbol, lambda pier: pier.mass_t, limit, first),
     )
 
 

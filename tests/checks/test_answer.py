@@ -265,6 +265,31 @@ def test_a_demand_is_written_without_an_exponent_and_distinguished_from_its_limi
     assert wording.number(value, limit) == words
 
 
+@pytest.mark.parametrize(
+    ("value", "more", "words"),
+    [
+        (0.25, {}, ("0.25 ≤ 0.5", "≤ 0.5", "0.50", "0.25")),
+        (0.5, {}, ("0.5 ≤ 0.5", "≤ 0.5", "1.00", "0")),
+        (0.6, {"unit": "m"}, ("0.6 m > 0.5 m", "≤ 0.5", "1.20", "-0.1")),
+        (0.4999, {}, ("0.4999 ≤ 0.5", "≤ 0.5", "0.9998", "0.0001")),
+        (0.75, {"sense": "at least"}, ("0.75 ≥ 0.5", "≥ 0.5", "0.67", "0.25")),
+        (0.5, {"sense": "at least"}, ("0.5 ≥ 0.5", "≥ 0.5", "1.00", "0")),
+        (0.4, {"sense": "at least"}, ("0.4 < 0.5", "≥ 0.5", "1.25", "-0.1")),
+        (math.inf, {}, ("∞ > 0.5", "≤ 0.5", "∞", "-∞")),
+        (0.25, {"high": math.inf}, ("≥ 0.25 ≤ 0.5", "≤ 0.5", "≥ 0.50", "≤ 0.25")),
+    ],
+)
+def test_a_verdict_stands_with_signs_of_its_sense_and_digits_that_tell_it_from_its_limit(value, more, words):
+    at_most = "sense" not in more
+    ratio, margin = (value / 0.5, 0.5 - value) if at_most else (0.5 / value, value - 0.5)
+    one = verdict("a", "pass", **({"value": value, "high": value, "ratio": ratio, "margin": margin} | more))
+    found = (
+        words_of(one).replace("\u00a0", " ")
+        for words_of in (wording.against, wording.limit, wording.ratio, wording.margin)
+    )
+    assert tuple(found) == words
+
+
 def test_a_sentence_that_holds_for_several_verdicts_is_said_once():
     few, open_ = "the most unfavourable of fewer than 7 records", "no error estimate"
     some = [verdict(name, "pass", check=check, note=few) for name in "abc" for check in ("drift", "uplift")]

@@ -77,15 +77,11 @@ def test_a_limit_that_no_run_comes_near_is_noted_unless_it_is_confirmed(limit, c
 @pytest.mark.parametrize(
     ("values", "q", "expected"),
     [
-        ([4, 1, 3, 2], 0.5, 2.5),
-        ([4, 1, 3, 2], 0.84, 3.52),  # place 2.52 among ranks 0..3
-        ([7], 0.84, 7),
-        ([1, 2, INF], 0.5, 2),
-        ([1, 2, INF], 0.84, INF),
-        ([1, INF], 0.5, INF),
+        ([4, 1, 3, 2], 0.5, 2.5), ([4, 1, 3, 2], 0.84, 3.52),  # place 2.52 among ranks 0..3
+        ([7], 0.84, 7), ([1, 2, INF], 0.5, 2), ([1, 2, INF], 0.84, INF), ([1, INF], 0.5, INF),
         ([*range(56), *[INF] * 45], 0.55, 55),  # 0.55·100 is 55 but for rounding
     ],
-)
+)  # fmt: skip
 def test_a_quantile_is_linear_between_ranks_and_infinite_where_it_needs_an_infinite_rank(values, q, expected):
     assert quantile(np.array(list(values), dtype=float), q) == pytest.approx(expected, rel=1e-12)
 
@@ -108,14 +104,10 @@ def test_no_statistic_falls_when_a_value_grows(values, index, name, more):
 @pytest.mark.parametrize(
     ("asked", "expected"),
     [
-        ({}, 0.6),
-        ({"statistic": "max"}, 0.6),
-        ({"statistic": "mean"}, 0.3),
-        ({"statistic": "median"}, 0.25),
-        ({"statistic": "p84"}, 0.3 + 0.52 * 0.3),
-        ({"statistic": "count", "above": 0.2}, 2),
+        ({}, 0.6), ({"statistic": "max"}, 0.6), ({"statistic": "mean"}, 0.3), ({"statistic": "median"}, 0.25),
+        ({"statistic": "p84"}, 0.3 + 0.52 * 0.3), ({"statistic": "count", "above": 0.2}, 2),
     ],
-)
+)  # fmt: skip
 def test_a_statistic_over_the_records_is_what_a_hand_computes(asked, expected):
     assert judged(runs([0.1, 0.2, 0.6, 0.3]), **asked).value == pytest.approx(expected, rel=1e-12)
 
@@ -183,20 +175,14 @@ def test_a_response_that_is_unknown_does_not_pass_for_an_unacceptable_one_under_
 @pytest.mark.parametrize(
     ("status", "way", "value", "verdict", "records"),
     [
-        ("overturned", "infinite", INF, "fail", 3),
-        ("overturned", "unknown", 0.4, "not decided", 3),
-        ("overturned", "value", 0.4, "pass", 3),
-        ("overturned", "left out", 0.2, "pass", 2),
-        ("flight", "infinite", INF, "fail", 3),
-        ("flight", "unknown", 0.4, "not decided", 3),
-        ("flight", "value", 0.4, "pass", 3),
-        ("flight", "left out", 0.2, "pass", 2),
-        ("failed", "infinite", INF, "fail", 3),
+        ("overturned", "infinite", INF, "fail", 3), ("overturned", "unknown", 0.4, "not decided", 3),
+        ("overturned", "value", 0.4, "pass", 3), ("overturned", "left out", 0.2, "pass", 2),
+        ("flight", "infinite", INF, "fail", 3), ("flight", "unknown", 0.4, "not decided", 3),
+        ("flight", "value", 0.4, "pass", 3), ("flight", "left out", 0.2, "pass", 2), ("failed", "infinite", INF, "fail", 3),
         ("failed", "unknown", 0.2, "not decided", 3),  # what has not settled is no lower bound
-        ("failed", "value", 0.4, "pass", 3),
-        ("failed", "left out", 0.2, "pass", 2),
+        ("failed", "value", 0.4, "pass", 3), ("failed", "left out", 0.2, "pass", 2),
     ],
-)
+)  # fmt: skip
 def test_a_run_that_did_not_go_through_counts_as_the_rule_says_and_is_reported(status, way, value, verdict, records):
     table = runs([0.1, 0.2, 0.4], status=["ok", "ok", status])
     found = judged(table, **{status: way})
@@ -567,17 +553,12 @@ def test_the_worked_values_belong_to_the_sample_pier():
 @pytest.mark.parametrize(
     ("demand", "status", "flight_s", "low", "high"),
     [
-        ("flight", "flight", 3.0, 1, 1),
-        ("flight", "ok", 3.0, 1, 1),  # guided: the run went on
-        ("flight", "failed", math.nan, 0, 1),
-        ("flight", "overturned", math.nan, 0, 0),
-        ("overturned", "overturned", math.nan, 1, 1),
-        ("overturned", "flight", 3.0, 0, 1),
-        ("overturned", "failed", math.nan, 0, 1),
-        ("failed", "failed", math.nan, 1, 1),
-        ("failed", "flight", 3.0, 0, 0),
+        ("flight", "flight", 3.0, 1, 1), ("flight", "ok", 3.0, 1, 1),  # guided: the run went on
+        ("flight", "failed", math.nan, 0, 1), ("flight", "overturned", math.nan, 0, 0),
+        ("overturned", "overturned", math.nan, 1, 1), ("overturned", "flight", 3.0, 0, 1),
+        ("overturned", "failed", math.nan, 0, 1), ("failed", "failed", math.nan, 1, 1), ("failed", "flight", 3.0, 0, 0),
     ],
-)
+)  # fmt: skip
 def test_an_event_is_unknown_where_the_run_ended_before(demand, status, flight_s, low, high):
     found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0)
     assert (found.low, found.high) == (low, high)

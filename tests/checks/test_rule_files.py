@@ -114,13 +114,8 @@ limit = 3
     told = [problem.removeprefix(f"{path}:") for problem in problems(path)]
     assert [problem.split(":")[0] for problem in told] == ["1", "4", "5", "8", "12", "17"]
     parts = (
-        "title",
-        "theta_max_over_alpha",
-        "without quotes",
-        "given twice",
-        "reason is missing",
-        "limit: unknown key",
-    )
+        "title", "theta_max_over_alpha", "without quotes", "given twice", "reason is missing", "limit: unknown key",
+    )  # fmt: skip
     assert all(part in problem for problem, part in zip(told, parts, strict=True))
 
 

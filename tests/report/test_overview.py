@@ -86,13 +86,6 @@ def test_runs_without_a_peak_are_named_by_foundation_or_counted(tmp_path, hundre
     assert "100 × overturned" in hundred.read_text(encoding="utf-8")
 
 
-def test_long_tables_are_folded_and_short_ones_stand_open(hundred):
-    text = hundred.read_text(encoding="utf-8")
-    assert re.search(r"<details><summary>Every run: 600 rows</summary><div [^>]*><table", text)
-    assert re.search(r"<details><summary>Foundations: 100 rows</summary>", text)
-    assert not re.search(r"<summary>Ground motions", text)
-
-
 @needs_chromium
 @pytest.mark.parametrize("many", ["hundred", "hundreds"])
 def test_the_whole_answer_is_on_the_first_screen(many, request):

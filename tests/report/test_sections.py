@@ -9,18 +9,19 @@ import pandas as pd
 import pytest
 from report_page import Page
 from report_samples import FOUNDATIONS, case_entry, write_results
+from studies import study_text, write_study
 
 import rockbatch.reporting.sections
 from rockbatch.pier import Damper, Pier, RigidBase
-from rockbatch.reporting import compared
+from rockbatch.reporting import compared, write_analyses
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
 from rockbatch.reporting.sections import answer, forces
 from rockbatch.reporting.templates import Section, document
-from rockbatch.results.run_json import describe_case
-from rockbatch.study import Case
+from rockbatch.results.run_json import describe_case, describe_study
+from rockbatch.study import Case, load_study
 
 STUDY = {"title": "Piers & pads", "notes": "First.\n\nSecond.", "text": 'title = "Piers & pads"', "sha256": "0"}
 
@@ -63,6 +64,14 @@ def test_a_folder_without_a_run_has_notes_and_the_study_file_alone(tmp_path):
     assert "First." in shown.text
     assert 'title = "Piers & pads"' in shown.text
     assert Page(page(Contents(tmp_path, STUDY | {"notes": "", "title": ""}))).headings == ["The study file"]
+
+
+def test_analyses_go_into_the_report_of_their_study_and_without_its_table_onto_a_page_of_their_own(tmp_path):
+    study = load_study(write_study(tmp_path, study_text()))
+    write_results(tmp_path, study=describe_study(study))
+    assert write_analyses(tmp_path, study).name == "report.html"
+    (tmp_path / "peaks.csv").unlink()
+    assert write_analyses(tmp_path, study).name == "analyses.html"
 
 
 def test_a_section_that_does_not_apply_has_no_heading_and_no_link():

@@ -61,13 +61,6 @@ def test_too_few_motions_have_no_distribution(tmp_path):
     assert "predicts no earthquake" in page.text
 
 
-def test_more_groups_than_panels_are_counted(tmp_path):
-    write_results(tmp_path, scales=tuple(0.1 * i for i in range(1, 15)))
-    section = distribution.section(read(tmp_path, ()))
-    assert section.count("<figcaption><span>motions scaled") == 12
-    assert "The first 12 of 14 groups are shown." in Page(section).text
-
-
 def test_of_too_many_foundations_the_best_are_drawn(tmp_path):
     pier = Pier(alpha=0.13, p=0.38)
     etas = [2.0 + 0.1 * i for i in range(25)]

@@ -15,7 +15,7 @@ from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, Head, table
     [
         (9.088e-5, ".4g", "0.00009088"), (117_000.0, ".3g", "117,000"), (182_800.0, ".4g", "182,800"),
         (1550.0, ".3g", "1550"), (123_456.789, ".10g", "123,456.789"), (3e-7, ".1g", "3 × 10⁻⁷"),
-        (-2.5e12, ".3g", "-2.5 × 10¹²"), (2e9, ".3g", "2,000,000,000"), (-0.0001, ".2f", "0.00"),
+        (-2.5e12, ".3g", "-2.5 × 10¹²"), (2e9, ".3g", "2,000,000,000"), (-0.0001, ".2f", "0.00"), (-0.25, ".2f", "-0.25"),
         (12_345.0, ",.0f", "12,345"), (20.0, "+.1f", "+20.0"), (math.inf, ".3g", "inf"), (math.nan, ".3g", ""),
         (None, ".3g", ""), ("words", ".3g", "words"), (7, ".3g", "7"), (0.0, ".3g", "0"),
     ],
@@ -38,8 +38,11 @@ def test_decimal_points_stand_below_each_other_whatever_the_digits():
         1,
     )
     assert shown == ["1.25", "20\u2008\u2007\u2007", "300.5\u2007", "", "none"]
-    fixed = cells(table([Head("name"), Head("value", ".2f")], [["a", 1.25], ["b", 20.0]]), 1)
-    assert fixed == ["1.25", "20.00"]
+    drawn = table([Head("name"), Head("value", ".2f"), Head("nothing")], [["a", 1.25, None], ["b", 20.0, math.nan]])
+    assert re.findall(r"<t[hd]\b([^>]*)>([^<]*)", drawn) == [
+        (' scope="col"', "name"), (' class="n" scope="col"', "value"),
+        *((' scope="row"', "a"), (' class="n"', "1.25")), *((' scope="row"', "b"), (' class="n"', "20.00")),
+    ]  # fmt: skip
 
 
 def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():

@@ -2,7 +2,7 @@
 
 import json
 import re
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +12,12 @@ import pytest
 from check_samples import PADS, case
 from report_page import Page
 from report_samples import write_results
-from studies import RIGID, study_text, write_study
+from studies import RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
+from rockbatch.motions.scaling import Target
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
@@ -170,6 +171,20 @@ def test_a_row_of_the_catalogue_gives_column_heading_and_demands_in_two_units():
     np.testing.assert_allclose(demands["slip_mm"].evaluate(runs, case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]])
 
 
+def test_columns_of_devices_that_are_for_runs_that_stood_are_empty_in_others(tmp_path):
+    devices = {"damper": [{"kind": "friction", "f": 0.05}], "tendon": {"psi": 0.1, "lambda": 0.5}}
+    pulses = [SINE, SINE | {"name": "strong", "amplitude_g": 2.0, "period_s": 2.0}]
+    text = study_text(pulses=pulses, cases=[RIGID | devices], output={"devices_work": True})
+    table = rb.run(write_study(tmp_path, text))
+    assert table["status"].tolist() == ["ok", "overturned"]
+    for column in (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"]):
+        if column.name in table:
+            upright, fallen = table[column.name].notna()
+            assert upright or column.sometimes, column.name
+            assert not (fallen and column.stood), column.name
+            assert fallen or column.stood or column.sometimes, column.name
+
+
 def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, table):
     assert set(table["status"]) == {"ok", "overturned"}
     for name in columns(study):
@@ -196,6 +211,11 @@ def test_run_json_says_the_unit_of_every_number(study, table):
     assert (told["settlement_m"], told["theta_res_drift_per_s"], told["impacts"]) == ("m", "1/s", "1")
 
 
+def test_a_target_that_is_no_spectrum_is_none_that_the_suite_is_compared_with(study):
+    to_pga = replace(study, motions=replace(study.motions, target=Target(pga_g=0.3)))
+    assert "target" not in describe(to_pga, ground_motions(study))
+
+
 def test_demands_read_columns_of_the_table_only():
     pads = case("pads", PADS)
     runs = pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()})
@@ -220,6 +240,11 @@ def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):
     for together in (["theta_res_over_alpha", "base_tilt_rad", "settlement_m"], ["reason", "note"]):
         start = shown.index(together[0])
         assert shown[start : start + len(together)] == together
+    behind = {column.name: column.page.behind for column in COLUMNS.values() if column.page and column.page.behind}
+    for name, first in behind.items():
+        between = shown[shown.index(first) + 1 : shown.index(name)]
+        assert shown.index(first) < shown.index(name)
+        assert all(behind.get(other) in (first, *between) for other in between), name
     write_results(tmp_path)
     text = write_report(tmp_path).read_text(encoding="utf-8")
     assert 'title="base_tilt_rad × 1000: residual tilt of the base">base tilt [mrad]</th>' in text

@@ -153,7 +153,7 @@ class Axis:
         return dict(zip(places, written(places), strict=True))
 
     def _steps(self) -> list[float]:
-        rough = (self.high - self.low) / max(self.about, 1)
+        rough = (self.high - self.low) / self.about
         power = 10.0 ** math.floor(math.log10(rough))
         step = next(power * round_ for round_ in (1, 2, 2.5, 5, 10) if power * round_ >= rough * (1 - 1e-9))
         first, last = math.ceil(self.low / step - 1e-9), math.floor(min(self.high, self.last) / step + 1e-9)

@@ -1,5 +1,6 @@
 """Sequences shock by shock: peaks, and what is left of each when the next begins."""
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
@@ -41,7 +42,7 @@ def section(finished: Finished) -> Markup:
 
 def _peak(row: dict[str, Any]) -> float:
     theta = float(row["theta_max_over_alpha"])
-    return -1.0 if theta != theta else theta
+    return -math.inf if theta != theta else theta
 
 
 def _table(finished: Finished, rows: Sequence[dict[str, Any]]) -> Markup:
