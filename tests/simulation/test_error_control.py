@@ -317,6 +317,14 @@ def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_sti
     assert outcome.theta_max_error == pytest.approx(0.02)
 
 
+def test_no_try_takes_more_steps_than_a_run_may(monkeypatch):
+    asked = scripted(monkeypatch, *(ok(0.1 + 0.01 * (-1) ** i) for i in range(50)))
+    monkeypatch.setattr(error_control, "MOST_STEPS", error_control.steps_of(SINE, 16, 2.0))
+    outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4, 2.0)
+    assert (asked[-1], outcome.status) == (16, "failed")
+    assert "the next try would take 2e+04 steps" in outcome.reason
+
+
 def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
     scripted(monkeypatch, ok(0.1))
     assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).theta_max_error == error_control.ROUNDING * FIG5.alpha
