@@ -470,6 +470,11 @@ def test_steps_respect_how_fast_devices_let_a_block_vibrate_or_slow_it(devices, 
     assert first_substeps(FIG5, base, dt) == (25 if rate else 2)  # up to 0.2
 
 
+def test_a_damper_whose_force_is_a_root_of_the_speed_may_slow_a_block_at_a_hundred_times_p():
+    base = RigidBase(restraints=(Damper("viscous", nu=3.0, at=0.0, exponent=0.5),))
+    assert [fastest_rate(pier, base) / pier.p for pier in (FIG5, TOWER)] == pytest.approx([100.0, 100.0], rel=1e-9)
+
+
 @pytest.mark.parametrize("zeta", [0.0, 0.3])
 @pytest.mark.parametrize(("devices", "_"), [rate for rate in RATES if rate[1] not in (0.0, 100.0 * FIG5.p)])
 def test_steps_on_springs_respect_the_fastest_vibration_and_decay_with_devices(devices, _, zeta):

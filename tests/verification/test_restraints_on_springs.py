@@ -19,6 +19,7 @@ from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Tendon, Y
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.restraints import rests_at
+from rockbatch.simulation.starting import start_of
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)
@@ -253,6 +254,22 @@ def test_prestress_is_carried_from_the_start():
     assert rows.z_left[0] == pytest.approx(-2.0 / 2.5, rel=1e-15)
     assert np.abs(rows.theta).max() == 0.0
     assert np.ptp(rows.v) < 1e-14
+
+
+@pytest.mark.parametrize("turn", [0.002, -0.05])
+def test_springs_of_a_pier_that_is_held_bear_its_weight_and_its_tendon(turn):
+    """In finite kinematics, on two springs and on one; places of the base are complex numbers, turned by exp(−iθ)."""
+    base = ElasticBase(50.0, kinematics="finite", restraints=(Tendon(psi=0.3, lam=1.0, at=0.4),))
+    pier, h = replace(FIG5, initial_rotation_rad=turn), FIG5.height
+    start = start_of(pier, base)
+    left, right, place = (
+        start.v + h + ((s - 1j * h) * np.exp(-1j * turn)).imag for s in (-FIG5.half_width, FIG5.half_width, 0.4)
+    )
+    z = [min(at - start.unstressed, 0.0) * (50.0 * FIG5.p) ** 2 / GRAVITY for at in (left, right)]
+    assert (start.z_left, start.z_right) == pytest.approx(z, rel=1e-9)
+    by_v = 1.0 / math.cos(0.5 * turn)
+    pull = GRAVITY * (0.3 + FIG5.size / FIG5.half_width**2 * by_v * (place - start.level))
+    assert -0.5 * GRAVITY * sum(z) == pytest.approx(GRAVITY + by_v * pull, rel=1e-9)
 
 
 @pytest.mark.parametrize("sticks", [False, True])
