@@ -501,10 +501,11 @@ def test_steps_on_springs_respect_the_fastest_vibration_and_decay_with_devices(d
 
 def test_a_change_of_what_governs_nothing_is_a_share_of_a_hundredth_of_its_scale():
     """The scale of forces is the weight, of gaps what a heel rises by at α, of speeds that of a corner at α p, of a damper's
-    force 1."""
-    pier, rise = FIG5, 2.0 * B * FIG5.alpha
-    for quantity, scale in (("force", pier.gravity), ("moment", pier.gravity * B), ("share", 1.0), ("gap", rise),
-                            ("speed", pier.size * pier.alpha * pier.p), ("rotation", pier.alpha)):  # fmt: skip
+    force 1, of friction tan α, of energy half of what lifts the weight with its centre by half that rise."""
+    pier, rise = TOWER, 2.0 * TOWER.half_width * TOWER.alpha
+    for quantity, scale in (("force", pier.gravity), ("moment", pier.gravity * pier.half_width), ("share", 1.0), ("gap", rise),
+                            ("speed", pier.size * pier.alpha * pier.p), ("rotation", pier.alpha),
+                            ("friction", math.tan(pier.alpha)), ("energy", 0.5 * pier.gravity * 0.5 * rise)):  # fmt: skip
         one = {"it": Sized(("x", "y"), quantity)}
         for value, expected in ((0.0, 1e-3), (0.005 * scale, 1e-3), (0.02 * scale, 5e-4)):
             fine, coarse = SimpleNamespace(x=None, y=value), SimpleNamespace(x=None, y=value + 1e-5 * scale)
