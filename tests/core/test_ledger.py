@@ -86,10 +86,6 @@ def test_stored_energy_is_that_of_the_history(name):
     assert stored.to_numpy() == pytest.approx(response.energy, abs=1e-12)
 
 
-def test_nobody_has_a_ledger_who_did_not_ask():
-    assert rb.simulate(PIER, BASES["elastic"], SMOOTH, substeps=4).ledger is None
-
-
 STUDY = study_text(cases=(RIGID, PADS | {"eta": 2.2, "epsilon": 0.1}))
 
 

@@ -317,6 +317,14 @@ def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_sti
     assert outcome.theta_max_error == pytest.approx(0.02)
 
 
+def test_no_try_takes_more_steps_than_a_run_may(monkeypatch):
+    asked = scripted(monkeypatch, *(ok(0.1 + 0.01 * (-1) ** i) for i in range(50)))
+    monkeypatch.setattr(error_control, "MOST_STEPS", error_control.steps_of(SINE, 16, 2.0))
+    outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4, 2.0)
+    assert (asked[-1], outcome.status) == (16, "failed")
+    assert "the next try would take 2e+04 steps" in outcome.reason
+
+
 def test_no_error_below_rounding_is_ever_claimed(monkeypatch):
     scripted(monkeypatch, ok(0.1))
     assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).theta_max_error == error_control.ROUNDING * FIG5.alpha
@@ -462,6 +470,11 @@ def test_steps_respect_how_fast_devices_let_a_block_vibrate_or_slow_it(devices, 
     assert first_substeps(FIG5, base, dt) == (25 if rate else 2)  # up to 0.2
 
 
+def test_a_damper_whose_force_is_a_root_of_the_speed_may_slow_a_block_at_a_hundred_times_p():
+    base = RigidBase(restraints=(Damper("viscous", nu=3.0, at=0.0, exponent=0.5),))
+    assert [fastest_rate(pier, base) / pier.p for pier in (FIG5, TOWER)] == pytest.approx([100.0, 100.0], rel=1e-9)
+
+
 @pytest.mark.parametrize("zeta", [0.0, 0.3])
 @pytest.mark.parametrize(("devices", "_"), [rate for rate in RATES if rate[1] not in (0.0, 100.0 * FIG5.p)])
 def test_steps_on_springs_respect_the_fastest_vibration_and_decay_with_devices(devices, _, zeta):
@@ -488,10 +501,11 @@ def test_steps_on_springs_respect_the_fastest_vibration_and_decay_with_devices(d
 
 def test_a_change_of_what_governs_nothing_is_a_share_of_a_hundredth_of_its_scale():
     """The scale of forces is the weight, of gaps what a heel rises by at α, of speeds that of a corner at α p, of a damper's
-    force 1."""
-    pier, rise = FIG5, 2.0 * B * FIG5.alpha
-    for quantity, scale in (("force", pier.gravity), ("moment", pier.gravity * B), ("share", 1.0), ("gap", rise),
-                            ("speed", pier.size * pier.alpha * pier.p), ("rotation", pier.alpha)):  # fmt: skip
+    force 1, of friction tan α, of energy half of what lifts the weight with its centre by half that rise."""
+    pier, rise = TOWER, 2.0 * TOWER.half_width * TOWER.alpha
+    for quantity, scale in (("force", pier.gravity), ("moment", pier.gravity * pier.half_width), ("share", 1.0), ("gap", rise),
+                            ("speed", pier.size * pier.alpha * pier.p), ("rotation", pier.alpha),
+                            ("friction", math.tan(pier.alpha)), ("energy", 0.5 * pier.gravity * 0.5 * rise)):  # fmt: skip
         one = {"it": Sized(("x", "y"), quantity)}
         for value, expected in ((0.0, 1e-3), (0.005 * scale, 1e-3), (0.02 * scale, 5e-4)):
             fine, coarse = SimpleNamespace(x=None, y=value), SimpleNamespace(x=None, y=value + 1e-5 * scale)

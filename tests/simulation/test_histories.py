@@ -102,10 +102,12 @@ def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its
     assert f"{np.abs(expected).max():.4f}" in [mark.text for mark in events if isinstance(mark, Words)]
     loops = panels[4:]
     assert len(loops) == (0 if isinstance(response.base, rb.RigidBase) else 2)
+    yields = isinstance(response.base, rb.YieldingBase)
     for loop in loops:
+        assert (loop.x.plain == "v [mm]", loop.y.plain == "F/(M g)") == (not yields, not yields)
         line, *limit = loop.marks
         assert np.nanmax(line.y) < 0.0
-        assert [mark.at.tolist() for mark in limit] == ([[-1.0]] if isinstance(response.base, rb.YieldingBase) else [])
+        assert [mark.at.tolist() for mark in limit] == ([[-1.0]] if yields else [])
     response.plot().savefig(tmp_path / "response.png")
     assert (tmp_path / "response.png").stat().st_size > 10_000
 

@@ -1,6 +1,7 @@
 """Rocking apart from the lean of a base that has yielded: what the greatest rotation is, in rows, notes, columns and checks."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
 from rockbatch.simulation.histories import rocking_from_lean, written
-from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of
+from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed
 from rockbatch.simulation.models import readings
 from rockbatch.study import Case, Numerics, Output, load_study
 
@@ -106,6 +107,19 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
     rigid = outcome_of(rb.RigidBase(), motion, rocking=True)
     assert (rigid.theta_rocking_error, rigid.theta_lean_error) == (rigid.theta_max_error, None)
     assert outcome_of(PADS, motion).theta_rocking_error is None
+
+
+def test_supports_are_unstressed_above_their_pivots_by_what_their_springs_give():
+    """Pivots as complex numbers, turned by exp(−iθ), or 1 − iθ; while one is away its support stays where it was."""
+    rng, b, h = np.random.default_rng(3), PIER.half_width, PIER.height
+    theta, v, *z = rng.uniform((-0.3, -0.1, -1.0, -1.0), (0.3, 0.1, 0.0, 0.0), (9, 4)).T
+    rows = SimpleNamespace(theta=theta, v=v, z_left=z[0], z_right=z[1], left=np.arange(9) != 4, right=np.ones(9))
+    for kinematics, turned in (("finite", np.exp(-1j * theta)), ("first-order", 1.0 - 1j * theta)):
+        pivots = [v + h + ((side * b - 1j * h) * turned).imag for side in (-1.0, 1.0)]
+        left, right = (at - PADS.eta * PIER.gravity / PADS.beta**2 * each for at, each in zip(pivots, z, strict=True))
+        left[4] = left[3]
+        found = unstressed(PIER, replace(PADS, kinematics=kinematics), rows)
+        assert np.concatenate(found) == pytest.approx(np.concatenate([left, right]), rel=1e-12)
 
 
 def test_the_greatest_swing_about_a_line_is_found_between_rows_of_any_distance():

@@ -19,6 +19,7 @@ from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Tendon, Y
 from rockbatch.simulation import Run, run_fixed, run_to_tolerance, written_run
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.restraints import rests_at
+from rockbatch.simulation.starting import start_of
 
 ELASTIC = ElasticBase(50.0, epsilon=0.3)
 DAMPED = ElasticBase(50.0, zeta=0.05)
@@ -255,15 +256,35 @@ def test_prestress_is_carried_from_the_start():
     assert np.ptp(rows.v) < 1e-14
 
 
+@pytest.mark.parametrize("turn", [0.002, -0.05])
+def test_springs_of_a_pier_that_is_held_bear_its_weight_and_its_tendon(turn):
+    """In finite kinematics, on two springs and on one; places of the base are complex numbers, turned by exp(−iθ)."""
+    base = ElasticBase(50.0, kinematics="finite", restraints=(Tendon(psi=0.3, lam=1.0, at=0.4),))
+    pier, h = replace(FIG5, initial_rotation_rad=turn), FIG5.height
+    start = start_of(pier, base)
+    left, right, place = (
+        start.v + h + ((s - 1j * h) * np.exp(-1j * turn)).imag for s in (-FIG5.half_width, FIG5.half_width, 0.4)
+    )
+    z = [min(at - start.unstressed, 0.0) * (50.0 * FIG5.p) ** 2 / GRAVITY for at in (left, right)]
+    assert (start.z_left, start.z_right) == pytest.approx(z, rel=1e-9)
+    by_v = 1.0 / math.cos(0.5 * turn)
+    pull = GRAVITY * (0.3 + FIG5.size / FIG5.half_width**2 * by_v * (place - start.level))
+    assert -0.5 * GRAVITY * sum(z) == pytest.approx(GRAVITY + by_v * pull, rel=1e-9)
+
+
 @pytest.mark.parametrize("sticks", [False, True])
 def test_a_pier_rests_where_springs_and_devices_balance_wherever_its_run_has_ended(sticks):
     """Springs of any unstressed positions that carry the weight and the pulls at one rotation: a run that ends elsewhere, its
     devices elastic on the way, comes to rest there; friction that holds gives what is missing, and lets only θ + v/s change."""
     friction, b, g, h = (Damper("friction", f=0.1, at="right"),) * sticks, FIG5.half_width, GRAVITY, FIG5.height
     steel, tie = Damper("hysteretic", f=0.1, yield_m=0.005, at="left"), Tendon(psi=0.3, lam=1.0, at=0.4)
-    base = tied(ELASTIC, (steel, tie, DeckSpring(lam=0.5), *friction))
+    base = tied(
+        ELASTIC, (steel, tie, DeckSpring(lam=0.5), replace(tie, psi=0.1, at=-0.4), *friction)
+    )  # the last one is slack
     level, v, theta, z, unit = -0.003, -0.004, 0.003, 0.4, g * FIG5.size / b**2
-    pulls = [(0.1 * g * z, -b), (0.3 * g + unit * (v - level - 0.4 * theta), 0.4), (0.02 * g * sticks, b)]
+    stretched = 5e-4
+    taut = 0.3 * g + unit * (v - level - 0.4 * theta - stretched)
+    pulls = [(0.1 * g * z, -b), (taut, 0.4), (0.02 * g * sticks, b)]
     k, deck = 0.5 * (50.0 * FIG5.p) ** 2, places(FIG5, base.restraints[2])[0].height
     load = g + sum(pull for pull, _ in pulls)
     moment = 0.5 * unit * deck**2 * theta - g * h * theta - sum(pull * s for pull, s in pulls)
@@ -271,9 +292,10 @@ def test_a_pier_rests_where_springs_and_devices_balance_wherever_its_run_has_end
         lift = b * turn if sticks else 0.3 * turn
         end = SimpleNamespace(v_end=v + lift, theta_end=theta + turn)
         end.base_left, end.base_right = (
-            0.5 * (load + side * moment / b) / k + v + side * b * theta - level - 0.65 * g / k for side in (1.0, -1.0)
+            0.5 * (load + side * moment / b) / k + v + side * b * theta - level - 0.7 * g / k for side in (1.0, -1.0)
         )
-        states, holds = [z + (lift + b * turn) / 0.005, *[0.0] * (2 + sticks)], [False] * 3 + [True] * sticks
+        states = [z + (lift + b * turn) / 0.005, stretched, 0.0, 0.1, *[0.0] * sticks]
+        holds = [False] * 4 + [True] * sticks
         assert rests_at(FIG5, base, end, level, states, holds) == pytest.approx(theta, rel=1e-4 if sticks else 1e-9)
 
 
