@@ -108,6 +108,12 @@ def test_a_station_xml_that_does_not_serve_says_why(tmp_path, channel, message):
     assert message in only_reason(read_motions(tmp_path))
 
 
+def test_epochs_of_a_station_xml_may_be_those_of_another_time_zone(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    station_xml(tmp_path, channel_xml("HNN").replace("2599-12-31T00:00:00", "2019-07-06T02:00:00-05:00"))
+    assert len(read_motions(tmp_path).motions) == 1
+
+
 def test_a_broken_xml_file_costs_only_the_sensitivity(tmp_path):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     (tmp_path / "stations.xml").write_text("<unclosed")
