@@ -72,10 +72,9 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         parts = _parts(first, second)
         dt = first.dt / parts
         slack = _SAME_SAMPLE * dt
-        earliest = max(0, math.floor((offset - slack) / dt) - 1)
-        latest = min((len(a) - 1) * parts, math.ceil((offset + second.duration + slack) / dt) + 1)
+        earliest = max(0, math.ceil((offset - slack) / dt))
+        latest = min((len(a) - 1) * parts, math.floor((offset + second.duration + slack) / dt))
         times = np.arange(earliest, latest + 1) * dt
-        times = times[(times >= offset - slack) & (times <= offset + second.duration + slack)]
         begin = float(times[0]) if len(times) else 0.0
         a = np.interp(times / first.dt, np.arange(len(a)), a)
         b = np.interp((times - offset) / second.dt, np.arange(len(b)), b)

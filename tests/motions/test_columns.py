@@ -380,9 +380,9 @@ def test_a_table_as_textbooks_and_programs_pass_it_on_is_read_whole(tmp_path, te
     np.testing.assert_allclose(motion.horizontal, 9.81 * np.array(list(map(float, SHAKEN))), rtol=1e-12)
 
 
-@pytest.mark.parametrize("count", [79, 81, "nan", "inf"])
-def test_a_count_over_a_column_that_is_not_its_own_is_no_count(tmp_path, count):
-    (tmp_path / "x_000.txt").write_text(f"# acceleration in g\n{count} 0.02\n" + "\n".join(SHAKEN))
+@pytest.mark.parametrize("line", ["79 0.02", "81 0.02", "nan 0.02", "inf 0.02", "80 1.0", "80 0.0", "80 -0.02"])
+def test_a_count_and_step_over_a_column_that_are_not_its_own_are_none(tmp_path, line):
+    (tmp_path / "x_000.txt").write_text(f"# acceleration in g\n{line}\n" + "\n".join(SHAKEN))
     assert "found 1 numbers; expected 2" in reason(tmp_path)
 
 

@@ -64,6 +64,20 @@ def test_a_vertical_channel_with_positive_dip_points_down(tmp_path):
     assert any("positive down" in note for note in motion.notes)
 
 
+@pytest.mark.parametrize(
+    ("channel", "azimuth"),
+    [
+        (channel_xml("HNE", 360.0), 0.0),
+        (channel_xml("HNE").replace("<Azimuth>0.0</Azimuth>", ""), 90.0),
+        (channel_xml("HNE").replace("<Dip>0.0</Dip>", ""), 90.0),
+    ],
+)
+def test_a_direction_is_that_of_the_station_xml_else_that_of_the_channels_code(tmp_path, channel, azimuth):
+    write_mseed(tmp_path / "e.mseed", trace("HNE"))
+    station_xml(tmp_path, channel)
+    assert [motion.azimuth for motion in read_motions(tmp_path)] == [azimuth]
+
+
 def test_a_file_of_several_channels_names_them_by_channel_id(tmp_path):
     write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), trace("HNZ"))
     found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))
@@ -92,6 +106,12 @@ def test_a_station_xml_that_does_not_serve_says_why(tmp_path, channel, message):
     write_mseed(tmp_path / "n.mseed", trace("HNN"))
     station_xml(tmp_path, channel)
     assert message in only_reason(read_motions(tmp_path))
+
+
+def test_epochs_of_a_station_xml_may_be_those_of_another_time_zone(tmp_path):
+    write_mseed(tmp_path / "n.mseed", trace("HNN"))
+    station_xml(tmp_path, channel_xml("HNN").replace("2599-12-31T00:00:00", "2019-07-06T02:00:00-05:00"))
+    assert len(read_motions(tmp_path).motions) == 1
 
 
 def test_a_broken_xml_file_costs_only_the_sensitivity(tmp_path):

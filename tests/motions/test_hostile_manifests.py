@@ -112,8 +112,10 @@ def test_a_csv_manifest_has_any_of_the_three_line_ends(folder, end):
     np.testing.assert_allclose(np.abs(motion.horizontal).max(), 2 * np.abs(wiggle()).max(), rtol=1e-6)
 
 
-def test_a_manifest_of_mistakes_in_a_folder_of_thousands_of_files_is_refused_soon(folder):
-    for i in range(1200):
+def test_a_manifest_of_mistakes_in_a_folder_of_many_files_has_few_hints(folder):
+    for i in range(300):
         (folder / f"a{i:06d}.json").touch()
-    text = "".join(f'[[record]]\nfile = "b{i:06d}.AT2"\n' for i in range(1200))
-    assert len(problems(folder, "motions.toml", text)) == MOST_REPORTED + 1
+    text = "".join(f'[[record]]\nfile = "b{i:06d}.json"\n' for i in range(300))
+    told = problems(folder, "motions.toml", text)
+    assert len(told) == MOST_REPORTED + 1
+    assert ["did you mean" in problem for problem in told] == [True] * 10 + [False] * (MOST_REPORTED - 9)

@@ -78,6 +78,7 @@ UNKNOWN = {"FECHA DEL SISMO [GMT]": "", "HORA EPICENTRO (GMT)": ""}
 HEADERS = [
     ("a.AT2", at2_text(wiggle()), "Made-up 1994", "Test Station", Sensor("TEST STATION"), "MADE-UP 1/17/1994",
      "MADE-UP, 1/17/1994, TEST STATION"),
+    ("a.AT2", at2_text(wiggle(), title="nothing, 000"), "", "", Sensor(), "", ""),
     ("a.EW", knet_text()[0], "2018-01-24", "TST003", Sensor("TST003", location=""), "", "TST003"),
     ("a.EW", knet_text("5")[0], "2018-01-24", "TST003", Sensor("TST003", location="2", place="surface"), "", "TST003.2"),
     ("a.V2A", geonet_text(2), "Waiau 2016", "Te Mara Farm Waiau", Sensor("WTMC", "NZ", "20"), "20161113_110256_WTMC_20",

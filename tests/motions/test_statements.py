@@ -85,8 +85,9 @@ def test_a_step_that_cannot_be_and_two_of_them_are_refused(lines, message):
     assert message in str(caught.value)
 
 
-@pytest.mark.parametrize(("line", "dt", "width"), [(*step, 1 + i % 4) for i, step in enumerate(STEPS)])
-def test_the_step_of_a_header_is_read_as_people_write_it_and_its_words_name_no_columns(tmp_path, line, dt, width):
+@pytest.mark.parametrize(("line", "dt"), STEPS)
+def test_the_step_of_a_header_is_read_as_people_write_it_and_its_words_name_no_columns(tmp_path, line, dt):
+    width = min(4, len(line.split()))
     write(tmp_path, f"# {line}\n# unit: g", *[np.roll(A, k) for k in range(width)], name="x.txt")
     names = ("000", "090", "up", "-")[:width]
     found = read_motions(tmp_path, options=ReadOptions(columns=names))

@@ -41,7 +41,7 @@ _VALUES = re.compile(
     re.I | re.A,
 )
 _END = re.compile(r"^ *(?:/&[ -]*)?End[- ]of[- ]data", re.I)
-_FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>\d{0,2})[IFED](?P<width>\d{1,2})(?:\.\d{1,2})? *", re.I | re.A)
+_FORMAT = re.compile(r" *(?:\dP,?)?(?P<per_line>[1-9]\d?)?[IFED](?P<width>[1-9]\d?)(?:\.\d{1,2})? *", re.I | re.A)
 _UNKNOWN = re.compile(r"unspecified: *-?\d+, *(?P<real>-?[\d.]{1,12})", re.I | re.A)
 _STATION, _SENSOR = 4, 8  # lines of the header's text
 _TEXT = layout(
@@ -145,10 +145,9 @@ def _header(lines: list[str], start: int) -> _Header:
 def _layout(text: str, index: int) -> tuple[int, int]:
     """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
     match = _FORMAT.fullmatch(text)
-    width, per_line = (int(match["width"]), int(match["per_line"] or 1)) if match else (0, 0)
-    if width < 1 or per_line < 1:
+    if match is None:
         raise InputError(f'line {index + 1}: found the format "({text[:20]})"; expected one such as (8F10.5)')
-    return width, per_line
+    return int(match["width"]), int(match["per_line"] or 1)
 
 
 def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Samples, int]:

@@ -114,8 +114,8 @@ def _broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
 
 
 def _times(blocks: "np.ndarray[Any, Any]") -> Samples:
-    """Return the times of the first samples of blocks [s since 1970], shape (blocks,)."""
-    midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + (blocks["day"].astype(int) - 1)
+    """Return the times of the first samples of blocks [s since the last day of 1969], shape (blocks,)."""
+    midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + blocks["day"].astype(int)
     day, hour, minute = midnight.astype(float), blocks["hour"].astype(float), blocks["minute"].astype(float)
     return ((24.0 * day + hour) * 60.0 + minute) * 60.0 + blocks["second"] + 1e-4 * blocks["fraction"]
 

@@ -16,7 +16,7 @@ _GROWTH = 20  # how many times more samples an even grid may take
 
 def grows_evenly(t: Samples) -> bool:
     """Return whether times are samples of one interval, as far as their printing tells; shape (npts,), any unit."""
-    return len(t) > 1 and _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
+    return _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
 
 
 def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[str, ...]]:
