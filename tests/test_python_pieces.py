@@ -47,16 +47,9 @@ def test_a_vertical_component_is_known_by_other_names_and_points_up():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-<<<<<<< HEAD
         (stream("HNE", "HNN", "HNZ"), "one horizontal component"), (stream("HNZ"), "one horizontal component"),
-        (Stream(), "not none"), (stream("HNE") + stream("HNZ", delta=0.02), "differ in sampling interval"),
-=======
-        (stream("HNE", "HNN", "HNZ"), "one horizontal component"),
-        (stream("HNZ"), "one horizontal component"),
-        (stream("HNE", "HNZ", "UD"), "one vertical one at most"),
-        (Stream(), "not none"),
+        (stream("HNE", "HNZ", "UD"), "one vertical one at most"), (Stream(), "not none"),
         (stream("HNE") + stream("HNZ", delta=0.02), "differ in sampling interval"),
->>>>>>> w-motions
         (stream("HNE") + stream("HNZ", starttime=UTCDateTime(5)), "or start"),
     ],
 )  # fmt: skip
