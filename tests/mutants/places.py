@@ -15,7 +15,16 @@ COMPUTED = {
 }  # fmt: skip
 SYMMETRIC = (
     *("min", "max", "isinstance", "cast", "checked", "np.minimum", "np.maximum", "np.fmin", "np.fmax", "math.hypot"),
-    *("windows", "same_counts", "_apart", "_residuals_apart", "correlation", "self._fitting", "self._overlap"),
+    *(
+        "windows",
+        "same_counts",
+        "_apart",
+        "_residuals_apart",
+        "correlation",
+        "overlap",
+        "self._fitting",
+        "self._overlap",
+    ),
 )
 """Functions to which the order of arguments means nothing, or that fail at once with another."""
 FACTOR = 1.1
