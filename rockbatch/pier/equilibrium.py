@@ -162,7 +162,7 @@ class SlowTurn:
                 side * place.way or 1.0,
             )
             for device in devices
-            if not (isinstance(device, Damper) and device.kind == "viscous")  # which bear nothing
+            if not (isinstance(device, Damper) and device.f == 0.0)  # of speed, which bear nothing at rest
             for place in places(pier, device)
         ]
         self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None

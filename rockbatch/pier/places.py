@@ -51,7 +51,7 @@ def prestress_over_weight(pier: Pier, restraints: tuple[Restraint, ...]) -> floa
 
 def holds_a_tilt(restraints: tuple[Restraint, ...]) -> bool:
     """Return whether a damper among them may hold the pier at a tilt: it keeps a force at rest, as friction does."""
-    return any(isinstance(device, Damper) and device.kind != "viscous" and device.f > 0 for device in restraints)
+    return any(isinstance(device, Damper) and device.f > 0 for device in restraints)
 
 
 def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
@@ -63,7 +63,7 @@ def recentres(pier: Pier, restraints: tuple[Restraint, ...]) -> bool:
         holding, righting = 0.0, pier.size * math.sin(pier.alpha) / pier.half_width  # 1 but of a frame
         for device in restraints:
             arms = sum(place.height or abs(place.offset - corner) for place in places(pier, device)) / pier.half_width
-            holding += device.f * arms if isinstance(device, Damper) and device.kind != "viscous" else 0.0
+            holding += device.f * arms if isinstance(device, Damper) else 0.0
             righting += device.psi * arms if isinstance(device, Tendon) else 0.0
         if holding >= righting:
             return False

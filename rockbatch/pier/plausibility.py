@@ -84,11 +84,18 @@ def wrong_device(pier: Pier, device: Restraint) -> list[str]:
     for field_ in DAMPERS.get(device.kind, ()) if isinstance(device, Damper) else FIELDS[device.what]:
         wrong += BOUNDS[field_].problems(field_.replace("lam", "lambda"), getattr(device, field_))
     if isinstance(device, Damper):
-        wrong += _wrong_brace(device)
+        wrong += _of_other_kinds(device) + _wrong_brace(device)
     if isinstance(device, Tendon) and not device.strength > device.psi:
         strength = f"its yield force over the weight, {device.strength:g}"
         wrong.append(f"{strength}, must be above its prestress, {device.psi:g}")
     return [f"{device.what}: {problem}" for problem in wrong]
+
+
+def _of_other_kinds(damper: Damper) -> list[str]:
+    own = DAMPERS.get(damper.kind, ())
+    others = {name for names in DAMPERS.values() for name in names if own and name not in own}
+    given = {name: value for name in sorted(others) if (value := getattr(damper, name)) != getattr(Damper, name)}
+    return [f"{name} = {value:g}: is not of a {damper.kind} damper; leave it out" for name, value in given.items()]
 
 
 def _wrong_brace(damper: Damper) -> list[str]:

@@ -164,6 +164,8 @@ def test_the_reversed_motion_gives_the_mirror_image(base):
             Damper("friction", f=0.1, brace=1.0),
             'damper: brace = 1: friction on a brace is a hysteretic damper; write kind = "h',
         ),
+        (Damper("viscous", nu=0.1, f=0.1), "damper: f = 0.1: is not of a viscous damper; leave it out"),
+        (Damper("friction", f=0.1, exponent=0.5), "damper: exponent = 0.5: is not of a friction damper; leave it out"),
     ],
 )
 def test_what_cannot_be_is_said(damper, told):
