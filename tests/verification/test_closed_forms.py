@@ -18,7 +18,7 @@ from rockbatch.core.springs.model import BOUC_WEN, Contact, State
 from rockbatch.core.system import rates
 from rockbatch.core.types import BEFORE_EVENT, LEFT, Ground
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, rocking_frequency
 from rockbatch.simulation import Run, block, run_fixed, springs, written_run
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
@@ -85,6 +85,10 @@ def test_full_contact_rocking_frequency_is_the_closed_form():
     """Constant ü_g = a from rest: θ = −(h a/(I ω_r²)) (1 − cos ω_r t). RK4 at ω_v h = 0.03: 1e-6 of the amplitude."""
     omega_r = full_contact_frequency(FIG5, 50.0)
     assert omega_r == pytest.approx(8.67484279, abs=1e-8)
+    for pier in (FIG5, Pier(0.2, 0.02)):
+        assert rocking_frequency(pier, ElasticBase(50.0)) == pytest.approx(
+            full_contact_frequency(pier, 50.0), rel=1e-12
+        )
     a = 0.01
     run = rb.simulate(FIG5, ElasticBase(50.0), steady(a, 0.0, 0.01, 201), substeps=16, quiet_s=0.0, wait=False)
     amplitude = FIG5.height * a / ((FIG5.inertia + FIG5.height**2) * omega_r**2)
