@@ -69,7 +69,7 @@ class Number:
     @property
     def words(self) -> str:
         bounds = self.bounds
-        if bounds is None or (bounds.low <= LEAST and bounds.high >= MOST):
+        if bounds is None or (0.0 < bounds.low <= LEAST and bounds.high >= MOST):
             return self.text
         if bounds.high >= MOST:
             return f"a number, {bounds.low:.7g} or above"

@@ -440,6 +440,23 @@ def test_workers_that_die_and_come_again_are_waited_for_while_there_is_patience(
         engine._finished_of(client, ())
 
 
+def test_workers_that_died_are_counted_from_the_first_that_was_seen(monkeypatch):
+    """The one that is there at first has not died; each that is gone at the next look has."""
+    import distributed
+
+    def late(*_, **__):
+        raise distributed.TimeoutError
+
+    monkeypatch.setattr(distributed, "wait", late)
+    seconds = itertools.count(0.0, 30.0)
+    monkeypatch.setattr(rockbatch.batch.dask, "time", SimpleNamespace(monotonic=lambda: next(seconds)))
+    engine = Dask("tcp://a")
+    engine._client = client = FullWorkers(pause=False)
+    with pytest.raises(OSError, match="workers died 5 times in 150 s and nothing was finished"):
+        engine._finished_of(client, ())
+    assert client.looks == 6
+
+
 def test_what_distributed_logs_of_lost_connections_is_silenced_and_nothing_else():
     loggers = [
         logging.getLogger(name) for name in ("distributed.comm", "distributed", "undistributed", "numba.distributed")

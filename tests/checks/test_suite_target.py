@@ -45,7 +45,11 @@ def suite(path, over, checks=MARGIN, **info):
 def test_the_least_mean_over_target_decides_to_the_digits_of_run_json(over, decided):
     (found,) = suite_verdicts({"target": target(1.3, over, 1.0)}, [1.0])
     assert (found.check, found.case, found.verdict, found.limit) == ("suite to target", "", decided, 0.9)
-    assert found.value == pytest.approx(over, rel=1e-4)
+    assert found.value == found.low == found.high == pytest.approx(over, rel=1e-4)
+    assert found.margin == found.value - 0.9
+    assert found.ratio == (0.9 / found.value if over else np.inf)
+    assert (found.basis, found.reason) == ("study", "of a code, between 0.5 s and 2 s")
+    assert (found.records, found.runs, found.scale) == (0, 0, 1.0)  # it is no run's
     assert found.note == "least at T = 1 s"
 
 

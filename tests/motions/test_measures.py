@@ -204,11 +204,23 @@ def test_the_spectrum_does_not_depend_on_where_blocks_end(npts):
 def test_spectra_of_a_suite_are_in_g_and_in_order():
     motions = [Motion(str(scale), 0.01, scale * shaking()) for scale in (1.0, 2.0)]
     found = suite_spectra(motions, gravity=10.0)
+    assert found["damping"] == 0.05
     assert len(found["period_s"]) == len(PERIODS) == len(found["sa_g"][0])
     np.testing.assert_allclose(found["sa_g"][1], 2 * np.array(found["sa_g"][0]), rtol=2e-3)  # four digits are kept
     np.testing.assert_allclose(
         found["sa_g"][0], spectral_acceleration(motions[0].horizontal, 0.01, PERIODS) / 10, rtol=1e-3
     )
+
+
+def test_a_displacement_that_runs_away_is_no_peak_unless_the_ground_was_in_motion_before():
+    """A sine from rest leaves the ground with the velocity a/ω; with that velocity backwards at first it stays about its place."""
+    t, dt = np.arange(20_001) * 0.001, 0.001
+    sine = 3.0 * np.sin(10.0 * t)
+    assert measures.believable_pgd(Motion("from rest", dt, sine)) is None
+    known = Motion("known", dt, sine, initial=Initial(0.0, 0.01))
+    assert measures.believable_pgd(known) == pytest.approx(measures.pgd(sine, dt, known.initial))
+    begun = Motion("begun", dt, sine, initial=Initial(-0.3, 0.0))
+    assert measures.believable_pgd(begun) == pytest.approx(0.03, rel=2e-3)
 
 
 def test_the_cav_of_a_sine_is_four_amplitudes_over_omega_each_period():

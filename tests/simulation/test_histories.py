@@ -95,7 +95,11 @@ def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its
     assert [panel.y.plain for panel in panels[:4]] == ["θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
     rotation, *events = panels[0].marks
     expected = response.theta / PIER.alpha
-    assert (rotation.y.min(), rotation.y.max()) == (expected.min(), expected.max())
+    omega, ground = response.omega / (PIER.alpha * PIER.p), response.history["ag_h"].to_numpy() / PIER.gravity
+    for panel, values in zip(panels[:4], (expected, omega, response.energy, ground), strict=True):
+        line = panel.marks[0]
+        assert (line.y.min(), line.y.max()) == (values.min(), values.max())
+        assert line.name == panel.y.plain
     assert np.interp(rotation.x, response.t, expected) == pytest.approx(rotation.y)
     at_the_foot = [len(mark.at) for mark in events if isinstance(mark, Rule) and mark.low == 0.0 and mark.high < 0.1]
     assert sum(at_the_foot) == (response.events["kind"] == "impact").sum()
@@ -268,6 +272,12 @@ def test_the_largest_peak_has_its_value_on_the_side_where_there_is_room_and_ends
         assert (words.x, words.y, words.text, words.side) == (t, -0.6, "0.6000", side)
         points = [(mark.x.tolist(), mark.y.tolist()) for mark in marks if isinstance(mark, Points)]
         assert points == [([3.0], [0.4]), ([t], [-0.6])]
+        labels = [mark.label for mark in marks if isinstance(mark, Points)]
+        assert labels == ["pier 1: 0.4000 at 3.0 s", f"pier 2: 0.6000 at {t} s"]
+    still = together([one_of(peak=(0.0, 0.0))], "a record")[0].panels[0].marks
+    assert not any(
+        isinstance(mark, Points | Words) for mark in still
+    )  # one that stayed at rest has no largest rotation
     fallen = one_of(peak=(6.0, 7.0), status="overturned", look=2)
     panel = together([small, fallen], "a record")[0].panels[0]
     assert 0.4 < panel.y.high < 0.7  # not stretched by the one that fell

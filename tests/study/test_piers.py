@@ -130,6 +130,7 @@ def test_lists_of_parts_and_of_columns_are_combined_too(tmp_path):
         (PARTS + "inertia_t_m2 = 9\nlength_m = 2\nwidth_m = 2\n", "6: [[pier.part]] no. 1: inertia_t_m2 and width_m are given"),
         ("width_m = 4\npart = []\n", "3: [pier]: part = []: a pier has one part at least"),
         ("width_m = 4\n[pier.part]\nmass_t = 1\nheight_m = 2\n", "3: pier.part: expected a list of tables; write [[pier.part]]"),
+        ("alpha = 0.1\np = 1\ntop_m = 100\n", "4: [pier]: top_m = 100: 6.8 times the height of the pier, 14.6"),
         (FRAME.replace("= 4", "= 1"), "6: [pier]: columns = 1: expected a whole number, 2 or above"),
         (FRAME.replace("deck_mass_t = 420\n", ""), "5: [pier]: columns: a frame has a deck; write deck_mass_t"),
         (FRAME + "top_m = 12\n", "7: [pier]: top_m: the deck of a frame keeps level"),

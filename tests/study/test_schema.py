@@ -17,7 +17,7 @@ import rockbatch.motions
 import rockbatch.study
 from rockbatch.analyses.sensitivity.study import read_sensitivity
 from rockbatch.common.errors import InputError
-from rockbatch.common.units import Bounds
+from rockbatch.common.units import NOT_NEGATIVE, POSITIVE, Bounds
 from rockbatch.study import load_study
 from rockbatch.study.schema import CHECKS, FILES, MANIFEST, STUDY, main, schema_of
 from rockbatch.toml import kinds
@@ -265,6 +265,21 @@ def test_every_example_is_taken_by_the_reader_and_by_the_schema(name):
         (kinds.text, {"type": "string", "pattern": r"\S"}, "text in quotes"),
         (kinds.choice("a", "b"), {"enum": ["a", "b"]}, 'one of "a", "b"'),
         (kinds.within(Bounds(0, 1)), {"type": "number", "minimum": 0, "maximum": 1}, "a number from 0 to 1"),
+        (
+            kinds.within(POSITIVE),
+            {"type": "number", "minimum": POSITIVE.low, "maximum": POSITIVE.high},
+            "a number above 0",
+        ),
+        (
+            kinds.within(NOT_NEGATIVE),
+            {"type": "number", "minimum": 0, "maximum": NOT_NEGATIVE.high},
+            "a number, 0 or above",
+        ),
+        (
+            kinds.within(Bounds(2, 9, below=True)),
+            {"type": "number", "minimum": 2, "exclusiveMaximum": 9},
+            "a number from 2 to below 9",
+        ),
     ],
 )
 def test_a_kind_says_what_it_takes(kind, schema, words):

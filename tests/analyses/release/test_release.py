@@ -1,5 +1,6 @@
 """Release tests: the fit against a block in closed form, with errors of reading and a restitution that scatters."""
 
+import json
 import math
 
 import numpy as np
@@ -347,6 +348,9 @@ def test_the_command_leaves_what_python_has(tmp_path):
     path.write_text(study.text, encoding="utf-8")
     assert main(["release", str(path), "--out", str(tmp_path / "out")]) == 0
     result = rb.release(path)
+    info = json.loads((tmp_path / "out/release.json").read_text(encoding="utf-8"))
+    assert [info[name] for name in ("confidence", "clock", "varied")] == [0.95, "release", []]
+    assert not {"impact_s", "amplitude_rad"} & info.keys()  # the table has them
     for name, table in result.tables.items():
         pd.testing.assert_frame_equal(table, read_table(tmp_path / "out" / f"{name}.csv"), check_exact=True)
     assert makers(result.plot) == makers(lambda: result.save(tmp_path / "again")) != set()
