@@ -58,7 +58,7 @@ def table(
 
     classes = {i: "n" if i in numeric else None for i in used}
     heading = (
-        tag("th", heads[i].text, class_=classes[i], scope="col", title=heads[i].note, data_filter=heads[i].filter)
+        tag("th", _with_unit(heads[i].text), class_=classes[i], scope="col", title=heads[i].note, data_filter=heads[i].filter)
         for i in used
     )
     top = [tag("tr", *heading)]
@@ -84,6 +84,12 @@ def table(
         shown_of(len(rows), len(whole)),
         wide,
     )
+
+
+def _with_unit(text: str) -> Markup:
+    """Return the text of a head, no line of which ends within its unit."""
+    name, bracket, unit = escape(text).rpartition(" [")
+    return Markup(f'{name} <span class="unit">[{unit}</span>') if bracket else Markup(unit)
 
 
 def _common(heads: Sequence[Head], values: Sequence[object]) -> Markup:

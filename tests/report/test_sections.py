@@ -141,13 +141,13 @@ def test_the_answer_has_what_dampers_bear_and_that_they_hold_the_pier_at_a_tilt(
     ]  # fmt: skip
     (damped,) = [row for row in (free, *rest) if row[0].startswith("damped")]
     (free,) = [row for row in (free, *rest) if row[0].startswith("free")]
-    assert (damped[1], damped[3], damped[5], damped[6]) == ("0.1", "2.6", "5890", "51.2")
-    assert (free[1], free[3], free[5], free[6]) == ("0.2", "–", "–", "–")
+    assert (damped[1], damped[3], damped[5], damped[6]) == ("0.100", "2.60", "5890", "51.2")
+    assert (free[1], free[3], free[5], free[6]) == ("0.200", "–", "–", "–")
     assert re.search(r'title="ERZ-NS, case damped[^"]*">51.2<', section_of(tmp_path, answer))
     peaks.drop(columns="damper_force_kN").to_csv(tmp_path / "peaks.csv", index=False)
     head, *rest = table_of(section_of(tmp_path, answer))
     assert head[5] == "damper force [of the weight]"
-    assert {row[5] for row in rest} == {"0.3", "–"}
+    assert {row[5] for row in rest} == {"0.300", "–"}
     peaks.loc[damped_rows := peaks["case"] == "damped", "status"] = "overturned"  # none of them stands
     assert damped_rows.any()
     peaks.to_csv(tmp_path / "peaks.csv", index=False)

@@ -92,7 +92,7 @@ def _head(name: str) -> Head:
 def _response(finished: Finished, worst: Worst, run: dict[str, Any]) -> Markup:
     """Return a greatest response, with the value in all its units and its record as a note."""
     said = f"{in_words(worst)}: {finished.place_of(run)}, t = {number(float(run['t_max_s']))} s"
-    return tag("span", number(worst.value * RESPONSES[worst.demand].factor, ".3g"), title=said)
+    return tag("span", number(worst.value * RESPONSES[worst.demand].factor, "#.3g"), title=said)
 
 
 def _heads_of(finished: Finished, kind: str) -> list[Head]:
@@ -117,7 +117,7 @@ def _of_devices(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[obj
             cells.append("–")
             continue
         place = int(np.nanargmax(values))
-        cells.append(tag("span", number(factor * values[place], ".3g"), title=finished.place_of(stood.iloc[place])))
+        cells.append(tag("span", number(factor * values[place], "#.3g"), title=finished.place_of(stood.iloc[place])))
     return cells
 
 
