@@ -58,7 +58,14 @@ def table(
 
     classes = {i: "n" if i in numeric else None for i in used}
     heading = (
-        tag("th", _with_unit(heads[i].text), class_=classes[i], scope="col", title=heads[i].note, data_filter=heads[i].filter)
+        tag(
+            "th",
+            _with_unit(heads[i].text),
+            class_=classes[i],
+            scope="col",
+            title=heads[i].note,
+            data_filter=heads[i].filter,
+        )
         for i in used
     )
     top = [tag("tr", *heading)]

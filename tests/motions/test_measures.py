@@ -213,7 +213,7 @@ def test_spectra_of_a_suite_are_in_g_and_in_order():
 
 
 def test_a_displacement_that_runs_away_is_no_peak_unless_the_ground_was_in_motion_before():
-    """A sine from rest leaves the ground with the velocity a/ω; with that velocity backwards at first it stays about its place."""
+    """A sine from rest leaves the ground with the velocity a/ω, and one that begins with its reverse stays where it is."""
     t, dt = np.arange(20_001) * 0.001, 0.001
     sine = 3.0 * np.sin(10.0 * t)
     assert measures.believable_pgd(Motion("from rest", dt, sine)) is None
