@@ -395,8 +395,8 @@ CHAOTIC = (6, 238, 247)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds",
-    [[seed for seed in range(400) if seed not in CHAOTIC], pytest.param(range(400), marks=pytest.mark.thorough)],
-    ids=["most", "all"],
+    [[seed for seed in range(100) if seed not in CHAOTIC], pytest.param(range(400), marks=pytest.mark.thorough)],
+    ids=["some", "all"],
 )
 def test_what_is_called_settled_is_what_steps_eight_times_finer_find(seeds):
     """Elastic and rigid bases at the default tolerance, where nothing but the counts watches what follows the peak.
@@ -420,7 +420,7 @@ def test_what_is_called_settled_is_what_steps_eight_times_finer_find(seeds):
         off = abs(outcome.theta_max - finest.theta_max) / pier.alpha
         if outcome.status != finest.status or (outcome.status != "overturned" and off > 1e-4):
             wrong.append((seed, outcome.status, finest.status, off))
-    assert compared > 300
+    assert compared > 0.75 * len(seeds)
     assert wrong == []
 
 

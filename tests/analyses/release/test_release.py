@@ -148,10 +148,8 @@ def test_times_that_share_the_error_of_the_first_are_fitted_as_a_line_whose_star
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("spread", "reading"),
-    [*KINDS[2::2], *(pytest.param(*kind, marks=pytest.mark.thorough) for kind in (KINDS[0], *KINDS[1::2]))],
-)
+@pytest.mark.thorough
+@pytest.mark.parametrize(("spread", "reading"), KINDS)
 def test_intervals_hold_the_truth_in_many_tests(block, spread, reading):
     """Of 400 tests 380 are expected, on the average over all ratios of the scatters; of each kind 360 at least.
 
