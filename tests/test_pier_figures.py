@@ -92,9 +92,9 @@ def test_lines_of_a_sketch_end_where_what_they_show_does(base):
     (height,) = (line for line in edges if [y for _, y in line] == [0.0, h] and line[0][0] == line[1][0])
     (width,) = (line for line in edges if [x for x, _ in line] == [-b, b] and line[0][1] == line[1][1] < -SPRING)
     assert height[0][0] > b
-    words = {mark.text: (mark.x, mark.y, mark.side) for mark in panel.marks if isinstance(mark, Words)}
-    middles = [tuple(np.mean(line, axis=0)) for line in (height, width)]
-    assert [words[text] for text in ("h = 20 m", "2b = 8 m")] == [(*middles[0], 1), (0.0, middles[1][1] - 10.0, 0)]
+    words = {mark.text: [mark.x, mark.y, mark.side] for mark in panel.marks if isinstance(mark, Words)}
+    assert words["h = 20 m"] == pytest.approx([*np.mean(height, axis=0), 1])
+    assert words["2b = 8 m"] == pytest.approx([*np.mean(width, axis=0) - (0.0, 10.0), 0])
     for end in (*height, *width):
         assert (
             sum(np.mean(line, axis=0) == pytest.approx(end) and np.ptp(line) > 0 for line in edges if len(line) == 2)

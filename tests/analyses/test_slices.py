@@ -73,6 +73,7 @@ def test_an_analysis_is_deleted_with_its_folder_and_its_name(copied, name):
     assert "rigid" in statics
 
 
+@pytest.mark.slow
 def test_an_analysis_is_added_with_a_folder_and_a_name(copied):
     folder = copied / "rockbatch" / "analyses" / "census"
     folder.mkdir()

@@ -41,6 +41,7 @@ def test_without_chromium_the_script_says_so_and_changes_nothing(script, tmp_pat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_the_script_takes_a_report_dark_and_printed(script, tmp_path):
     chromium = script.browser()
     if chromium is None:

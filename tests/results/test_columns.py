@@ -247,7 +247,10 @@ def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):
         assert all(behind.get(other) in (first, *between) for other in between), name
     write_results(tmp_path)
     text = write_report(tmp_path).read_text(encoding="utf-8")
-    assert 'title="base_tilt_rad × 1000: residual tilt of the base">base tilt [mrad]</th>' in text
+    assert (
+        'title="base_tilt_rad × 1000: residual tilt of the base">base tilt <span class="unit">[mrad]</span></th>'
+        in text
+    )
     assert 'over α, at rest on the deformed base">θ<sub>res</sub>/α</th>' in text
     page = Page(text)
     tilt = page.tables["peaks"][0].index("base tilt [mrad]")

@@ -4,11 +4,13 @@ import subprocess
 import sys
 
 import numba
+import pytest
 
 from rockbatch.batch import compiling
 from rockbatch.batch.listening import Listener
 
 
+@pytest.mark.slow
 def test_numba_is_loaded_without_linear_algebra_and_still_multiplies_matrices():
     code = """
 import sys
