@@ -1,0 +1,64 @@
+"""Every column has the unit that it states: a pier of other lengths and times has the same numbers in its own units.
+
+Lengths are eight times as large and times twice as long, so that powers of two are all that changes in the arithmetic.
+"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import rockbatch as rb
+from rockbatch.quantities.catalogue import COLUMNS
+
+LENGTH, TIME = 8.0, 2.0
+SPEED, ACCELERATION = LENGTH / TIME, LENGTH / TIME**2
+UNITS = {
+    "1": 1.0, "rad": 1.0, "standard_gravity": 1.0, "s": TIME, "1/s": 1.0 / TIME, "m": LENGTH, "m/s": SPEED, "m/s^2": ACCELERATION,
+    "m^2/s^2": SPEED**2, "J/kg": SPEED**2, "kJ": SPEED**2, "kN": ACCELERATION, "kN*s": SPEED, "kN*m": ACCELERATION * LENGTH,
+}  # fmt: skip
+TIMES = 0.01 * np.arange(500)
+HORIZONTAL = 4.0 * np.sin(2.1 * TIMES) + 2.0 * np.sin(9.0 * TIMES)
+VERTICAL = 3.0 * np.sin(11.0 * TIMES + 1.0)
+DEVICES = (
+    rb.Damper("viscous", nu=0.4), rb.Damper("hysteretic", f=0.05, yield_m=0.004), rb.Tendon(psi=0.1, lam=0.3),
+    rb.Stop(gap_m=0.15, lam=20.0, at="right"),
+)  # fmt: skip
+BASES = {
+    "rigid": rb.RigidBase(friction=0.3),
+    "rigid with devices": rb.RigidBase(restraints=DEVICES),
+    "yielding": rb.YieldingBase(30.0, eta=2.2, epsilon=0.1),
+    "damped": rb.YieldingBase(30.0, eta=2.2, zeta=0.1, spring="epp"),
+    "yielding with devices": rb.YieldingBase(30.0, eta=2.2, epsilon=0.1, restraints=DEVICES[:3]),
+}
+OTHERWISE = {"note", "damper_half_cycles"}
+"""Words that name a time, and a count of strokes above a length that the user sets."""
+
+
+def row(base, length, time):
+    """Return the row of a run in units of length and time that are so many times smaller."""
+
+    def in_units(device):
+        lengths = [field.name for field in dataclasses.fields(device) if field.name.endswith("_m")]
+        given = {name: getattr(device, name) for name in lengths}
+        return dataclasses.replace(device, **{name: value and value * length for name, value in given.items()})
+
+    g, sizes = length / time**2, ("width_m", "height_m", "top_m", "mass_t")
+    pier = rb.Pier.rectangle(
+        4.0 * length, 18.0 * length, mass_t=500.0, top_m=20.0 * length, gravity=9.81 * g, confirm=sizes
+    )
+    base = dataclasses.replace(base, restraints=tuple(map(in_units, base.restraints)))
+    motion = rb.Motion("shaken", 0.01 * time, HORIZONTAL * g, VERTICAL * g)
+    return rb.simulate(pier, base, motion, substeps=4, quiet_s=time, forces=True, ledger=True, devices_work=True).row
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_numbers_of_every_column_are_in_its_unit(name):
+    here, there = row(BASES[name], 1.0, 1.0), row(BASES[name], LENGTH, TIME)
+    assert len(here) > 60
+    assert list(here.index) == list(there.index)
+    for column in set(here.index) - OTHERWISE:
+        value = here[column]
+        if not isinstance(value, str):
+            value = pytest.approx(value * UNITS[COLUMNS[column].unit], rel=1e-9, abs=1e-15, nan_ok=True)
+        assert there[column] == value, column
