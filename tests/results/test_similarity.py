@@ -35,21 +35,32 @@ OTHERWISE = {"note", "damper_half_cycles"}
 """Words that name a time, and a count of strokes above a length that the user sets."""
 
 
-def row(base, length, time):
-    """Return the row of a run in units of length and time that are so many times smaller."""
+SUFFIXES = {
+    "_kN_m": ACCELERATION * LENGTH, "_kN": ACCELERATION, "_MPa": ACCELERATION / LENGTH**2, "_m": LENGTH, "_s": TIME, "": 1.0,
+}  # fmt: skip
 
-    def in_units(device):
+
+def in_units(base, length, time):
+    """Return the pier and a base in units of length and time that are so many times smaller."""
+
+    def with_lengths(device):
         lengths = [field.name for field in dataclasses.fields(device) if field.name.endswith("_m")]
         given = {name: getattr(device, name) for name in lengths}
         return dataclasses.replace(device, **{name: value and value * length for name, value in given.items()})
 
-    g, sizes = length / time**2, ("width_m", "height_m", "top_m", "mass_t")
-    pier = rb.Pier.rectangle(
-        4.0 * length, 18.0 * length, mass_t=500.0, top_m=20.0 * length, gravity=9.81 * g, confirm=sizes
-    )
-    base = dataclasses.replace(base, restraints=tuple(map(in_units, base.restraints)))
+    g, sizes = 9.81 * length / time**2, ("width_m", "height_m", "top_m", "mass_t")
+    pier = rb.Pier.rectangle(4.0 * length, 18.0 * length, g, mass_t=500.0, top_m=20.0 * length, confirm=sizes)
+    areas = {"area_m2": 2.0 * length**2} if base.on_springs else {}
+    return pier, dataclasses.replace(base, restraints=tuple(map(with_lengths, base.restraints)), **areas)
+
+
+def row(base, length, time):
+    """Return the row of a run."""
+    g = length / time**2
     motion = rb.Motion("shaken", 0.01 * time, HORIZONTAL * g, VERTICAL * g)
-    return rb.simulate(pier, base, motion, substeps=4, quiet_s=time, forces=True, ledger=True, devices_work=True).row
+    return rb.simulate(
+        *in_units(base, length, time), motion, substeps=4, quiet_s=time, forces=True, ledger=True, devices_work=True
+    ).row
 
 
 @pytest.mark.parametrize("name", BASES)
@@ -62,3 +73,16 @@ def test_numbers_of_every_column_are_in_its_unit(name):
         if not isinstance(value, str):
             value = pytest.approx(value * UNITS[COLUMNS[column].unit], rel=1e-9, abs=1e-15, nan_ok=True)
         assert there[column] == value, column
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_facts_of_the_statics_and_their_tables_are_in_the_units_that_end_their_names(name):
+    """Tables have nine decimals."""
+    here, there = (rb.statics(*in_units(BASES[name], *units)) for units in ((1.0, 1.0), (LENGTH, TIME)))
+    for table in ("row", "curve", "swings"):
+        mine, other = getattr(here, table), getattr(there, table)
+        assert list(mine) == list(other)
+        for column in mine:
+            unit = next(factor for suffix, factor in SUFFIXES.items() if column.endswith(suffix))
+            values = (np.array(numbers[column], dtype=np.float64) for numbers in (other, mine))
+            np.testing.assert_allclose(next(values), next(values) * unit, rtol=1e-6, atol=1e-8, err_msg=column)
