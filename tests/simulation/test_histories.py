@@ -66,6 +66,30 @@ def test_springs_stay_within_their_law():
 
 
 @pytest.mark.slow
+def test_forces_of_damped_supports_are_those_of_their_deflections_and_reach_the_peaks_of_the_row():
+    """F/M = ω_v² v/2 + ζ ω_v dv/dt with ω_v = β p of both supports, the rate by differences: 0.02 m/s² are their error."""
+    t, base = 0.01 * np.arange(500), rb.ElasticBase(30.0, zeta=0.1)
+    motion = rb.Motion("shaken", 0.01, 2.4 * np.sin(4.0 * t), 3.0 * np.sin(11.0 * t))
+    response = rb.simulate(PIER, base, motion, substeps=4, forces=True)
+    history, frequency = response.history, 30.0 * PIER.p
+    steps = np.diff(history["t"])
+    even = np.r_[False, (np.abs(np.diff(steps)) < 1e-9) & (steps[1:] > 0.005), False]
+    sides = [history[f"v_{side}"].to_numpy() for side in ("left", "right")]
+    np.testing.assert_allclose(sides[0] - sides[1], 2.0 * PIER.half_width * response.theta, atol=1e-12)
+    np.testing.assert_allclose(sides[0] + sides[1], 2.0 * response.v, atol=1e-12)
+    for side, v in zip(("left", "right"), sides, strict=True):
+        force = history[f"force_{side}"].to_numpy()
+        borne = even & (force < 0.0) & (np.roll(force, 1) < 0.0) & (np.roll(force, -1) < 0.0)
+        assert borne.sum() > 150
+        with np.errstate(invalid="ignore", divide="ignore"):  # both sides of an event have one time
+            rate = np.gradient(v, history["t"])
+        law = 0.5 * frequency**2 * v + 0.1 * frequency * rate
+        np.testing.assert_allclose(force[borne], law[borne], atol=0.02)
+        peak = response.row[f"pivot_force_{side}"] * PIER.gravity / 2.0  # over half of the weight
+        assert -force.min() == pytest.approx(peak, rel=2e-3)
+        assert -force.min() <= peak
+
+
 def test_energy_starts_at_zero_and_is_kept_between_impacts_of_elastic_springs():
     """After the pulse, on elastic springs with ε = 1 and finite kinematics, only changes of H alter the stored energy.
 
