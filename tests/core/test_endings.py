@@ -2,23 +2,29 @@
 moment."""
 
 import math
+from copy import deepcopy
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from core_samples import FIG5, TOWER, hard_case, pulse, steady
+from core_samples import FIG5, TOWER, hard_case, pulse, steady, values_of, waiting_after
 from motion_files import RECORDS, needs_records
 
 import rockbatch as rb
 from rockbatch.core.block.ending import reach_of
+from rockbatch.core.block.equations import on_side
+from rockbatch.core.block.model import Rocking
+from rockbatch.core.devices.laws import CONTACT, HYSTERETIC, MAXWELL, SPRING, TENDON
 from rockbatch.core.roots import falls
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.springs.transitions import handle
-from rockbatch.core.types import Ground, Moment
+from rockbatch.core.types import GROWING, RESTLESS, SURVIVED, UNDECIDED, Ground, Moment
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, least_beta, problems, rocking_frequency
-from rockbatch.simulation import run_fixed, run_to_tolerance, springs
+from rockbatch.simulation import block, run_fixed, run_to_tolerance, springs
+from rockbatch.simulation.models import IDLE
 from rockbatch.simulation.runs import cause_of_flight
 
 
@@ -337,3 +343,172 @@ def test_a_flight_that_comes_when_nothing_can_exceed_the_peak_any_more_changes_n
     assert (short.status, long.status) == ("ok", "ok")
     assert long.theta_max == short.theta_max
     assert (long.t_flight is None) == ("flew at" not in long.note)
+
+
+# With devices: energy, load and readings of single states
+
+TIE = IDLE._replace(kind=TENDON, strength=math.inf, stiffness=30.0, prestress=1.0, offset=0.7)
+STEEL = IDLE._replace(kind=HYSTERETIC, strength=2.0, stiffness=50.0, give=0.25)
+HUNG = IDLE._replace(kind=MAXWELL, stiffness=40.0, coefficient=3.0, exponent=0.5)
+STOP = IDLE._replace(kind=CONTACT, stiffness=80.0, start=0.05, returned=0.36, height=9.0, swing=1.5, way=1.0)
+BAND = IDLE._replace(kind=SPRING, stiffness=2.5, height=9.0, swing=1.5, way=-1.0)
+
+
+def over_ground(at: float, of) -> float:
+    """Elongation of a device under a block that rocks by ``at`` about a pivot of FIG5."""
+    b, side = FIG5.half_width, math.copysign(1.0, at)
+    if of.height:
+        return of.way * (of.height * math.sin(at) + side * of.swing * (1.0 - math.cos(at)))
+    return 2.0 * (side * b - of.offset) * math.sin(0.5 * at)
+
+
+def kept_by(at: float) -> float:
+    """Energy [J/kg] of tie, stop and band under a block: squares of their forces."""
+    tie, stop, band = (over_ground(at, of) for of in (TIE, STOP, BAND))
+    return (1.0 + 30.0 * tie) ** 2 / 60.0 + 0.5 * 80.0 * 0.36 * max(stop - 0.05, 0.0) ** 2 + 0.5 * 2.5 * band**2
+
+
+def test_a_block_with_devices_is_over_once_its_energy_falls_short_of_the_peak(uncompiled):
+    """By a thousandth, to the side with less; a damper of steel may give back F z² (1 + give)/2k, a brace F²/2k besides."""
+    m, elements, x = block(FIG5, RigidBase()), [TIE, STEEL, HUNG, STOP, BAND], [0.0, -0.3, 0.9, 1e3, 0.0]
+    devices = SimpleNamespace(elements=elements, x=x, level=[0.0])
+    back, inertia = 0.5 * 2.0 * 0.09 * 1.25 / 50.0 + 0.5 * 0.81 / 40.0, FIG5.inertia_about_pivot
+    b, h, calls, expected = FIG5.half_width, FIG5.height, [], []
+
+    def rise(theta):
+        return FIG5.gravity * (b * math.sin(abs(theta)) - h * (1.0 - math.cos(theta)))
+
+    for theta, peak in ((0.03, 0.08), (-0.03, 0.08), (0.01, 0.15), (-0.05, 0.12), (0.02, 0.5)):
+        y, contact = Rocking(rise(theta) / FIG5.gravity, theta, 0.0, 0.0), on_side(math.copysign(1.0, theta))
+        devices.x[3] = max(0.0, over_ground(theta, STOP) - 0.05)  # it is on its first loading
+        calls.append(("block.ending", "stored_by_devices", m, deepcopy(devices), y, contact))
+        kept = kept_by(theta)
+        expected.append((kept, back))
+        least = min(rise(limit) + kept_by(limit) for limit in (min(peak, 0.2), -min(peak, 0.2)))
+        for factor in (0.999, 1.001):
+            omega = math.sqrt(2.0 * (factor * least - rise(theta) - kept - back) / inertia)
+            now = SimpleNamespace(y=y._replace(omega=omega), contact=contact)
+            calls.append(("block.ending", "_cannot_reach", m, deepcopy(devices), now, peak))
+            expected.append(factor < 1.0)
+    for call, found, wanted in zip(calls, uncompiled(values_of, calls), expected, strict=True):
+        assert found == pytest.approx(wanted, rel=1e-9), call
+
+
+def test_devices_on_springs_add_to_the_load_and_may_give_energy_back(uncompiled):
+    """A tie's energy lies above its tangent where the base has come to; what stop and band bear at the peak is not given back."""
+    m = springs(FIG5, ElasticBase(50.0))
+    y, contact, supports = (
+        State(-0.01, 0.006, 0.0, 0.0, 0.0, 0.0),
+        Contact(0.0, 0.0, 0.0, 0.0, 0.0),
+        Supports(-0.02, -0.04),
+    )
+    for offset, strength in ((0.7, math.inf), (-0.4, math.inf), (0.0, 0.5)):
+        tie = TIE._replace(offset=offset, strength=strength)
+        devices = SimpleNamespace(elements=[tie, STEEL, HUNG, BAND], x=[0.001, -0.3, 0.9, 0.0], level=[0.001])
+        sunk, here = -0.03 + 0.02, -0.01 - 0.001 - offset * 0.006
+        pull, now = (min(1.0 + 30.0 * (each - 0.001), strength) for each in (sunk, here))
+        tied = (now**2 - pull**2) / 60.0 - pull * (here - sunk)
+        back = 0.5 * 2.0 * 0.09 * 1.25 / 50.0 + 0.5 * 0.81 / 40.0 + 0.5 * 2.5 * (9.0 * 0.006) ** 2
+        turned = abs(pull * offset) * (0.006 + 0.01)
+        given = devices, Moment(y, contact, supports)
+        values = {"lowest__plastic": -0.02, "peak__theta": 0.01}
+        _, waiting = uncompiled(waiting_after, ("springs.ending", "_in_devices"), values, m, *given)
+        assert waiting["load"] == pytest.approx(FIG5.gravity + pull, rel=1e-12)
+        expected = max(tied + back, 0.0) + turned - 0.5 * 2.5 * (9.0 * 0.01) ** 2
+        assert waiting["stored"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_reading_is_the_mean_tilt_over_the_samples_up_to_the_second_reading(uncompiled):
+    m, rng = springs(FIG5, ElasticBase(50.0)), np.random.default_rng(1)
+    readings = rng.uniform(-0.1, 0.0, (5, 2)).tolist()
+    left, right = readings[0]
+    for number, (here_left, here_right) in enumerate(readings[1:], 1):
+        now = Moment(
+            State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Contact(0.0, 0.0, 0.0, 0.0, 0.0), Supports(here_left, here_right)
+        )
+        values = {
+            "waiting__read": 100.0,
+            "clock__sample": 100.0 + number,
+            "waiting__read_left": left,
+            "waiting__read_right": right,
+        }
+        _, waiting = uncompiled(waiting_after, ("springs.ending", "_include_in_mean"), values, m, now)
+        left, right = waiting["read_left"], waiting["read_right"]
+        assert left - right == pytest.approx(np.mean([one - other for one, other in readings[: number + 1]]), rel=1e-12)
+        assert left + right == pytest.approx(sum(readings[0]), rel=1e-12)
+
+
+def test_supports_drift_by_what_changes_between_two_readings(uncompiled):
+    """Of the first two readings and of the last; a first reading has none."""
+    m, now = springs(FIG5, ElasticBase(50.0)), Moment(
+        State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Contact(0.0, 0.0, 0.0, 0.0, 0.0), Supports(-0.05, -0.02)
+    )  # fmt: skip
+    common = {"clock__sample": 120.0, "clock__dt": 0.01, "waiting__read_wait": 20.0, "waiting__patience": 50.0}
+    common |= {
+        "waiting__last_left": -0.04,
+        "waiting__last_right": -0.03,
+        "waiting__drift_left": 7.0,
+        "waiting__drift_right": 8.0,
+    }
+    for read, last, drift in (
+        (-1.0, -1.0, (7.0, 8.0, 0.0, 0.0)),
+        (100.0, 100.0, (-0.05, 0.05, -0.05, 0.05)),
+        (80.0, 100.0, (7.0, 8.0, -0.05, 0.05)),
+    ):
+        values = common | {"waiting__read": read, "waiting__last_read": last, "waiting__last_drift_left": 0.0}
+        values |= {"waiting__last_drift_right": 0.0}
+        _, found = uncompiled(waiting_after, ("springs.ending", "_read_base"), values, m, now)
+        names = "drift_left", "drift_right", "last_drift_left", "last_drift_right"
+        assert [found[name] for name in names] == pytest.approx(drift, rel=1e-12)
+        assert (found["last_read"], found["last_left"], found["last_right"]) == (120.0, -0.05, -0.02)
+        if read < 0.0:
+            assert (found["read"], found["read_left"], found["read_right"]) == (120.0, -0.05, -0.02)
+
+
+@pytest.mark.parametrize(
+    ("values", "due"),
+    [
+        ({"clock__sample": 90.0}, 100.0),  # not before residuals may be read
+        ({"peak__decided_at": -1.0}, 111.0),
+        ({"waiting__read_wait": 0.0}, 200.0),  # nothing to read twice: the end of the quiet time
+        ({"waiting__read_wait": 0.0, "clock__samples": 50.0}, 111.0),
+        ({}, 150.0),  # it stands a period of rocking after a pivot moved last
+        ({"tally__moved": 1.27}, 177.0),
+        ({"waiting__read_by": 130.0}, 130.0),
+        ({"waiting__read_by": 105.0}, 111.0),
+        ({"waiting__read": 105.0, "waiting__last_read": 105.0}, 111.0),  # a mean is taken
+        ({"waiting__read": 85.0, "waiting__last_read": 105.0}, 125.0),
+        ({"waiting__read": 85.0, "waiting__last_read": 105.0, "clock__samples": 115.0}, 115.0),
+        ({"waiting__read": 85.0, "waiting__last_read": 105.0, "clock__samples": 110.0}, 111.0),
+    ],
+)  # fmt: skip
+def test_a_run_is_next_looked_at_when_it_may_be_over_or_has_something_to_read(values, due, uncompiled):
+    common = {
+        "clock__sample": 110.0, "clock__samples": 200.0, "clock__npts": 100.0, "clock__dt": 0.01, "tally__moved": 0.5,
+        "peak__decided_at": 105.0, "waiting__earliest": 100.0, "waiting__read_wait": 20.0, "waiting__read_by": 190.0,
+        "waiting__read": -1.0, "waiting__period": 0.5 + 1e-9,
+    }  # fmt: skip
+    assert uncompiled(waiting_after, ("springs.ending", "_next_due"), common | values)[0] == due
+
+
+@pytest.mark.parametrize("spring", ["bouc-wen", "epp"])
+def test_a_run_that_nothing_decided_says_what_it_was_doing(spring, uncompiled):
+    """Cut off as it is, out of balance, leaning further in rotation and in the tilt of its base, or restless."""
+    base = YieldingBase(50.0, 0.1, eta=3.0, spring=spring)
+    m, b, alpha = springs(FIG5, base), FIG5.half_width, FIG5.alpha
+    tilted = 0.001
+    flat, lying = Supports(-0.01 + tilted * b, -0.01 - tilted * b), State(0.0, 0.9 * math.pi, 0.0, 0.0, 0.0, 0.0)
+    y, air = State(0.0, 0.01, 0.0, 0.0, 0.0, 0.0), Contact(0.0, 0.0, 0.0, 0.0, 0.0)
+    common = {"waiting__patience": 50.0, "waiting__load": FIG5.gravity, "clock__alpha": alpha, "peak__theta": 0.02}
+    behind = GROWING if spring == "bouc-wen" else RESTLESS
+    for changes, state, status in (
+        ({"waiting__patience": 0.0}, lying, SURVIVED),
+        ({}, lying, UNDECIDED),
+        ({}, y, behind),
+        ({"waiting__midway": 0.02 - 0.9e-4 * alpha}, y, RESTLESS),
+        ({"waiting__midway": 0.02 - 1.1e-4 * alpha, "waiting__midway_tilt": tilted - 1.1e-4 * alpha}, y, behind),
+        ({"waiting__midway_tilt": tilted - 0.9e-4 * alpha}, y, RESTLESS),
+    ):
+        values = common | {"waiting__midway": 0.01, "waiting__midway_tilt": 0.0} | changes
+        now = Moment(state, air, flat)
+        assert uncompiled(waiting_after, ("springs.ending", "_given_up"), values, m, now)[0] == status, changes

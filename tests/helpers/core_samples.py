@@ -1,5 +1,6 @@
 """Piers, pulses and random hard cases that the tests of the numerical core share."""
 
+import importlib
 import math
 from collections.abc import Iterable
 from types import SimpleNamespace
@@ -10,6 +11,8 @@ import pytest
 from rockbatch.common.units import GRAVITY
 from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.events import _is_held
+from rockbatch.core.springs.lanes import LANE
+from rockbatch.core.table import table
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
 from rockbatch.simulation.models import springs
@@ -100,6 +103,13 @@ def hard_case(seed: int, npts: int = 400) -> tuple[Pier, Base, Motion]:
     return pier, base, Motion(f"hard-{seed}", dt, horizontal, vertical)
 
 
+def values_of(calls):
+    """Return what functions of the core return: of each call its module below ``rockbatch.core``, its name and arguments."""
+    return [
+        getattr(importlib.import_module(f"rockbatch.core.{module}"), name)(*given) for module, name, *given in calls
+    ]
+
+
 def gaps_of(pier, base, devices, states):
     """Return the Gap of each device in each state of a pier on springs."""
     m = springs(pier, base)
@@ -112,3 +122,19 @@ def held_pivots(pier, base, states):
     m, devices = springs(pier, base), SimpleNamespace(level=[0.0])
     moments = [SimpleNamespace(y=y, k=k, contact=SimpleNamespace(top=0.0)) for y, k in states]
     return [tuple(_is_held(m, devices, now, 0.0, i) for i in range(2)) for now in moments]
+
+
+def lane_of_springs(**values):
+    """Return lanes of piers on springs of which the first has these values: ``group__name``."""
+    lanes = table(LANE)[0][0]
+    for name, value in values.items():
+        group, field = name.split("__")
+        getattr(getattr(lanes, group), field)[0] = value
+    return lanes
+
+
+def waiting_after(module_and_name, values, *given):
+    """Return what a function of the first lane and ``given`` returns, and what is in the lane's ``waiting`` then."""
+    lanes = lane_of_springs(**values)
+    (found,) = values_of([(*module_and_name, lanes, 0, *given)])
+    return found, {name: float(getattr(lanes.waiting, name)[0]) for name in lanes.waiting.dtype.names}

@@ -12,9 +12,26 @@ import flexible_reference
 import numpy as np
 import pandas as pd
 import pytest
+from core_samples import values_of
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import minimize_scalar
 
 import rockbatch as rb
-from rockbatch.core.types import BEFORE_EVENT, LIFT_OFF, SAMPLE
+from rockbatch.core.block.model import Stance
+from rockbatch.core.flexure.model import Flexing
+from rockbatch.core.types import (
+    BEFORE_EVENT,
+    IMPACT_BOTH,
+    IMPACT_LEFT,
+    IMPACT_RIGHT,
+    LIFT_OFF,
+    SAMPLE,
+    TAKE_OFF,
+    Ground,
+    Instant,
+    Moment,
+    Pull,
+)
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import mode_of
 from rockbatch.simulation import Run, run_fixed, written_run
@@ -227,12 +244,12 @@ def tower(uncompiled):
     """A run of the tower, and its rows."""
     run = Run(pier_of(*TOWER), rb.RigidBase(shaft="elastic", flexural_damping=0.02), shaken(5.0, 1.4, upwards=0.5))
     found, rows = uncompiled(written_run, run, 4, 0.0, 60_000, wait=False)
-    return run, rows[: found.rows].view(np.recarray)
+    return run, rows[: found.rows].view(np.recarray), found
 
 
 def test_forces_are_those_of_the_mass_points(tower, uncompiled):
     """V, N and the moment about the middle of the base from the points' accelerations, at every row but those of events."""
-    run, rows = tower
+    run, rows, _ = tower
     motion, of = run.motion, points_of(*TOWER, run.base)
     forces = uncompiled(at_rows, run, rows)
     checked = {"both": 0, "one": 0}
@@ -272,7 +289,7 @@ def test_a_pier_overturns_below_its_slenderness_as_its_shaft_leans_out():
 
 
 def test_the_mirror_image_of_a_motion_gives_the_mirror_image_of_the_run(tower, uncompiled):
-    run, rows = tower
+    run, rows, _ = tower
     back = replace(run, motion=run.motion.times(1.0, reverse=True))
     found, mirrored = uncompiled(written_run, back, 4, 0.0, 60_000, wait=False)
     mirrored = mirrored[: found.rows].view(np.recarray)
@@ -295,7 +312,7 @@ def test_a_run_reports_deflection_and_drift_with_errors_that_hold():
 
 
 def test_rows_stand_on_both_sides_of_a_lift_off_from_vibration(tower):
-    _, rows = tower
+    _, rows, _ = tower
     lifted = np.flatnonzero(rows.kind == LIFT_OFF)
     assert len(lifted) > 0
     assert (rows.kind[lifted - 1] == BEFORE_EVENT).all()
@@ -339,3 +356,247 @@ def test_a_pier_that_only_vibrates_is_not_waited_for_nor_said_to_have_energy_for
     assert run.row.theta_max_over_alpha == 0.0 < run.row.deflection_max_m
     assert run.row.note == ""
     assert run.t[-1] == pytest.approx(shaken(0.2, 0.9).duration + 2.0, abs=2 * DT)
+
+
+# Equations, blows and ending, at single states
+
+BOTH, STILL = Stance(1.0, 1.0, 0.0, 0.0), Ground(0.0, 0.0, 0.0, 0.0)
+
+
+def stance(side: float, key: float) -> Stance:
+    """On the pivot on ``side``, or in flight with the key of the pivot that bore last."""
+    return Stance(float(side < 0.0), float(side > 0.0), key, key)
+
+
+def state_at(m, key, q, rates) -> Flexing:
+    """The core's state where the corner at ``key`` is at a height, with the rotation and deflection ``q``, and their rates."""
+    (rise, theta, u), (speed, omega, u_rate) = q, rates
+    b, s, c = key * m.half_width, math.sin(theta), math.cos(theta)
+    v, slope = rise + b * s - m.height * (1.0 - c), b * c - m.height * s
+    return Flexing(v, theta, speed + slope * omega, omega, u, u_rate)
+
+
+def random_states(seed: int, count: int = 12):
+    """Key, whether on the ground, q, its rates and the ground's accelerations: half of them in flight."""
+    rng = np.random.default_rng(seed)
+    for number in range(count):
+        key, on_ground = float(rng.choice([-1.0, 1.0])), number % 2 == 0
+        q, rates = (rng.uniform(-1.0, 1.0, 3) * (0.5, 0.3, 1.0) for _ in range(2))
+        if on_ground:
+            q[0] = rates[0] = 0.0
+        yield key, on_ground, q, 3.0 * rates, rng.uniform(-4.0, 4.0, 2)
+
+
+def velocities(of, key, q, rates):
+    _, _, _, across, up = flexible_reference._places(of, key, q)
+    return rates @ across, rates @ up
+
+
+def test_rates_power_and_energy_are_those_of_the_mass_points(uncompiled):
+    base = rb.RigidBase(shaft="elastic", flexural_damping=0.04)
+    m, of = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base)
+    share = of.mass / of.mass.sum()
+    calls, expected = [], []
+    for key, on_ground, q, rates, shaking in random_states(1):
+        y, contact, ground = (
+            state_at(m, key, q, rates),
+            stance(key * on_ground, key),
+            Ground(shaking[0], 0.0, shaking[1], 0.0),
+        )
+        q_change, normal = flexible_reference.motion_of(of, key, [1, 2] if on_ground else [0, 1, 2], q, rates, shaking)
+        b, s, c = key * m.half_width, math.sin(y.theta), math.cos(y.theta)
+        v_change = q_change[0] + (b * c - m.height * s) * q_change[1] - (m.height * c + b * s) * y.omega**2
+        k = Flexing(y.v_rate, y.omega, v_change, q_change[1], y.u_rate, q_change[2])
+        along, up = velocities(of, key, q, rates)
+        _, z = flexible_reference.places_over_ground(of, key, q)
+        kinetic, potential = 0.5 * share @ (along**2 + up**2), G * share @ (q[0] + z - of.z)
+        resting = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate)
+        spring = of.frequency**2 * y.u + 2.0 * of.damping_ratio * of.frequency * y.u_rate
+        gamma = share @ of.shape / (share @ of.shape**2)
+        calls += [
+            ("system", "rates", m, y, contact, ground),
+            ("block.equations", "normal_force", m, y, k, shaking[1]),
+            ("system", "ground_power", m, y, contact, ground),
+            ("flexure.equations", "velocity_of_centre", m, y, contact),
+            ("flexure.ending", "kinetic_and_potential", m, y, contact),
+            ("flexure.lanes", "_drift", m, y),
+            ("system", "end_step", m, y._replace(v=9.0, v_rate=9.0), y, contact, 0.0),
+            ("system", "rates", m, resting, BOTH, ground),
+            ("flexure.ending", "kinetic_and_potential", m, resting, BOTH),
+        ]
+        top = m.top * s + y.u * c
+        expected += [
+            k, normal, -shaking @ (share @ along, share @ up), (share @ along, share @ up), (kinetic, potential),
+            (top, (m.top * c - y.u * s) * y.omega + y.u_rate * c),
+            y if on_ground else y._replace(v=9.0, v_rate=9.0),
+            (0.0, 0.0, 0.0, 0.0, y.u_rate, -spring - shaking[0] * gamma),
+            (0.5 * share @ of.shape**2 * y.u_rate**2, 0.0),
+        ]  # fmt: skip
+        assert on_ground or abs(normal) < 1e-9
+    for call, found, wanted in zip(calls, uncompiled(values_of, calls), expected, strict=True):
+        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-11), call
+
+
+def test_devices_pull_a_pier_that_bends_as_their_work_along_its_motion_says(uncompiled):
+    """What a force F and a moment M add is J⁻¹ of the points times their work −F δv − M δθ."""
+    base, pull = rb.RigidBase(shaft="elastic"), Pull(3.0, -40.0)
+    m, of = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base)
+    calls, expected = [], []
+    for key, on_ground, q, rates, _ in random_states(5):
+        y, contact, free = state_at(m, key, q, rates), stance(key * on_ground, key), [1, 2] if on_ground else [0, 1, 2]
+        _, s, c, across, up = flexible_reference._places(of, key, q)
+        slope = key * m.half_width * c - m.height * s
+        mass, work = of.mass / of.mass.sum(), np.array([-pull.force, -pull.force * slope - pull.moment, 0.0])
+        added = np.zeros(3)
+        matrix = (across[free] * mass) @ across[free].T + (up[free] * mass) @ up[free].T
+        added[free] = np.linalg.solve(matrix, work[free])
+        calls += [("system", "rates", each, y, contact, STILL) for each in (m, m._replace(pull=pull))]
+        expected.append((added[0] + slope * added[1], added[1], added[2]))
+    found = np.array(uncompiled(values_of, calls))
+    assert (found[1::2] - found[::2])[:, [2, 3, 5]] == pytest.approx(np.array(expected), rel=1e-7, abs=1e-10)
+
+
+def test_the_rate_at_which_a_pier_comes_to_lift_off_is_that_of_the_mass_points(uncompiled):
+    """The acceleration to either side that standing points would begin to turn with, a moment before and after."""
+    base = rb.RigidBase(shaft="elastic", flexural_damping=0.04)
+    m, of, short = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base), 1e-4
+    calls, expected = [], []
+    for key, _, (_, _, u), (*_, u_rate), shaking in random_states(4):
+        ground = Ground(shaking[0], 3.0 * shaking[1], shaking[1], 2.0 * shaking[0])
+        forward = flexible_reference.motion_of(of, key, [2], (0.0, 0.0, u), (0.0, 0.0, u_rate), shaking)[0][2]
+        near = [
+            key * flexible_reference.motion_of(
+                of, key, [1, 2], (0.0, 0.0, u + t * u_rate + 0.5 * t * t * forward), (0.0, 0.0, u_rate + t * forward),
+                (ground.horizontal + t * ground.horizontal_slope, ground.vertical + t * ground.vertical_slope),
+            )[0][1]
+            for t in (-short, 0.0, short)
+        ]  # fmt: skip
+        y, k = Flexing(0.0, 0.0, 0.0, 0.0, u, u_rate), Flexing(0.0, 0.0, 0.0, 0.0, u_rate, forward)
+        calls += [
+            ("block.events", "lift_rate", m, None, Instant(y, k, BOTH, None, ground), key),
+            ("block.events", "lifting", m, None, y, key, ground),
+        ]
+        expected += [(near[2] - near[0]) / (2.0 * short), near[1]]
+    found = uncompiled(values_of, calls)
+    assert found[1::2] == pytest.approx(expected[1::2], rel=1e-9)
+    assert found[::2] == pytest.approx(expected[::2], rel=1e-5, abs=1e-5)
+
+
+def test_the_greatest_displacements_are_those_of_cubics_between_the_rows(tower):
+    """The top of the tower is 40 m above its base, and the mode 1 there; rows are four steps apart."""
+    run, rows, found = tower
+    sine, cosine = np.sin(rows.theta), np.cos(rows.theta)
+    ways = {
+        "deflection_max": (rows.u, rows.u_rate),
+        "drift_max": (
+            40.0 * sine + rows.u * cosine,
+            (40.0 * cosine - rows.u * sine) * rows.omega + rows.u_rate * cosine,
+        ),
+    }
+    for name, (way, rate) in ways.items():
+        greatest = max(
+            abs(
+                CubicHermiteSpline(rows.t[i : i + 2], way[i : i + 2], rate[i : i + 2])(np.linspace(*rows.t[i : i + 2]))
+            ).max()
+            for i in np.flatnonzero(np.diff(rows.t) > 1e-9)
+        )
+        assert getattr(found, name) == pytest.approx(greatest, rel=5e-3)
+    flying, b = rows.left + rows.right == 0.0, run.pier.half_width
+    s, drop = np.sin(rows.theta), run.pier.height * (1.0 - np.cos(rows.theta))
+    lower = rows.v + drop - b * abs(s)
+    assert flying.any() == (found.flights > 0)
+    assert found.flight_height == pytest.approx(lower[flying].max(initial=0.0), rel=0.02, abs=1e-12)
+
+
+@pytest.mark.parametrize("impact", ["momentum", "rate"])
+def test_states_behind_events_are_those_of_the_mass_points(impact, uncompiled):
+    """Impacts at θ = 0, landings from flight on one corner and on both, take-off and lift-off: state, stance, kind and counts."""
+    base = rb.RigidBase(restitution=0.6 if impact == "rate" else None, shaft="elastic", flexural_impact=impact)
+    m, of = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base)
+    gamma = (of.mass * of.shape) @ of.z / (of.mass @ of.shape**2) if impact == "momentum" else 0.0
+    calls, expected = [], []
+    impacts = {-1.0: IMPACT_LEFT, 1.0: IMPACT_RIGHT}
+
+    def event(y, contact, pivot, *wanted):
+        calls.append(("system", "transition", m, None, Moment(y, contact, None), int(pivot > 0.0), STILL, 0.01))
+        expected.append(wanted)
+
+    def landed(side, q, rates):
+        return state_at(m, side, (0.0, *q[1:]), (0.0, *rates))
+
+    for key, on_ground, q, rates, _ in random_states(2, 40):
+        y, before = state_at(m, key, q, rates), stance(key * on_ground, key)
+        if on_ground:
+            event(y, before, key, y, stance(0.0, key), TAKE_OFF, 0.0, 0.0)
+            q[1], rates[1] = 0.0, -key * abs(rates[1])
+            y = state_at(m, key, q, rates)
+            behind = flexible_reference._blow(of, key, -key, q, rates, of.restitution)
+            if -key * behind[0] > 0.0:
+                event(y, before, -key, landed(-key, q, behind), stance(-key, -key), impacts[-key], 1.0, 0.0)
+            else:
+                flat = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + gamma * y.omega)
+                event(y, before, -key, flat, BOTH, IMPACT_BOTH, 1.0, 0.0)
+            resting = Flexing(0.0, 0.0, 0.0, 0.0, 0.01 * y.u, 0.01 * y.u_rate)
+            event(resting, BOTH, -key, resting, stance(key, key), LIFT_OFF, 0.0, 1.0)
+        else:
+            q[1] = math.copysign(min(abs(q[1]), 0.9 * m.alpha), q[1])
+            for pivot in (-key, key):
+                q[0] = (pivot - key) * m.half_width * math.sin(q[1])
+                behind = flexible_reference._blow(of, key, pivot, q, rates, 1.0)
+                wanted = landed(pivot, q, behind), stance(pivot, pivot), impacts[pivot]
+                event(state_at(m, key, q, rates), before, pivot, *wanted, 1.0, 0.0)
+            y = state_at(m, key, (0.0, 0.0, q[2]), (-2.0, 0.1, rates[2]))
+            flat = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + 0.1 * gamma)
+            event(y, before, key, flat, BOTH, IMPACT_BOTH, 2.0, 0.0)
+    for call, found, (y, contact, *rest) in zip(calls, uncompiled(values_of, calls), expected, strict=True):
+        assert found.now.y == pytest.approx(y, rel=1e-9, abs=1e-10), call
+        assert (found.now.contact, *found[1:]) == (contact, *rest, 0.0), call
+        assert found.now.supports is None
+    assert {rest[1] for _, *rest in expected} == {TAKE_OFF, LIFT_OFF, IMPACT_BOTH, *impacts.values()}
+
+
+def test_a_run_is_over_where_energy_or_moment_no_longer_suffice(uncompiled):
+    """By a thousandth: to turn as far as a rotation at which the points have their least energy, or to lift a foot."""
+    base = rb.RigidBase(shaft="elastic", flexural_damping=0.04)
+    m, of = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base)
+    share, stiffness = of.mass / of.mass.sum(), 0.5 * of.frequency**2 * (of.mass @ of.shape**2) / of.mass.sum()
+    calls, expected = [], []
+
+    def level(key, theta, u):
+        return (
+            G * share @ (flexible_reference.places_over_ground(of, key, (0.0, theta, u))[1] - of.z) + stiffness * u**2
+        )
+
+    rng = np.random.default_rng(3)
+    for side in (-1.0, 1.0):
+        for limit in rng.uniform(0.1, 0.7, 4) * m.tipping:
+            least = minimize_scalar(lambda u, side=side, limit=limit: level(side, side * limit, u), tol=1e-12).fun
+            theta, u, u_rate = side * rng.uniform(0.0, 0.3) * limit, rng.uniform(-0.01, 0.01), 0.01
+            for factor in (0.999, 1.001):
+
+                def excess(omega, theta=theta, u=u, u_rate=u_rate, wanted=factor * least, side=side):
+                    along, up = velocities(of, side, (0.0, theta, u), (0.0, omega, u_rate))
+                    return 0.5 * share @ (along**2 + up**2) + level(side, theta, u) - wanted
+
+                # a parabola in ω through three of its points
+                omega = np.roots(
+                    np.polyfit([-1.0, 0.0, 1.0], [excess(each) for each in (-1.0, 0.0, 1.0)], 2)
+                ).real.max()
+                now = Moment(state_at(m, side, (0.0, theta, u), (0.0, omega, u_rate)), stance(side, side), None)
+                calls.append(("flexure.ending", "_cannot_reach", m, None, now, limit))
+                expected.append(factor < 1.0)
+    beyond = Moment(state_at(m, 1.0, (0.0, 1.01 * m.tipping, 0.0), (0.0, 0.0, 0.0)), stance(1.0, 1.0), None)
+    calls.append(("flexure.ending", "_cannot_reach", m, None, beyond, m.tipping))
+    expected.append(False)
+    phases = np.linspace(0.0, 2.0 * math.pi, 20001)
+    spring = of.frequency**2 * (np.cos(phases) + 2.0 * of.damping_ratio * np.sin(phases))
+    moment = share @ (of.shape * of.z) * spring.max() + G * share @ of.shape
+    for factor in (0.999, 1.001):
+        for phase in (0.0, 0.5, 0.5 * math.pi, 2.0, 4.0):
+            size = factor * G * m.half_width / moment
+            y = Flexing(0.0, 0.0, 0.0, 0.0, size * math.cos(phase), size * of.frequency * math.sin(phase))
+            for contact in (BOTH, stance(1.0, 1.0), stance(-1.0, -1.0)):
+                calls.append(("flexure.ending", "_stands_for_good", m, None, Moment(y, contact, None)))
+                expected.append(factor < 1.0 and contact == BOTH)
+    for call, found, wanted in zip(calls, uncompiled(values_of, calls), expected, strict=True):
+        assert found == wanted, call
