@@ -14,8 +14,7 @@ from motion_files import RECORDS, needs_records
 
 import rockbatch as rb
 from rockbatch.core.block.ending import reach_of
-from rockbatch.core.block.equations import on_side
-from rockbatch.core.block.model import Rocking
+from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.devices.laws import CONTACT, HYSTERETIC, MAXWELL, SPRING, TENDON
 from rockbatch.core.roots import falls
 from rockbatch.core.springs.model import Contact, State, Supports
@@ -362,6 +361,11 @@ def over_ground(at: float, of) -> float:
     return 2.0 * (side * b - of.offset) * math.sin(0.5 * at)
 
 
+def standing_on(theta: float) -> Stance:
+    side = math.copysign(1.0, theta)
+    return Stance(float(side < 0.0), float(side > 0.0), side, side)
+
+
 def kept_by(at: float) -> float:
     """Energy [J/kg] of tie, stop and band under a block: squares of their forces."""
     tie, stop, band = (over_ground(at, of) for of in (TIE, STOP, BAND))
@@ -379,7 +383,7 @@ def test_a_block_with_devices_is_over_once_its_energy_falls_short_of_the_peak(un
         return FIG5.gravity * (b * math.sin(abs(theta)) - h * (1.0 - math.cos(theta)))
 
     for theta, peak in ((0.03, 0.08), (-0.03, 0.08), (0.01, 0.15), (-0.05, 0.12), (0.02, 0.5)):
-        y, contact = Rocking(rise(theta) / FIG5.gravity, theta, 0.0, 0.0), on_side(math.copysign(1.0, theta))
+        y, contact = Rocking(rise(theta) / FIG5.gravity, theta, 0.0, 0.0), standing_on(theta)
         devices.x[3] = max(0.0, over_ground(theta, STOP) - 0.05)  # it is on its first loading
         calls.append(("block.ending", "stored_by_devices", m, deepcopy(devices), y, contact))
         kept = kept_by(theta)

@@ -10,12 +10,24 @@ import pytest
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.core.devices.elongation import attitude, gap_of
-from rockbatch.core.devices.events import _is_held
+from rockbatch.core.devices.events import (
+    Rounding,
+    _is_held,
+    _of_device,
+    after_contact,
+    device_event,
+    device_functions,
+    settle_friction,
+)
+from rockbatch.core.devices.laws import FRICTION
+from rockbatch.core.devices.pull import START, device_rates, devices_of
 from rockbatch.core.springs.lanes import LANE
+from rockbatch.core.system import rates
 from rockbatch.core.table import table
+from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
-from rockbatch.simulation.models import springs
+from rockbatch.simulation.models import IDLE, springs
 
 FIG5 = Pier(alpha=0.20, p=1.0)
 FIG6 = Pier(alpha=0.15, p=1.0)
@@ -138,3 +150,40 @@ def waiting_after(module_and_name, values, *given):
     lanes = lane_of_springs(**values)
     (found,) = values_of([(*module_and_name, lanes, 0, *given)])
     return found, {name: float(getattr(lanes.waiting, name)[0]) for name in lanes.waiting.dtype.names}
+
+
+def device_signals(of, mode, goes, at):
+    """Return the event functions of a device, three values and three slopes: ``at`` is its elongation, ė, ë and its state."""
+    elongation, speed, acceleration, state = at
+    devices = SimpleNamespace(elements=[of], modes=[mode], goes=[goes])
+    functions = SimpleNamespace(values=np.full(OF_PIER + 3, -9.0), slopes=np.full(OF_PIER + 3, -9.0))
+    motion = SimpleNamespace(
+        gap=SimpleNamespace(elongation=elongation, speed=speed), acceleration=acceleration, state=state
+    )
+    _of_device(devices, 0, motion, Rounding(1e-9, 1e-12), functions)
+    return functions.values[OF_PIER:].tolist(), functions.slopes[OF_PIER:].tolist()
+
+
+def after_event(m, now, of, mode, goes, state, what):
+    """Return mode, direction, state and count of a device behind its event ``what``, None for a contact of the pier."""
+    devices = devices_of([of], [state], 0.0)
+    devices.modes[0], devices.goes[0], still = mode, goes, Ground(0.0, 0.0, 0.0, 0.0)
+    if what is None:
+        after_contact(m, devices, now, still)
+    else:
+        device_event(m, devices, now, still, 0.01, OF_PIER + what)
+    return tuple(map(float, (devices.modes[0], devices.goes[0], devices.x[0], devices.use[0].times)))
+
+
+def friction_signals(m, y, contact, ground, offset, strength):
+    """Return value and slope of the event function of a friction damper that holds a block, and what it does then."""
+    devices = devices_of([IDLE._replace(kind=FRICTION, strength=strength, offset=offset)], (), 0.0)
+    now, functions = (
+        Moment(y, contact, None),
+        SimpleNamespace(values=np.ones(OF_PIER + 3), slopes=np.zeros(OF_PIER + 3)),
+    )
+    under, *_ = device_rates(m, devices, now, devices.x, ground, START)
+    k = rates(under, y, contact, ground)
+    device_functions(m, devices, Instant(y, k, contact, None, ground), START, 0.01, functions)
+    settle_friction(m, devices, now, devices.x, ground)
+    return functions.values.tolist(), functions.slopes.tolist(), float(devices.goes[0])
