@@ -21,13 +21,13 @@ from rockbatch.core.devices.events import (
 )
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.devices.pull import START, device_rates, devices_of
-from rockbatch.core.springs.lanes import LANE
-from rockbatch.core.system import rates
-from rockbatch.core.table import table
+from rockbatch.core.springs.lanes import LANE, static_contact, static_state
+from rockbatch.core.system import rates, status_at_sample
+from rockbatch.core.table import put, table
 from rockbatch.core.types import OF_PIER, Ground, Instant, Moment
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
-from rockbatch.simulation.models import IDLE, springs
+from rockbatch.simulation.models import IDLE, springs, system_of
 
 FIG5 = Pier(alpha=0.20, p=1.0)
 FIG6 = Pier(alpha=0.15, p=1.0)
@@ -187,3 +187,28 @@ def friction_signals(m, y, contact, ground, offset, strength):
     device_functions(m, devices, Instant(y, k, contact, None, ground), START, 0.01, functions)
     settle_friction(m, devices, now, devices.x, ground)
     return functions.values.tolist(), functions.slopes.tolist(), float(devices.goes[0])
+
+
+def status_of(m, now, values, devices=()):
+    """Return the status of a run at a sample, when it is looked at next, and what its lane then has.
+
+    ``now`` is its Moment, None at rest on springs; ``values`` are what the lane has else: ``group__name``.
+    """
+    of = system_of(m)
+    lanes, module = table(of.lane)[0][0], importlib.import_module(type(m).__module__)
+    put(lanes.model, 0, module.Numbers(*(getattr(m, name) for name in module.Numbers._fields)))
+    if now is None:
+        y = static_state(m, m.gravity)
+        now = Moment(y, *static_contact(m, y))
+    put(lanes.now, 0, now.y)
+    put(lanes.contact, 0, now.contact)
+    if now.supports is not None:
+        put(lanes.supports, 0, now.supports)
+    places = {name: getattr(lanes, name.split("__")[0])[name.split("__")[1]] for name in values}
+    for name, value in values.items():
+        places[name][0] = value
+    held = devices_of(list(devices), (), 0.0)
+    if held is not None:
+        held.goes[:] = 0.0
+    found = status_at_sample(of.traits, lanes, 0, held)
+    return *map(float, found), {name: float(place[0]) for name, place in places.items()}

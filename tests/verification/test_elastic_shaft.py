@@ -453,6 +453,8 @@ def test_devices_pull_a_pier_that_bends_as_their_work_along_its_motion_says(unco
         calls += [("system", "rates", each, y, contact, STILL) for each in (m, m._replace(pull=pull))]
         expected.append((added[0] + slope * added[1], added[1], added[2]))
     found = np.array(uncompiled(values_of, calls))
+    loads = [("block.equations", "normal_force", each, y, y, 0.3) for each in (m, m._replace(pull=pull))]
+    assert np.diff(uncompiled(values_of, loads)) == pytest.approx(pull.force, rel=1e-9)
     assert (found[1::2] - found[::2])[:, [2, 3, 5]] == pytest.approx(np.array(expected), rel=1e-7, abs=1e-10)
 
 
