@@ -89,9 +89,9 @@ def test_free_rocking_reaches_the_amplitude_of_its_energy(theta):
     """½ θ̇² = p² [cos(α − θ₁) − cos(α − θ)] on the way down from rest at θ₁ (Housner 1963)."""
     for share in (0.1, 0.5, 0.9):
         now = share * theta
-        omega = math.sqrt(2.0 * (math.cos(0.2 - theta) - math.cos(0.2 - now)) * -1.0 * -1.0)
-        assert reach_of(now, omega, 0.2, 1.0) == pytest.approx(theta, rel=1e-9)
-    assert reach_of(0.19, 0.011, 0.2, 1.0) == math.inf
+        omega = 2.5 * math.sqrt(2.0 * (math.cos(0.2 - theta) - math.cos(0.2 - now)))
+        assert reach_of(now, omega, 0.2, 2.5) == reach_of(-now, -omega, 0.2, 2.5) == pytest.approx(theta, rel=1e-9)
+    assert reach_of(0.19, 2.5 * 0.011, 0.2, 2.5) == reach_of(0.21, 0.0, 0.2, 2.5) == math.inf
 
 
 # Residuals are read at a stated moment
@@ -516,3 +516,43 @@ def test_a_run_that_nothing_decided_says_what_it_was_doing(spring, uncompiled):
         values = common | {"waiting__midway": 0.01, "waiting__midway_tilt": 0.0} | changes
         now = Moment(state, air, flat)
         assert uncompiled(waiting_after, ("springs.ending", "_given_up"), values, m, now)[0] == status, changes
+
+
+@pytest.mark.parametrize(
+    ("samples", "wait", "longest", "read_by"),
+    [(500.0, 30.0, 580.0, 184.0), (120.0, 30.0, 214.0, 184.0), (120.0, 0.0, 200.0, 104.0)],
+)
+def test_a_run_on_springs_begins_with_nothing_read_and_its_patience_behind_the_quiet_time_or_the_readings(
+    samples, wait, longest, read_by, uncompiled
+):
+    """A record of 101 samples, read from 4 behind it, with a patience of 80."""
+    m, base = springs(FIG5, ElasticBase(50.0)), ElasticBase(50.0)
+    run = SimpleNamespace(read_after=4.0, patience=80.0, read_wait=wait, gravity=9.81, prestress=0.5)
+    values = {"clock__npts": 101.0, "clock__samples": samples}
+    _, waiting = uncompiled(waiting_after, ("springs.ending", "set_deadline"), values, m, run)
+    nothing = dict.fromkeys(("read_left", "read_right", "drift_left", "drift_right"), math.nan)
+    nothing |= dict.fromkeys(
+        ("last_drift_left", "last_drift_right", "stored", "further_right", "further_left", "growth"), 0.0
+    )
+    expected = nothing | {
+        "earliest": 104.0, "patience": 80.0, "read_wait": wait, "longest": longest, "read_by": read_by, "load": 10.31,
+        "midway": math.inf, "midway_tilt": math.inf, "period": 2.0 * math.pi / rocking_frequency(FIG5, base),
+    }  # fmt: skip
+    assert {name: waiting[name] for name in expected} == pytest.approx(expected, rel=1e-12, nan_ok=True)
+    assert waiting["read"] < 0.0
+
+
+def test_a_pier_stands_once_both_pivots_have_borne_for_a_period_and_is_read_at_the_latest_when_it_is_due(uncompiled):
+    common = {
+        "clock__dt": 0.01,
+        "clock__npts": 100.0,
+        "tally__moved": 1.2,
+        "waiting__period": 0.1 - 1e-9,
+        "waiting__read_by": 150.0,
+    }
+    for sample, left, right, stands in ((130, 1, 1, True), (129, 1, 1, False), (130, 0, 1, False), (130, 1, 0, False)):
+        contact, values = Contact(left, right, 0.0, 0.0, 0.0), common | {"clock__sample": float(sample)}
+        for name in ("_stands", "_legible"):
+            assert uncompiled(waiting_after, ("springs.ending", name), values, contact)[0] == stands
+        due = values | {"waiting__read_by": float(sample)}
+        assert uncompiled(waiting_after, ("springs.ending", "_legible"), due, contact)[0]

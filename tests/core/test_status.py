@@ -20,8 +20,9 @@ COMMON = {
     "ground__horizontal": 0.0, "ground__vertical": 0.0, "peak__theta": 0.05,
 }  # fmt: skip
 BLOCK = COMMON | {"ending__longest": 150.0, "ending__omega": 0.0, "ending__turned": 0.0}
+PIER = Pier(0.2, 2.5)
 LIFTED, ROCKS = 0.04, 0.9  # rad; of p, enough to overturn
-BRAKE = IDLE._replace(kind=FRICTION, strength=50.0, offset=-FIG5.half_width)
+BRAKE = IDLE._replace(kind=FRICTION, strength=50.0, offset=-PIER.half_width)
 
 
 @pytest.mark.parametrize(
@@ -44,18 +45,19 @@ BRAKE = IDLE._replace(kind=FRICTION, strength=50.0, offset=-FIG5.half_width)
         (RIGHT, LIFTED, ROCKS, {"clock__sample": 149.0}, RUNNING),
         (RIGHT, LIFTED, ROCKS, {"clock__sample": 150.0}, UNDECIDED),
         (RIGHT, LIFTED, 0.0, {"clock__sample": 150.0, "peak__theta": 0.03}, RESTLESS),
+        (RIGHT, 0.001, 0.15, {"clock__sample": 150.0, "peak__theta": 0.03}, RESTLESS),
         (RIGHT, 0.21, 0.0, {"clock__sample": 150.0, "peak__theta": 0.21}, UNDECIDED),  # beyond α
         (RIGHT, LIFTED, ROCKS, {"ending__longest": 110.0}, SURVIVED),  # nothing is waited for
     ],
 )  # fmt: skip
 def test_a_run_of_a_block_is_over_when_nothing_can_exceed_its_peak(contact, theta, omega, values, status, uncompiled):
-    m, moment = block(FIG5, RigidBase()), Moment(Rocking(0.0, theta, 0.0, omega * FIG5.p), contact, None)
+    m, moment = block(PIER, RigidBase()), Moment(Rocking(0.0, theta, 0.0, omega * PIER.p), contact, None)
     found, due, _ = uncompiled(status_of, m, moment, BLOCK | values)
     assert (found, due) == (status, values.get("clock__sample", 120.0) + 1.0)
 
 
 def test_a_block_is_not_looked_at_before_its_record_ends(uncompiled):
-    m, rests = block(FIG5, RigidBase()), Moment(Rocking(0.0, 0.0, 0.0, 0.0), BOTH, None)
+    m, rests = block(PIER, RigidBase()), Moment(Rocking(0.0, 0.0, 0.0, 0.0), BOTH, None)
     found = uncompiled(status_of, m, rests, BLOCK | {"clock__sample": 20.0})
     assert found[:2] == (RUNNING, 99.0)
 
@@ -69,7 +71,7 @@ def test_a_block_is_not_looked_at_before_its_record_ends(uncompiled):
     ],
 )  # fmt: skip
 def test_a_velocity_reversal_counts_while_the_block_is_on_the_ground_at_rest(contact, omega, before, after, uncompiled):
-    m, moment = block(FIG5, RigidBase()), Moment(Rocking(0.0, LIFTED, 0.0, omega), contact, None)
+    m, moment = block(PIER, RigidBase()), Moment(Rocking(0.0, LIFTED, 0.0, omega), contact, None)
     values = BLOCK | dict(zip(("ending__omega", "ending__turned"), before, strict=True))
     *_, lane = uncompiled(status_of, m, moment, values)
     assert (lane["ending__omega"], lane["ending__turned"]) == after
@@ -82,7 +84,7 @@ def test_a_velocity_reversal_counts_while_the_block_is_on_the_ground_at_rest(con
     ("theta", "omega", "status"), [(0.1, 0.0, SURVIVED), (0.21, 0.0, UNDECIDED), (0.1, 0.5, RUNNING)]
 )
 def test_a_block_that_friction_holds_at_a_tilt_has_survived_below_its_slenderness(theta, omega, status, uncompiled):
-    m, moment = block(FIG5, RigidBase()), Moment(Rocking(0.0, theta, 0.0, omega), RIGHT, None)
+    m, moment = block(PIER, RigidBase()), Moment(Rocking(0.0, theta, 0.0, omega), RIGHT, None)
     assert uncompiled(status_of, m, moment, BLOCK | {"peak__theta": 0.11}, [BRAKE])[0] == status
 
 

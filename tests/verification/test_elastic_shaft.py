@@ -547,6 +547,18 @@ def test_states_behind_events_are_those_of_the_mass_points(impact, uncompiled):
                 behind = flexible_reference._blow(of, key, pivot, q, rates, 1.0)
                 wanted = landed(pivot, q, behind), stance(pivot, pivot), impacts[pivot]
                 event(state_at(m, key, q, rates), before, pivot, *wanted, 1.0, 0.0)
+            topples = (0.0, math.copysign(1.1 * m.alpha, q[1]), q[2])  # and lands beyond α, which is no impact to count
+            behind = flexible_reference._blow(of, key, key, topples, rates, 1.0)
+            event(
+                state_at(m, key, topples, rates),
+                before,
+                key,
+                landed(key, topples, behind),
+                stance(key, key),
+                impacts[key],
+                0.0,
+                0.0,
+            )
             y = state_at(m, key, (0.0, 0.0, q[2]), (-2.0, 0.1, rates[2]))
             flat = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + 0.1 * gamma)
             event(y, before, key, flat, BOTH, IMPACT_BOTH, 2.0, 0.0)
