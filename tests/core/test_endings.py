@@ -556,3 +556,31 @@ def test_a_pier_stands_once_both_pivots_have_borne_for_a_period_and_is_read_at_t
             assert uncompiled(waiting_after, ("springs.ending", name), values, contact)[0] == stands
         due = values | {"waiting__read_by": float(sample)}
         assert uncompiled(waiting_after, ("springs.ending", "_legible"), due, contact)[0]
+
+
+@pytest.mark.parametrize("spring", ["bouc-wen", "epp"])
+def test_a_base_is_foreseen_to_tilt_on_as_between_its_readings(spring, uncompiled):
+    """For half of the patience, at the greater of both drifts to either side, amplified as a pier leans on a tilted base;
+    twice as fast, and growing by itself while its supports sink, on springs that ratchet."""
+    base = YieldingBase(50.0, 0.1, eta=3.0, spring=spring)
+    m, b, h, rng = springs(FIG5, base), FIG5.half_width, FIG5.height, np.random.default_rng(2)
+    stiffness = rocking_frequency(FIG5, base) ** 2 * (FIG5.inertia_about_pivot - b * b)
+    amplified, ratchets, seen = 1.0 + FIG5.gravity * h / stiffness, spring == "bouc-wen", set()
+    for _ in range(12):
+        drifts = rng.normal(
+            -1e-4, 3e-4, (2, 2)
+        )  # of the left and right support, between the first readings and the last
+        names = "drift_left", "drift_right", "last_drift_left", "last_drift_right"
+        values = {f"waiting__{name}": drift for name, drift in zip(names, drifts.ravel().tolist(), strict=True)}
+        values |= {"waiting__patience": 600.0, "clock__dt": 0.01}
+        _, waiting = uncompiled(waiting_after, ("springs.ending", "_foresee"), values, m)
+        way = 3.0 * (2.0 if ratchets else 1.0) * drifts
+        turns, sinks = amplified * (way[:, 0] - way[:, 1]) / b, max(0.0, -way.sum(axis=1).min())
+        exponent = 5.0 * h * amplified * sinks / b**2 if ratchets else 0.0
+        more = math.expm1(exponent) / exponent if exponent > 0.0 else 1.0
+        expected = more * max(0.0, turns.max()), more * max(0.0, -turns.min()), math.expm1(exponent)
+        assert [waiting[name] for name in ("further_right", "further_left", "growth")] == pytest.approx(
+            expected, rel=1e-8
+        )
+        seen |= {(expected[0] > 0.0, expected[1] > 0.0)}
+    assert len(seen) == 3

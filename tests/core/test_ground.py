@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from core_samples import FIG5
+from core_samples import FIG5, values_of
 
 from rockbatch.core.ground import ground_rows, later
 from rockbatch.core.observe.rows import cubic, ground_at
@@ -86,3 +86,15 @@ def test_a_support_bears_what_its_spring_and_its_dashpot_do_while_its_pivot_is_t
         found = recovery.forces(m, y, Contact(left, right, 0.0, 0.0, 0.0), geometry(m, 0.0))
         expected = [m.yield_force * z + m.damping * (0.03 + way * b * 0.02) for z, way in ((-0.5, 1.0), (-0.6, -1.0))]
         assert found == pytest.approx((left * expected[0], right * expected[1]), rel=1e-12)
+
+
+def test_a_row_has_the_ground_of_the_interval_in_which_its_step_lies(uncompiled):
+    """Linear from the sample before, from both sides of a sample; at rest behind the last."""
+    ground = np.array([[1.0, 10.0, -3.0, 4.0], [2.0, -20.0, 0.5, -6.0]])
+    calls = [
+        ("observe.rows", "ground_at", ground, 0.1, middle, t)
+        for middle, t in ((0.03, 0.1), (0.12, 0.1), (0.15, 0.17), (0.2, 0.2), (0.35, 0.3))
+    ]
+    still = 0.0, 0.0, 0.0, 0.0
+    expected = (2.0, 10.0, -2.6, 4.0), (2.0, -20.0, 0.5, -6.0), (0.6, -20.0, 0.08, -6.0), still, still
+    np.testing.assert_allclose(uncompiled(values_of, calls), expected, atol=1e-12)
