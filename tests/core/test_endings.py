@@ -366,15 +366,20 @@ def standing_on(theta: float) -> Stance:
     return Stance(float(side < 0.0), float(side > 0.0), side, side)
 
 
-def kept_by(at: float) -> float:
+def kept_by(at: float, offset: float) -> float:
     """Energy [J/kg] of tie, stop and band under a block: squares of their forces."""
-    tie, stop, band = (over_ground(at, of) for of in (TIE, STOP, BAND))
+    tie, stop, band = (over_ground(at, of) for of in (TIE._replace(offset=offset), STOP, BAND))
     return (1.0 + 30.0 * tie) ** 2 / 60.0 + 0.5 * 80.0 * 0.36 * max(stop - 0.05, 0.0) ** 2 + 0.5 * 2.5 * band**2
 
 
-def test_a_block_with_devices_is_over_once_its_energy_falls_short_of_the_peak(uncompiled):
+@pytest.mark.parametrize("offset", [0.7, -0.7])
+def test_a_block_with_devices_is_over_once_its_energy_falls_short_of_the_peak(offset, uncompiled):
     """By a thousandth, to the side with less; a damper of steel may give back F z² (1 + give)/2k, a brace F²/2k besides."""
-    m, elements, x = block(FIG5, RigidBase()), [TIE, STEEL, HUNG, STOP, BAND], [0.0, -0.3, 0.9, 1e3, 0.0]
+    m, elements, x = (
+        block(FIG5, RigidBase()),
+        [TIE._replace(offset=offset), STEEL, HUNG, STOP, BAND],
+        [0.0, -0.3, 0.9, 1e3, 0.0],
+    )
     devices = SimpleNamespace(elements=elements, x=x, level=[0.0])
     back, inertia = 0.5 * 2.0 * 0.09 * 1.25 / 50.0 + 0.5 * 0.81 / 40.0, FIG5.inertia_about_pivot
     b, h, calls, expected = FIG5.half_width, FIG5.height, [], []
@@ -386,14 +391,17 @@ def test_a_block_with_devices_is_over_once_its_energy_falls_short_of_the_peak(un
         y, contact = Rocking(rise(theta) / FIG5.gravity, theta, 0.0, 0.0), standing_on(theta)
         devices.x[3] = max(0.0, over_ground(theta, STOP) - 0.05)  # it is on its first loading
         calls.append(("block.ending", "stored_by_devices", m, deepcopy(devices), y, contact))
-        kept = kept_by(theta)
+        kept = kept_by(theta, offset)
         expected.append((kept, back))
-        least = min(rise(limit) + kept_by(limit) for limit in (min(peak, 0.2), -min(peak, 0.2)))
+        least = min(rise(limit) + kept_by(limit, offset) for limit in (min(peak, 0.2), -min(peak, 0.2)))
         for factor in (0.999, 1.001):
             omega = math.sqrt(2.0 * (factor * least - rise(theta) - kept - back) / inertia)
             now = SimpleNamespace(y=y._replace(omega=omega), contact=contact)
             calls.append(("block.ending", "_cannot_reach", m, deepcopy(devices), now, peak))
             expected.append(factor < 1.0)
+    lies = SimpleNamespace(y=Rocking(rise(0.35) / FIG5.gravity, 0.35, 0.0, 0.0), contact=standing_on(0.35))  # beyond α
+    calls.append(("block.ending", "_cannot_reach", m, SimpleNamespace(elements=[], x=[], level=[0.0]), lies, 0.15))
+    expected.append(False)
     for call, found, wanted in zip(calls, uncompiled(values_of, calls), expected, strict=True):
         assert found == pytest.approx(wanted, rel=1e-9), call
 

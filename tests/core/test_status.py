@@ -35,6 +35,7 @@ BRAKE = IDLE._replace(kind=FRICTION, strength=50.0, offset=-PIER.half_width)
         (LEFT, -LIFTED, 0.0, {}, SURVIVED),
         (RIGHT, LIFTED, 0.0, {"peak__theta": 0.0401}, SURVIVED),
         (RIGHT, LIFTED, 0.0, {"peak__theta": 0.0399}, RUNNING),
+        (LEFT, -LIFTED, 0.0, {"peak__theta": 0.0399}, RUNNING),
         (RIGHT, LIFTED, 0.0, {"peak__theta": 0.0399, "ending__turned": 1.0}, SURVIVED),
         (RIGHT, LIFTED, -0.01, {"peak__theta": 0.0399, "ending__omega": 0.01}, SURVIVED),  # it has just turned
         (RIGHT, LIFTED, -0.01, {"peak__theta": 0.0399, "ending__omega": 0.01, "ground__vertical": 0.1}, RUNNING),

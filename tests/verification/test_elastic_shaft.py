@@ -585,7 +585,7 @@ def test_a_run_is_over_where_energy_or_moment_no_longer_suffice(uncompiled):
     for side in (-1.0, 1.0):
         for limit in rng.uniform(0.1, 0.7, 4) * m.tipping:
             least = minimize_scalar(lambda u, side=side, limit=limit: level(side, side * limit, u), tol=1e-12).fun
-            theta, u, u_rate = side * rng.uniform(0.0, 0.3) * limit, rng.uniform(-0.01, 0.01), 0.01
+            theta, u, u_rate = side * rng.uniform(0.0, 0.3) * limit, rng.choice([-0.08, 0.08]), 0.01
             for factor in (0.999, 1.001):
 
                 def excess(omega, theta=theta, u=u, u_rate=u_rate, wanted=factor * least, side=side):
@@ -599,7 +599,10 @@ def test_a_run_is_over_where_energy_or_moment_no_longer_suffice(uncompiled):
                 now = Moment(state_at(m, side, (0.0, theta, u), (0.0, omega, u_rate)), stance(side, side), None)
                 calls.append(("flexure.ending", "_cannot_reach", m, None, now, limit))
                 expected.append(factor < 1.0)
-    beyond = Moment(state_at(m, 1.0, (0.0, 1.01 * m.tipping, 0.0), (0.0, 0.0, 0.0)), stance(1.0, 1.0), None)
+    far = 1.3 * m.tipping
+    leans = minimize_scalar(lambda u: level(1.0, far, u), tol=1e-12).x
+    assert level(1.0, far, leans) < level(1.0, m.tipping, leans)
+    beyond = Moment(state_at(m, 1.0, (0.0, far, leans), (0.0, 0.0, 0.0)), stance(1.0, 1.0), None)
     calls.append(("flexure.ending", "_cannot_reach", m, None, beyond, m.tipping))
     expected.append(False)
     phases = np.linspace(0.0, 2.0 * math.pi, 20001)
