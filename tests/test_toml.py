@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import Bounds
 from rockbatch.toml.csv_columns import columns_of
-from rockbatch.toml.kinds import Number, positive, within
+from rockbatch.toml.kinds import Choice, KindError, Number, boolean, positive, within
 from rockbatch.toml.lines import key_lines
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import Key, Section
@@ -236,3 +236,36 @@ def test_columns_of_a_small_file_are_numbers_or_the_line_says_why_not(tmp_path, 
         assert found in caught.value.problems[0]
     else:
         assert str(columns_of(path, kinds, gaps=gaps)) == str(found)  # NaN equals itself so
+
+
+@pytest.mark.parametrize(
+    ("error", "meant", "advice"),
+    [
+        (KindError("a length"), "", "expected a length"),
+        (KindError("a length"), "1.5", "did you mean 1.5? expected a length"),
+        (KindError("a length", "2.5"), "1.5", "did you mean 2.5? expected a length"),
+        (KindError("x" * 99, "2.5"), "", f"did you mean 2.5? expected {'x' * 99}"),
+        (KindError("x" * 100, "2.5"), "", "did you mean 2.5?"),
+        (KindError("it is too long", "2.5", whole=True), "1.5", "it is too long"),
+    ],
+)
+def test_advice_is_what_was_meant_and_what_was_expected_if_that_is_short(error, meant, advice):
+    assert error.advice(meant) == advice
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "expected", "meant"),
+    [
+        (boolean, "yes", "true or false (without quotes)", "true"),
+        (boolean, "off", "true or false (without quotes)", "false"),
+        (boolean, 1, "true or false (without quotes)", "true"),
+        (boolean, 1.0, "true or false (without quotes)", ""),
+        (Choice((1, 2)), "2", "one of 1, 2", "2"),
+        (Choice((1, 2)), True, "one of 1, 2", ""),
+        (Choice(("left", "right"), listed_by="rockbatch x"), "rihgt", "one that `rockbatch x` lists", '"right"'),
+    ],
+)
+def test_an_option_is_accepted_as_its_own_type_only_and_near_ones_are_suggested(kind, value, expected, meant):
+    with pytest.raises(KindError) as refused:
+        kind(value)
+    assert (str(refused.value), refused.value.meant) == (expected, meant)
