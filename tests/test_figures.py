@@ -233,6 +233,60 @@ def test_panels_flow_into_the_width_and_stacked_rows_stay_together():
     assert 10.0 < heights[1] - heights[0] < 20.0  # room for a label above, where there is one
 
 
+@pytest.mark.parametrize("beyond", [(3.0, 1.0), (-1.0, 1.0), (1.0, 3.0), (1.0, -1.0)])
+def test_a_curve_is_interrupted_where_it_leaves_its_panel_on_any_side(beyond):
+    x, y = np.array([[0.5, 1.0], [1.0, 1.0], beyond, [1.5, 1.0], [1.6, 1.2]]).T
+    (path,) = (
+        node
+        for node in parsed(svg.drawn(figure(Polyline(x, y, look=Look("level"))))).iter("path")
+        if node.get("class") == "level ink"
+    )
+    assert path.get("d").count("M") == 2
+
+
+def test_words_beside_panels_stand_in_no_panel_and_inside_the_picture():
+    """Frames of a row are as wide as each other, and ten pixels apart."""
+    axes = {"x": Axis("t [s]", 0.0, 1.0), "y": Axis("F [kN]", 0.0, 1.0)}
+    panels = [
+        Panel(**axes, marks=[], caption=f"part {i}", width=width) for i, width in enumerate((300.0, 150.0, 150.0))
+    ]
+    (picture,) = (node for node in parsed(svg.drawn(Figure(panels, "two rows", stacked=True))) if node.tag == "svg")
+    _, _, width, height = map(float, picture.get("viewBox").split())
+    frames = [numbers_in(node) for node in picture.iter("path") if node.get("class") == "edge"]
+    assert len(frames) == 3
+    (whole, first, second) = ((left, right) for left, _, _, right in frames)
+    assert first[1] - first[0] == pytest.approx(second[1] - second[0], abs=0.11)
+    assert second[0] - first[1] == pytest.approx(10.0, abs=0.11)
+    assert (whole[0], whole[1]) == (first[0], second[1])
+    places = [(float(node.get("x")), float(node.get("y"))) for node in picture.iter("text")]
+    assert len(places) == 3 * (3 + sum(len(axis.ticks()) for axis in axes.values()))
+    for x, y in places:
+        assert 0.0 <= x <= width
+        assert 8.0 < y < height - 2.0
+        assert not any(left < x < right and top < y < foot for left, top, foot, right in frames)
+    for left, top, foot, right in frames:
+        assert 0.0 < left < right < width
+        assert any(x == pytest.approx(right, abs=0.06) and top - 15.0 < y < top - 4.0 for x, y in places)  # its caption
+        assert sum(foot + 8.0 < y < foot + 18.0 and left <= x <= right for x, y in places) == len(axes["x"].ticks())
+
+
+def test_panels_apart_have_their_captions_and_a_single_one_without_has_none():
+    panel = Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), [], "caption", note="note", reads="plane")
+    alone = parsed(svg.drawn(Figure([panel], "one")))
+    assert ["".join(node.itertext()) for node in alone.iter("figcaption")] == ["caption note"]
+    assert [node.get("aria-label") for node in alone.iter("svg")] == ["one, caption"]
+    assert not list(parsed(svg.drawn(Figure([replace(panel, caption="")], "one"))).iter("figcaption"))
+    assert [node.text for node in parsed(svg.sketch(Figure([panel], "one"))).iter("figcaption")] == ["caption"]
+    assert not list(parsed(svg.sketch(Figure([replace(panel, caption="")], "one"))).iter("figcaption"))
+    grids = [parsed(svg.drawn(Figure([replace(panel, reads=reads)] * 2, "two")))[0] for reads in ("plane", "")]
+    assert [grid.get("tabindex") for grid in grids] == [
+        None,
+        "0",
+    ]  # the pictures take keys themselves, or the group does
+    entries = parsed(svg.key([svg.Entry("all", [Points(X, Y)]), svg.Entry("one", [], "case", "pads")]))[0]
+    assert [dict(item.attrib) for item in entries] == [{}, {"data-of": "case", "data-value": "pads"}]
+
+
 def test_stretched_panels_have_words_of_one_size_at_shares_of_the_width_in_either_view():
     x, y = np.linspace(0.0, 10.0, 101), np.sin(np.linspace(0.0, 10.0, 101))
     marks = [Polyline(x, y, "y"), Points(np.full(1, 3.0), np.full(1, 0.5)), Words(8.0, 0.0, "late")]
