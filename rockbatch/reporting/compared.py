@@ -66,7 +66,8 @@ def _better(studies: list[Finished], responses: list[dict[str, Worst]]) -> Marku
     parts = []
     for name, pair in in_both.items():
         labels = (study.label(w.run["record"]) for study, w in zip(studies, pair, strict=True))
-        parts.append(f"{RESPONSES[name].words} {100 * changes[name]:+.3g} % ({'; then '.join(dict.fromkeys(labels))})")
+        change = f"{100 * changes[name]:+.3g} %" if math.isfinite(changes[name]) else "from none"
+        parts.append(f"{RESPONSES[name].words} {change} ({'; then '.join(dict.fromkeys(labels))})")
     lead = f": from A to B, worst {', '.join(parts)}" if parts else ": no run ends standing"
     if parts and lost[0]:
         n = len(studies[0].runs)

@@ -5,12 +5,15 @@ import warnings
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.units import GRAVITY
 from rockbatch.motions import Motion, measures
 from rockbatch.motions.description import suite_spectra
 from rockbatch.motions.motion import Initial
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration
 
 with warnings.catch_warnings():
@@ -221,6 +224,25 @@ def test_a_displacement_that_runs_away_is_no_peak_unless_the_ground_was_in_motio
     assert measures.believable_pgd(known) == pytest.approx(measures.pgd(sine, dt, known.initial))
     begun = Motion("begun", dt, sine, initial=Initial(-0.3, 0.0))
     assert measures.believable_pgd(begun) == pytest.approx(0.03, rel=2e-3)
+
+
+def test_every_measure_of_the_table_grows_with_amplitude_and_time_as_its_unit_does():
+    """Twice the acceleration, at twice the step: powers of two, with no other rounding; the sign does not count."""
+    a = shaking()
+    first, turned, other = (
+        Motion("a", dt, factor * a, 0.4 * factor * a[::-1]) for dt, factor in ((0.01, 1.0), (0.01, -1.0), (0.02, 2.0))
+    )
+    table = MotionSet([first, turned, other], [], []).table()
+    factors = {
+        "dt_s": 2.0, "duration_s": 2.0, "pga_h_g": 2.0, "pga_v_g": 2.0, "pgv_h_m_s": 4.0, "pgd_h_m": 8.0, "arias_m_s": 8.0,
+        "d5_95_s": 2.0,
+    }  # fmt: skip
+    pd.testing.assert_series_equal(table.iloc[0], table.iloc[1], check_names=False)
+    numbers = table.select_dtypes("number").dropna(axis="columns")
+    assert (numbers.iloc[2] / numbers.iloc[0]).to_dict() == pytest.approx(factors | {"npts": 1.0}, rel=1e-12)
+    assert table["pga_h_g"][0] == pytest.approx(np.abs(a).max() / GRAVITY)
+    assert table["pga_v_g"][0] == pytest.approx(0.4 * table["pga_h_g"][0])
+    assert table["duration_s"][0] == pytest.approx((len(a) - 1) * 0.01)
 
 
 def test_the_cav_of_a_sine_is_four_amplitudes_over_omega_each_period():

@@ -132,6 +132,7 @@ def test_statistics_are_over_the_pairs_and_separate_by_the_vertical_component(tm
     (b / "run.json").write_text(json.dumps(info | {"records": horizontal} | others), encoding="utf-8")
     page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
     assert page.tables["suite"][1][1:3] == ["A, with vertical", "B, without vertical"]
+    assert ["with the vertical component", "all", "none"] in page.tables["inputs"]
     assert "Not the same motion in both, though of one name: ERZ-NS" in page.text
     assert "-alpha = 0.13\n+alpha = 0.14\n" in page.text
     assert "Versions: A rockbatch 0.1.0 python 3.11.2 numpy 2.3.1 numba 0.62.0; B rockbatch 0.2.0 " in page.text
@@ -191,9 +192,39 @@ def test_neither_is_better_where_one_response_grows_and_another_shrinks_or_nothi
     assert answered(two(other, {"changes": changes}, {"changes": worse})).startswith("Neither is better throughout")
 
 
-def test_a_study_in_which_the_pier_overturns_is_never_the_better_one(tmp_path):
-    answer = answered(two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}}))
-    assert answer.startswith("B is better: of 30 runs 0 do not end standing, of A 1.")
+def test_a_study_in_which_the_pier_overturns_is_never_the_better_one_first_or_second(tmp_path):
+    a, b = two(tmp_path, {"changes": {("SYL360", "2"): {"status": "overturned"}}})
+    assert answered((a, b)).startswith("B is better: of 30 runs 0 do not end standing, of A 1.")
+    assert answered((b, a)).startswith("A is better: of 30 runs 0 do not end standing, of B 1.")
+    for folders, cells in (((a, b), ["overturned", 0]), ((b, a), [0, "overturned"])):
+        _, head, worst, *_ = Page(write_comparison(*folders).read_text(encoding="utf-8")).tables["peaks"]
+        assert head[:5] == ["record", "case", "A", "B", "B / A"]
+        assert worst[:2] == ["SYL360", "2"]
+        assert [cell == "overturned" for cell in worst[2:4]] == [cell == "overturned" for cell in cells]
+        assert worst[4] == ""
+
+
+@pytest.mark.parametrize(
+    ("theta", "began"),
+    [
+        (0.981, "Neither is better: from A to B, worst rotation -1.9 %"),
+        (0.979, "B is better: from A to B, worst rotation -2.1 %"),
+        (1.019, "Neither is better: from A to B, worst rotation +1.9 %"),
+        (1.021, "A is better: from A to B, worst rotation +2.1 %"),
+    ],
+)  # fmt: skip
+def test_two_percent_make_one_of_two_studies_the_better_one(tmp_path, theta, began):
+    first, second = ({"changes": {("SYL360", "2"): {"theta_max_over_alpha": 0.5 * factor}}} for factor in (1.0, theta))
+    assert answered(two(tmp_path, first, second)).startswith(began)
+
+
+def test_settlement_out_of_nothing_has_no_share_and_counts(tmp_path):
+    settled = {(record, case): {"settlement_m": 0.0} for record, _ in FIG7 for case in "1234"}
+    first, second = {"changes": settled}, {"changes": settled | {("SYL360", "2"): {"settlement_m": 0.01}}}
+    assert "A is better: from A to B, worst rotation +0 % (" in (said := answered(two(tmp_path, first, second)))
+    assert "mean settlement from none (" in said
+    (tmp_path / "none").mkdir()
+    assert "mean settlement +0 % (" in answered(two(tmp_path / "none", first, first))
 
 
 def test_the_worst_of_both_stands_with_its_value_its_record_and_its_case(tmp_path):
