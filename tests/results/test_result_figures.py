@@ -8,7 +8,8 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.figures.description import ENDED, Points, Polyline, Rule
+from rockbatch.common.figures.description import ENDED, Look, Points, Polyline, Rule, Span, line_of
+from rockbatch.common.units import GRAVITY
 from rockbatch.results import figures
 from rockbatch.results.figures import OVER, distributions, peaks_of_all, said_of
 from rockbatch.results.labelled import groups_of, labelled
@@ -142,6 +143,71 @@ def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturn
         )
         assert sum(mark.label == OVER for mark in panel.marks) == fell.sum()
     results.plot_cdf(88.0).draw_without_rendering()
+
+
+def test_a_distribution_climbs_by_a_share_at_each_peak_and_leaves_a_gap_for_what_fell(results):
+    """The gap, from what stood to one, stands in a band beyond the axis, with what it means; without falls there is neither."""
+    runs = own(results)
+    figure = distributions(list(groups_of(runs.runs, runs.piers)), runs.series, "station")
+    labels = {one.label: one for one in runs.series}
+    for panel, (_, rows) in zip(figure.panels, groups_of(runs.runs, runs.piers), strict=True):
+        (band,) = (mark for mark in panel.marks if isinstance(mark, Span))
+        assert (band.axis, band.low, band.high) == ("x", panel.x.last, panel.x.high)
+        for curve in (mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name):
+            one = labels[curve.name]
+            of_curve = rows[(rows["series"] == runs.series.index(one)) & (rows["mirror_of"] == "")]
+            stood = sorted(of_curve["theta_max_over_alpha"][of_curve["status"] == "ok"])
+            reached = len(stood) / len(of_curve)
+            steps = np.array([[0.0, 0.0], *np.repeat(stood, 2).reshape(-1, 2), [panel.x.high] * 2]).ravel()[1:-1]
+            assert curve.x.tolist() == steps.tolist()
+            assert curve.y == pytest.approx(np.repeat(np.arange(len(stood) + 1) / len(of_curve), 2))
+            assert curve.look == (Look("level") if one.rigid else line_of(one.index))
+            gaps = [
+                mark for mark in panel.marks if isinstance(mark, Polyline) and not mark.name and mark.look == curve.look
+            ]
+            assert [gap.y.tolist() for gap in gaps] == [[reached, 1.0]] * (reached < 1.0)
+            assert all(band.low < x < band.high for gap in gaps for x in gap.x)
+            notes = [
+                mark for mark in panel.marks if isinstance(mark, Points) and mark.titles[0].startswith(f"{curve.name}:")
+            ]
+            assert [note.titles for note in notes] == [[f"{curve.name}: {100 * (1 - reached):.0f} % {OVER}"]] * len(
+                gaps
+            )
+            assert [note.y[0] for note in notes] == [0.5 * (1.0 + reached)] * len(gaps)
+    calm = runs.runs[runs.runs["record"] == "weak"]
+    (panel,) = distributions([("", calm)], runs.series, "station").panels
+    assert panel.caption == "all runs"
+    assert panel.x.last == panel.x.high
+    assert {type(mark) for mark in panel.marks} == {Polyline}
+
+
+def test_self_similar_axes_have_every_run_at_its_intensity_and_frequency_with_its_rotation_as_tone(results):
+    """PGA/(g tan α) over ω_g/p with ω_g = PGA/PGV; at 1 a pier lifts off rigid ground."""
+    figure, records = (
+        figures.self_similar(own(results), results.info),
+        {record["record"]: record for record in results.info["records"]},
+    )
+    peaks = results.peaks[results.peaks["mirror_of"] == ""]
+    assert figure.title == "Panels"
+    assert [panel.caption for panel in figure.panels] == [one.label for one in own(results).series]
+    seen = 0
+    for panel in figure.panels:
+        (lifts,) = (mark for mark in panel.marks if isinstance(mark, Rule))
+        assert (lifts.axis, lifts.at.tolist()) == ("y", [1.0])
+        assert (panel.x.log, panel.y.log) == (True, True)
+        assert "PGA" in panel.y.label
+        assert "ω_g/p" in panel.x.label
+        for mark in (mark for mark in panel.marks if isinstance(mark, Points) and not mark.label):
+            tone, values = mark.shade
+            stood = peaks[peaks["status"] == "ok"]["theta_max_over_alpha"]
+            assert (tone.log, tone.low, tone.high) == (True, stood.min(), stood.max())
+            for x, y, value in zip(mark.x, mark.y, values, strict=True):
+                (row,) = peaks[peaks["theta_max_over_alpha"] == value].to_dict("records")
+                of = records[row["record"]]
+                assert y == pytest.approx(of["pga_g"] / math.tan(PIER["alpha"]))
+                assert x == pytest.approx(of["pga_g"] * GRAVITY / of["pgv_m_s"] / row["p"])
+                seen += 1
+    assert seen == (peaks["status"] == "ok").sum()
 
 
 def test_of_many_records_the_worst_have_a_panel(results, monkeypatch):
