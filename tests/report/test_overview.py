@@ -1,8 +1,10 @@
 """The first screen is the answer, for any number of cases and records: the rest is summed up, or folded."""
 
 import re
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from browser import browse, needs_chromium
 from check_samples import verdict
@@ -53,6 +55,43 @@ def rows(text, section):
         Page(words).text.replace("\u00a0", " ")
         for words in re.findall(r'<span class="words">.*?</span>', own, re.DOTALL)
     ]
+
+
+def test_a_strip_has_every_peak_where_it_is_on_the_axis_the_greatest_first_and_says_its_ends(tmp_path):
+    """Places in percent grow with θ_max/α, from the grid's first line at zero, its marks between the others."""
+    changes = {("ERZ-NS", case): {"status": "overturned"} for case in ("rigid", "1", "2", "3", "4")}
+    changes |= {("RRS228", case): {"status": "failed", "theta_max_over_alpha": ""} for case in ("rigid", "1", "2", "3")}
+    write_results(tmp_path, changes=changes)
+    text = write_report(tmp_path).read_text(encoding="utf-8")
+    peaks = pd.read_csv(tmp_path / "peaks.csv")
+    own = text[text.index('<section id="answer">') :].split("</section>")[0]
+    places = []
+    for pga, row in re.findall(r'<div class="row" data-pga="([^"]*)">(.*?)</div>', own, re.DOTALL):
+        (strip,) = (svg for svg in ET.fromstring(f"<div>{row}</div>").iter("svg") if "strip" in svg.get("class"))
+        record = strip.get("data-of")
+        stood = peaks[(peaks["record"] == record) & (peaks["status"] == "ok")].sort_values("theta_max_over_alpha")
+        thetas = stood["theta_max_over_alpha"].tolist()[::-1]
+        ends = {0: "no peak", 1: "θmax/α {0:.4f}"}.get(len(thetas), "θmax/α {1:.4f} to {0:.4f}")
+        assert strip.get("aria-label") == f"{record}: {ends.format(*thetas[:1], *thetas[-1:])}"
+        assert float(pga) == dict(FIG7)[record]
+        marks = [mark for mark in strip if mark.get("class") != "grid"]
+        assert [float(mark.find("title").text.split(": ")[-1].split(" ")[0]) for mark in marks] == pytest.approx(
+            thetas, abs=6e-5
+        )
+        for mark, theta in zip(marks, thetas, strict=True):
+            places.append((theta, float((mark.get("x") or mark.get("x1")).removesuffix("%"))))
+            middle = (
+                0.5 * (float(mark.get("y1")) + float(mark.get("y2"))) if mark.tag == "line" else float(mark.get("y"))
+            )
+            assert middle == 10.0
+        zero = min(float(line.get("x1").removesuffix("%")) for line in strip if line.get("class") == "grid")
+        assert all(line.get("y1") == "0" for line in strip if line.get("class") == "grid")
+    assert len(places) == len(peaks) - 9
+    (theta, place) = max(places)
+    assert 50.0 < place < 100.0
+    assert [x for _, x in places] == pytest.approx(
+        [zero + (place - zero) * each / theta for each, _ in places], abs=0.11
+    )
 
 
 def test_a_hundred_cases_have_a_row_for_each_record_on_the_first_screen_and_the_best_in_a_picture_of_their_own(
