@@ -249,6 +249,37 @@ def test_what_passes_comes_first_then_what_fails_then_what_is_open():
     assert [(line.verdict, line.cases) for line in lines(some)] == [(PASS, "c"), (FAIL, "b"), (NOT_DECIDED, "a")]
 
 
+def test_a_check_is_named_with_its_case_where_there_are_several_and_a_ban_without_a_limit():
+    ban = {"demand": "overturned", "statistic": "max", "limit": 0.0, "check": "stands"}
+    for more, of in (((), ""), ((verdict("b", "does not apply"),), "a, ")):
+        (failed, *_) = lines([verdict("a", "fail", ratio=1.2), *more])
+        assert failed.details == (f"Nearest to passing: {of}margin at 120\u00a0% of its limit.",)
+        passed = next(
+            line for line in lines([verdict("a", "pass", ratio=0.5), verdict("a", "pass", ratio=0.0, **ban), *more])
+        )
+        assert f"Closest to its limit: {of}margin at 50\u00a0%." in passed.details
+    opened = [verdict("a", "not decided", note="open", **(ban | {"check": f"c{i}"})) for i in range(5)]
+    assert lines(opened[:3])[0].details == tuple(f"c{i}: open." for i in range(3))
+    assert lines(opened)[0].details == (*(f"c{i}: open." for i in range(3)), "and 2 more.")
+    (banned,) = lines([verdict("a", "pass", ratio=0.0, **ban)])
+    assert not banned.details
+
+
+def test_cases_that_are_not_checked_stand_in_the_order_of_how_many_runs_did_not_end_standing():
+    ended = {
+        "a": {},
+        "b": {"overturned": 2},
+        "c": {"failed": 1},
+        "d": {"overturned": 3, "flight": 1},
+        "e": {"flight": 1},
+    }
+    (*_, line) = lines([verdict("a", "does not apply")], runs=all_runs(**ended))
+    assert line.cases == (
+        "d, 3 of 10 runs overturned, 1 ended by flight; b, 2 of 10 runs overturned; c, 1 of 10 runs failed; and 2 more, "
+        "1 of them with runs that do not end standing"
+    )
+
+
 def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
     open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ")
     assert lines([open_])[0].details == ("tilt: between 0.2 and 0.6, limit 0.5, left open by record ERZ.",)
