@@ -1,11 +1,15 @@
 """Names of foundations: by what distinguishes them, in the study's own keys and units, with no more digits than necessary."""
 
+from dataclasses import replace
+
 import pytest
+from check_samples import case
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
+from rockbatch.pier import RigidBase, Tendon, YieldingBase
 from rockbatch.reporting.finished import read
-from rockbatch.results.labels import digits_that_tell, quantity
+from rockbatch.results.labels import digits_that_tell, named, quantity
 
 MASS = {"width_m": 4.0, "height_m": 20.0, "mass_t": 1000.0}
 
@@ -20,7 +24,7 @@ def test_digits_are_as_many_as_tell_values_apart():
     assert digits_that_tell([40.0, 50.0, 50.0, "epp", None]) == 3
     assert digits_that_tell([1001.0, 1002.0]) == 4
     assert digits_that_tell([0.123456, 0.123457]) == 6
-    assert digits_that_tell([1.0, 1.0 + 1e-15]) == 10
+    assert digits_that_tell([1.0, 1.0 + 1e-15]) == digits_that_tell([1.0, 1.0 + 1e-9]) == 10
 
 
 PADS = {"name": "pads", "base": "yielding"}
@@ -55,3 +59,32 @@ def test_a_foundation_is_called_by_the_keys_of_its_study_that_tell_it_apart(tmp_
 )  # fmt: skip
 def test_varied_values_are_called_by_symbol_and_unit(key, value, words):
     assert quantity(key, value).replace("\u00a0", " ") == words
+
+
+PAD, HARD, SOFT = YieldingBase(50.0, eta=2.5), RigidBase(), RigidBase(restitution=0.5)
+TIED = RigidBase(restraints=(Tendon(psi=0.1, lam=0.5),))
+
+
+@pytest.mark.parametrize(
+    ("bases", "keyed", "ticks", "lines"),
+    [
+        ({"rigid": HARD, "1": PAD, "2": replace(PAD, eta=3.5)}, ["rigid", "1: η = 2.5", "2: η = 3.5"], ["rigid", "1", "2"], [0]),
+        ({"1": PAD, "2": replace(PAD, epsilon=0.1)}, ["1: ε = 0", "2: ε = 0.1"], ["1", "2"], []),
+        ({"rigid": HARD, "pads": PAD, "soft": replace(PAD, eta=3.5)}, ["rigid", "a – pads: η = 2.5", "b – soft: η = 3.5"],
+         ["a", "a", "b"], [0]),
+        ({"hard": HARD, "soft": SOFT}, ["a – hard", "b – soft: e = 0.5"], ["a", "b"], []),  # none to compare with
+        ({"hard": HARD}, ["hard"], ["hard"], [0]),
+        ({"hard": HARD, "tied": TIED}, ["hard", "a – tied"], ["a", "a"], [0]),
+        ({"tied": TIED, "held": TIED, "pads": PAD}, ["a – tied", "b – held", "c – pads"], ["a", "b", "c"], []),
+        ({f"pads {k}": replace(PAD, eta=2.0 + k) for k in range(28)}, None, [*"abcdefghijklmnopqrstuvwxyz", "27", "28"], []),
+    ],
+)  # fmt: skip
+def test_foundations_have_short_names_of_their_own_or_letters_and_rigid_ground_is_a_line(bases, keyed, ticks, lines):
+    """Rigid ground is a line that others are compared with: not if there is nothing else, and not with devices."""
+    found = [*named({(name,): [case(name, base)] for name, base in bases.items()}, (), {}).values()]
+    assert keyed is None or [one.keyed.replace("\u00a0", " ") for one in found] == keyed
+    assert [one.tick for one in found] == ticks
+    assert [place for place, one in enumerate(found) if one.rigid] == lines
+    for rigid in (True, False):
+        own = [one.index for one in found if one.rigid is rigid]
+        assert own == [*range(len(own))]
