@@ -2,11 +2,12 @@
 
 import math
 import re
+import xml.etree.ElementTree as ET
 
 import pytest
 from report_page import Page
 
-from rockbatch.reporting.markup import number
+from rockbatch.reporting.markup import Markup, number
 from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, Head, table
 
 
@@ -17,6 +18,8 @@ from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, Head, table
         (1550.0, ".3g", "1550"), (123_456.789, ".10g", "123,456.789"), (3e-7, ".1g", "3 × 10⁻⁷"),
         (-2.5e12, ".3g", "-2.5 × 10¹²"), (2e9, ".3g", "2,000,000,000"), (-0.0001, ".2f", "0.00"), (-0.25, ".2f", "-0.25"),
         (12_345.0, ",.0f", "12,345"), (20.0, "+.1f", "+20.0"), (math.inf, ".3g", "inf"), (math.nan, ".3g", ""),
+        (9999.0, ".4g", "9999"), (10_000.0, ".5g", "10,000"), (-10_499.6, ".0f", "-10,500"), (9998.6, ".0f", "9999"),
+        (28.0, "#.3g", "28.0"), (0.1, "#.3g", "0.100"), (1020.0, "#.3g", "1020"), (133.0, "#.3g", "133"),
         (None, ".3g", ""), ("words", ".3g", "words"), (7, ".3g", "7"), (0.0, ".3g", "0"),
     ],
 )  # fmt: skip
@@ -43,6 +46,27 @@ def test_decimal_points_stand_below_each_other_whatever_the_digits():
         (' scope="col"', "name"), (' class="n" scope="col"', "value"),
         *((' scope="row"', "a"), (' class="n"', "1.25")), *((' scope="row"', "b"), (' class="n"', "20.00")),
     ]  # fmt: skip
+
+
+def test_a_table_names_its_rows_groups_its_heads_and_breaks_no_unit():
+    heads = [Head("a < b"), Head("θ [mm/s]", ".1f", "meaning", "both"), Head("n", group="both"), Head("left")]
+    drawn = ET.fromstring(table(heads, [["<x>", 1.5, 2, Markup("<b>y</b>")], ["z", None, 3, ""]], prose=True))
+    assert (drawn.get("class"), drawn.get("role"), drawn.get("aria-label")) == ("wide prose", "region", "Table")
+    assert ET.fromstring(table(heads, [["x", 1.5, 2, ""]], name="all")).get("class") == "wide"
+    over, own, *body = drawn.iter("tr")
+    assert over.get("class") == "over"
+    assert [(th.text, th.get("colspan"), th.get("scope")) for th in over] == [
+        (None, "1", None), ("both", "2", "colgroup"), (None, "1", None),
+    ]  # fmt: skip
+    assert [("".join(th.itertext()), th.get("title"), th.get("scope")) for th in own] == [
+        ("a < b", None, "col"), ("θ [mm/s]", "meaning", "col"), ("n", None, "col"), ("left", None, "col"),
+    ]  # fmt: skip
+    assert [span.text for span in own.iter("span") if span.get("class") == "unit"] == ["[mm/s]"]
+    assert [[cell.tag for cell in row] for row in body] == [["th", "td", "td", "td"]] * 2
+    assert [["".join(cell.itertext()).strip("\u2008\u2007") for cell in row] for row in body] == [
+        ["<x>", "1.5", "2", "y"], ["z", "", "3", ""],
+    ]  # fmt: skip
+    assert [cell.get("class") for cell in body[0]] == [None, "n", "n", None]
 
 
 def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
