@@ -1,0 +1,32 @@
+"""Tables beside peaks.csv are read as they were written, or refused with the column that is wrong."""
+
+import pandas as pd
+import pytest
+
+from rockbatch.common.errors import InputError
+from rockbatch.results.beside_peaks import NAMING, case_key, read_beside
+
+COLUMNS = ["height_m", "force_kN", "words"]
+TABLE = pd.DataFrame([{name: "x" for name in NAMING} | {"beta": 40.0, "height_m": 1.5, "force_kN": -2.0, "words": "w"}])
+
+
+@pytest.mark.parametrize("name", [*NAMING, "beta", *COLUMNS])
+def test_every_column_has_to_be_there(tmp_path, name):
+    TABLE.drop(columns=name).to_csv(tmp_path / "of.csv", index=False)
+    with pytest.raises(InputError, match=f"of.csv: column {name} is missing; it was changed since"):
+        read_beside(tmp_path / "of.csv", ["beta"], COLUMNS, ["words"])
+
+
+@pytest.mark.parametrize("name", ["height_m", "force_kN"])
+def test_numbers_have_to_be_numbers_and_texts_may_be_any(tmp_path, name):
+    path = tmp_path / "of.csv"
+    TABLE.assign(words=1.0).to_csv(path, index=False)
+    assert read_beside(path, ["beta"], COLUMNS, ["words"])["height_m"].tolist() == [1.5]
+    TABLE.assign(**{name: "many"}).to_csv(path, index=False)
+    with pytest.raises(InputError, match=f"of.csv: column {name} has texts"):
+        read_beside(path, ["beta"], COLUMNS, ["words"])
+
+
+def test_a_case_is_known_by_its_values_in_the_digits_of_the_table():
+    assert case_key("pads", {"beta": 1.0 / 3.0, "spring": "epp"}, ["spring", "beta"]) == ("pads", "epp", 0.3333333333)
+    assert case_key("pads", {}, ["beta"]) == ("pads", "")
