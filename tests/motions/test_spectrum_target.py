@@ -292,6 +292,13 @@ def test_hazard_return_period_and_near_faults_multiply_the_shape():
     )
     np.testing.assert_allclose(NzsSpectrum("C", 0.4, 1.3, 25.0).at(t), 0.52 * plain)
     np.testing.assert_allclose(NzsSpectrum("C", 0.4, 0.75, 2.0).at(t), 0.3 * plain)
+    np.testing.assert_allclose(
+        NzsSpectrum("C", 0.4, 1.3, 0.5).at(t), NzsSpectrum("C", 0.4, 1.3, 2.0).at(t)
+    )  # as at 2 km
+    assert [str(NzsSpectrum("C", 0.4, 1.3, km)).count("D = ") for km in (19.9, 20.0)] == [1, 0]
+    for z, r in ((0.4, 1.75), (0.7, 1.0), (0.35, 2.0)):  # Z R of 0.7, and beyond it
+        assert not NzsSpectrum("C", z, r).beyond
+        assert NzsSpectrum("C", z, 1.001 * r).beyond.startswith(f"Z R = {1.001 * z * r:.3g}, which NZS 1170.5, 3.1.1")
 
 
 def test_the_aashto_spectrum_meets_its_corner_values_and_falls_without_end():

@@ -1,10 +1,13 @@
 """Tables beside peaks.csv are read as they were written, or refused with the column that is wrong."""
 
+import math
+
 import pandas as pd
 import pytest
 
 from rockbatch.common.errors import InputError
 from rockbatch.results.beside_peaks import NAMING, case_key, read_beside
+from rockbatch.results.rows import as_in_peaks, simulated, with_case
 
 COLUMNS = ["height_m", "force_kN", "words"]
 TABLE = pd.DataFrame([{name: "x" for name in NAMING} | {"beta": 40.0, "height_m": 1.5, "force_kN": -2.0, "words": "w"}])
@@ -30,3 +33,12 @@ def test_numbers_have_to_be_numbers_and_texts_may_be_any(tmp_path, name):
 def test_a_case_is_known_by_its_values_in_the_digits_of_the_table():
     assert case_key("pads", {"beta": 1.0 / 3.0, "spring": "epp"}, ["spring", "beta"]) == ("pads", "epp", 0.3333333333)
     assert case_key("pads", {}, ["beta"]) == ("pads", "")
+
+
+def test_rows_of_runs_are_without_unusable_files_and_mirror_images_and_have_the_digits_of_peaks():
+    peaks = pd.DataFrame({"record": ["a", "a", "b"], "case": ["pads", "pads", ""], "mirror_of": ["", "a +", ""]})
+    assert with_case(peaks)["record"].tolist() == ["a", "a"]
+    assert with_case(peaks[:2]) is not peaks
+    assert simulated(peaks)["record"].tolist() == ["a", "b"]
+    assert simulated(peaks.drop(columns="mirror_of"))["record"].tolist() == ["a", "a", "b"]
+    assert [as_in_peaks(value) for value in (None, math.nan, 2.0 / 3.0, 3, "epp")] == ["", "", 0.6666666667, 3.0, "epp"]
