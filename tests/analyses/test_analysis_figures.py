@@ -172,6 +172,7 @@ def test_a_cloud_has_its_demands_its_line_with_a_deviation_to_either_side_and_it
     of_line, small, fell = of_kind(panel.marks, Points)
     assert (of_line.x.tolist(), of_line.y.tolist(), of_line.label) == ([0.2, 0.4], [0.1, 0.2], "pads")
     assert (small.x.tolist(), small.y.tolist(), small.titles) == ([pytest.approx(0.6)], [0.005], ["0.6 m/s, below"])
+    assert (small.look.colour, small.look.shape, small.look.open) == (of_line.look.colour, "down", True)
     assert (fell.x.tolist(), fell.look.shape) == ([0.8], "overturned")
     assert max(0.25, 1.5 * 0.25) == panel.y.last < fell.y[0] < panel.y.high
     assert panel.y.low < 0.005

@@ -145,7 +145,7 @@ def test_a_cloud_with_few_records_beyond_the_limit_says_how_few():
 
 
 def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
-    alone = {"looked": [[level, level] for level in LEVELS]}
+    alone = {"looked": [[level, level] for level in LEVELS[:2]]}
     lines, marked = said(curve("pads", median=0.8, **alone), curve("rock", median=0.9, looked=[[0.2, 2.0]]), stations=5)
     assert lines[1:] == [
         "The 10 records are components of 5 stations, each counted by itself: the intervals are too narrow.",

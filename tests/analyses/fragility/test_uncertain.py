@@ -111,6 +111,41 @@ def test_the_contribution_is_that_of_made_up_capacities():
     assert whole == pytest.approx(math.sqrt(0.09 + of_inputs), rel=0.1)
 
 
+def test_contributions_have_the_errors_of_another_parametrisation():
+    """ln x = μ + s·c + σ ε by differences of ℓ; the covariance of the scores of the records is not below their information."""
+    capacities, scores = made_stripes(60, np.random.default_rng(5))
+    correlation, steps = np.array([[1.0, 0.6], [0.6, 1.0]]), 1e-4 * np.eye(4)
+    with np.errstate(divide="ignore"):
+        ends = np.log([capacities.low, capacities.high])
+
+    def of_records(p):
+        below, above = ndtr((ends - p[0] - scores @ p[2:]) / p[1])
+        return capacities.of_record @ np.log(above - below)
+
+    def slopes(p):
+        return np.array([of_records(p + step) - of_records(p - step) for step in steps]) / 2e-4
+
+    best = np.array([math.log(0.5), 0.4, 0.2, -0.1])
+    for _ in range(20):  # Newton's method
+        information = np.array([(slopes(best - h) - slopes(best + h)).sum(axis=1) for h in steps]) / 2e-4
+        best = best + np.linalg.solve(information, slopes(best).sum(axis=1))
+    root = np.linalg.inv(np.linalg.cholesky(information)).T
+    own = root.T @ slopes(best)
+    variances, axes = np.linalg.eigh(own @ own.T * 60 / 59)
+    assert variances.min() < 1.0 < variances.max()
+    covariance = (root @ axes * np.maximum(variances, 1.0) @ axes.T @ root.T)[2:, 2:]
+    effects, share = best[2:], correlation @ covariance
+    square = effects @ correlation @ effects - np.trace(share)
+    reach = 1.2815515655446004 * math.sqrt(4 * effects @ share @ correlation @ effects + 2 * np.trace(share @ share))
+    found = contribution(capacities, scores, correlation, 0.8)
+    assert found.effects == pytest.approx(effects, rel=1e-4)
+    assert found.errors == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-4)
+    assert square > reach
+    assert np.array([found.dispersion, *found.interval]) ** 2 == pytest.approx(
+        [square, square - reach, square + reach], rel=1e-3
+    )
+
+
 def made_capacities(n, rng, effects=(0.6, -0.2)):
     """Capacities of n records with ln x = ln 0.5 + effects · s + 0.3 ε, known to 1e-4, and the scores s."""
     scores = rng.standard_normal((n, 2))
@@ -140,6 +175,21 @@ def test_two_inputs_that_go_together_contribute_what_they_do_as_one():
     both = contribution(capacities, scores[:, [0, 0]], np.ones((2, 2)))
     assert both.dispersion == pytest.approx(one.dispersion, rel=1e-3)
     assert sum(both.effects) == pytest.approx(one.effects[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("known", [20, 19])
+def test_inputs_that_leave_nothing_to_chance_have_no_error_where_enough_capacities_are_known(known):
+    scores = np.random.default_rng(1).standard_normal((25, 2))
+    x, correlation = 0.5 * np.exp(scores @ [0.6, -0.2]), np.array([[1.0, 0.5], [0.5, 1.0]])
+    high = np.where(np.arange(25) < known, 1.01 * x, np.inf)
+    found = contribution(Capacities(x / 1.01, high, np.ones(25), np.eye(25)), scores, correlation)
+    if known < 20:
+        assert found == "with them the runs beyond the limit are separated from the others: more of both would tell"
+        return
+    assert found.effects == pytest.approx((0.6, -0.2), abs=0.01)
+    assert found.errors == (0.0, 0.0)
+    whole = math.sqrt(found.effects @ correlation @ found.effects)
+    assert (found.dispersion, *found.interval) == pytest.approx(3 * (whole,), rel=1e-12)
 
 
 def test_few_runs_do_not_tell_what_inputs_contribute():
