@@ -29,6 +29,7 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.pier.bases import OTHER_LAW, RATCHETING, fastest
+from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import LAWS, springs
 
@@ -219,3 +220,48 @@ def test_every_spring_law_has_a_code_in_the_core_and_one_that_creeps_another_law
         assert base.ratchets == (other != base)
         assert springs(Pier(0.13, 0.38), base).law == LAWS[spring]
         assert base.has_exponent == (spring in WITH_EXPONENT)
+
+
+SQUARE = Pier.rectangle(6.0, 30.0, mass_t=1000.0)
+FRAME = Pier.frame(Pier.rectangle(1.0, 7.0, mass_t=20.0), 4, 200.0)
+RUBS, FEW, BRACED = (
+    Damper("friction", f=0.1),
+    "damper: two places of friction at most",
+    Damper("viscous", nu=1.0, brace=10.0),
+)
+AT_DECK = "columns: devices at the deck of a rocking frame are not solved"
+
+
+@pytest.mark.parametrize(
+    ("devices", "said"),
+    [
+        ((RUBS,), []), ((RUBS, RUBS), [FEW]), ((replace(RUBS, at="left"), replace(RUBS, at=1.0)), []),
+        ((RUBS, replace(RUBS, at="left")), [FEW]), ((RUBS, RUBS, Damper("viscous", nu=1.0)), [FEW]),
+        ((RUBS, RUBS, replace(RUBS, f=-1.0)), ["damper: f = -1: its force over the weight must be within 0..10"]),
+        ((BRACED,), []), ((replace(BRACED, exponent=0.9),), []), ((Damper("viscous", nu=1.0, exponent=1.05),), []),
+        ((replace(BRACED, exponent=1.05),), ["damper: brace = 10: with one the exponent must be 1 at most; leave the brace out"]),
+        ((Damper("hysteretic", f=0.1, yield_m=0.01, brace=10.0),), []),
+        ((replace(BRACED, brace=0.0),), ["damper: brace = 0: must be"]),
+        ((replace(RUBS, brace=10.0),), ["damper: brace = 10: friction on a brace is a hysteretic damper"]),
+        ((Damper("viscous", nu=1.0, at="deck"),), []),
+        ((replace(RUBS, at="deck"),), ['damper: at = "deck": friction at the deck']),
+        ((Damper("viscous", nu=1.0, at="top"),), ['damper: at = "top": must be "left", "right", "deck" or an offset in m']),
+        ((Tendon(0.1, at="deck"),), ['tendon: at = "deck": must be "left", "right" or an offset in m']),
+        ((Tendon(0.1, at=-6.0),), []), ((Tendon(0.1, at=6.01),), ["tendon: at = 6.01: must be within the base's width either"]),
+        ((replace(RUBS, nu=1.0, yield_m=0.1),), ["damper: nu = 1: is not", "damper: yield_m = 0.1: is not of a friction damper"]),
+        ((replace(RUBS, kind="oil"),), ['damper: kind = "oil": must be "friction" or "viscous" or "hysteretic"']),
+        ((Tendon(0.3, strength=0.3),), ["tendon: its yield force over the weight, 0.3, must be above its prestress, 0.3"]),
+        ((DeckSpring(1.0, side="top"),), ['deck_spring: side = "top": must be']),
+        ((DeckSpring(1.0, gap_m=0.1, side="left"),), []),
+    ],
+)  # fmt: skip
+def test_what_is_impossible_of_devices_is_said_once_and_nothing_else(devices, said):
+    found = wrong_restraints(SQUARE, devices)
+    assert len(found) == len(said)
+    assert all(sentence.startswith(start) for sentence, start in zip(found, said, strict=True)), found
+
+
+def test_devices_of_a_frame_are_at_the_feet_of_its_columns():
+    for device in (DeckSpring(1.0), Damper("viscous", nu=1.0, at="deck")):
+        assert [problem.startswith(AT_DECK) for problem in wrong_restraints(FRAME, (RUBS, device))] == [True]
+    assert wrong_restraints(FRAME, (RUBS,)) == []

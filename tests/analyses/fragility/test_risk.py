@@ -374,6 +374,30 @@ def test_mistakes_of_a_hazard_are_named_with_their_line(tmp_path, hazard, messag
     assert all("study.toml:" in problem for problem in caught.value.problems)
 
 
+@pytest.mark.parametrize(
+    ("measure", "levels", "points", "most"),
+    [
+        ("PGA", "levels_g", {"rate_per_year": [2.0, 0.1]}, 10.0), ("PGV", "levels_m_s", {"rate_per_year": [2.0, 0.1]}, 10.0),
+        ("PGV", "levels_m_s", {"return_period_years": [0.5, 10.0]}, 10.0),
+        ("PGA", "levels_g", {"rate_per_year": [2.001, 0.1]}, None),
+        ("PGA", "levels_g", {"return_period_years": [0.499, 10.0]}, None),
+        ("PGA", "levels_g", {"rate_per_year": [2.0, 0.1]}, 10.01), ("PGV", "levels_m_s", {"rate_per_year": [2.0, 0.1]}, 10.01),
+    ],
+)  # fmt: skip
+def test_a_hazard_is_read_as_it_is_written_up_to_what_is_usual(tmp_path, measure, levels, points, most):
+    hazard = {levels: [0.5, most or 10.0], **points, "years": [5, 50], "source": "made up"}
+    file = study(tmp_path, hazard, fragility={"measure": measure, levels: [0.2, 0.4]})
+    if most == 10.0:
+        expected = Hazard(HazardCurve((0.5, 10.0), (2.0, 0.1)), (5, 50), "made up")
+        assert read_fragility(load_study(file)).hazard == expected
+        return
+    with pytest.raises(InputError, match="write confirm = ") as caught:
+        read_fragility(load_study(file))
+    (problem,) = caught.value.problems
+    name, value = (levels, most) if most else next((name, values[0]) for name, values in points.items())
+    assert f"{name} = {value:g}" in problem
+
+
 @pytest.mark.parametrize(("content", "message"), [
     ("levels_g,rate_per_yr\n0.1,0.01\n", '"rate_per_yr": unknown column; did you mean rate_per_year?'),
     ("levels_g,rate_per_year\n0.1,often\n", 'hazard.csv:2: rate_per_year = "often": expected a number'),

@@ -146,6 +146,9 @@ def test_what_is_narrower_than_the_tolerance_belongs_to_the_boundary_whose_error
     assert below.high_error == above.low_error == pytest.approx(0.001)
     (only,) = regions([(0.0, End("a")), (0.4, End("a")), (0.401, End("b")), (0.402, End("a")), (1.0, End("a"))], 0.002)
     assert (only.low, only.high) == (0.0, 1.0)
+    exactly = [(n / 8, End(outcome)) for n, outcome in enumerate("aaabbccc")]
+    assert [(each.outcome, each.high) for each in regions(exactly, 0.25)] == [("a", 0.4375), ("c", 0.875)]
+    assert [each.high for each in regions(exactly, 2.0)] == [0.3125, 0.5625, 0.875]  # where all are narrow
 
 
 def test_frequencies_are_bisected_to_the_width_where_the_outcomes_change_and_nowhere_else():
