@@ -181,8 +181,9 @@ def test_two_inputs_that_go_together_contribute_what_they_do_as_one():
 def test_inputs_that_leave_nothing_to_chance_have_no_error_where_enough_capacities_are_known(known):
     scores = np.random.default_rng(1).standard_normal((25, 2))
     x, correlation = 0.5 * np.exp(scores @ [0.6, -0.2]), np.array([[1.0, 0.5], [0.5, 1.0]])
-    high = np.where(np.arange(25) < known, 1.01 * x, np.inf)
-    found = contribution(Capacities(x / 1.01, high, np.ones(25), np.eye(25)), scores, correlation)
+    low, high = x / 1.01, np.where(np.arange(25) < known, 1.01 * x, np.inf)
+    low[24], high[24] = 0.0, 1.01 * x[24]  # exceeded at its lowest intensity: no more known than those that never were
+    found = contribution(Capacities(low, high, np.ones(25), np.eye(25)), scores, correlation)
     if known < 20:
         assert found == "with them the runs beyond the limit are separated from the others: more of both would tell"
         return
@@ -195,6 +196,7 @@ def test_inputs_that_leave_nothing_to_chance_have_no_error_where_enough_capaciti
 def test_few_runs_do_not_tell_what_inputs_contribute():
     capacities, scores = made_capacities(19, np.random.default_rng(1))
     assert contribution(capacities, scores, np.eye(2)) == "19 runs or capacities are too few to tell 4 parameters"
+    assert contribution(*made_capacities(20, np.random.default_rng(1)), np.eye(2)).dispersion > 0.0
 
 
 def test_an_amplitude_of_overturning_proportional_to_a_lognormal_slenderness_is_lognormal(tmp_path):
