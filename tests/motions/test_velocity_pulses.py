@@ -70,9 +70,56 @@ def test_a_pulse_is_weak_late_or_early_whatever_its_shape():
     assert (late.early, late.kind) == (False, "late")
 
 
-def test_between_its_limits_the_criterion_does_not_tell():
-    kinds = [VelocityPulse(indicator, 1.0, 1.0, True).kind for indicator in (0.1, 0.5, 0.9)]
-    assert kinds == ["no", "ambiguous", "yes"]
+def test_the_kind_is_that_of_the_indicator_the_velocity_and_the_time():
+    given = [
+        (0.1, 1.0, True),
+        (0.5, 1.0, True),
+        (0.9, 1.0, True),
+        (0.9, 0.3, True),
+        (0.9, 0.299, True),
+        (0.9, 0.3, False),
+    ]
+    kinds = [VelocityPulse(indicator, 1.0, pgv, early).kind for indicator, pgv, early in given]
+    assert kinds == ["no", "ambiguous", "yes", "yes", "weak", "late"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_indicator_is_that_of_ten_wavelets_taken_away_one_by_one(seed):
+    rng = np.random.default_rng(seed)
+    n, dt = 1200, 0.02
+    t = np.arange(n) * dt
+    v = np.exp(-((t - 0.4 - 2 * seed) ** 2)) * np.cos(3 * t + seed)
+    v += rng.uniform(0.2, 0.3) * np.convolve(rng.normal(size=n), np.ones(5) / 2, "same") * np.exp(-(((t - 7) / 4) ** 2))
+    found = velocity_pulse(v, dt)
+
+    def coefficients(signal, wavelet):
+        half = len(wavelet) // 2
+        return np.array(
+            [part @ wavelet for part in np.lib.stride_tricks.sliding_window_view(np.pad(signal, half), len(wavelet))]
+        )
+
+    largest = {
+        scale: np.abs(coefficients(v, _wavelet(scale))).max() for scale in np.geomspace(0.25, 15.0, 25) / 1.4 / dt
+    }
+    scale = found.period_s / 1.4 / dt
+    wavelet = _wavelet(scale)
+    first = np.abs(coefficients(v, wavelet))
+    assert first.max() > 0.999 * max(largest.values())
+    half, near = len(wavelet) // 2, math.ceil(0.4 * scale)
+    allowed = np.abs(np.arange(n) - first.argmax()) <= near
+    residual = v.copy()
+    for _ in range(10):
+        heights = np.where(allowed, coefficients(residual, wavelet), 0.0)
+        k = np.abs(heights).argmax()
+        taken = np.zeros(n + 2 * half)
+        taken[k : k + len(wavelet)] = heights[k] * wavelet / (wavelet @ wavelet)
+        residual -= taken[half : half + n]
+    pgv = np.abs(v).max()
+    exponent = 14.6 * np.abs(residual).max() / pgv + 20.5 * (residual**2).sum() / (v**2).sum() - 23.3
+    pulse = v - residual
+    tenth, fifth = (np.argmax(np.cumsum(x**2) >= part * (x**2).sum()) for x, part in ((pulse, 0.1), (v, 0.2)))
+    assert (found.indicator, found.pgv) == pytest.approx((1 / (1 + math.exp(exponent)), pgv), rel=1e-6)
+    assert found.early == (tenth < fifth)
 
 
 def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
@@ -83,7 +130,8 @@ def test_a_motion_is_judged_as_it_was_recorded_and_a_still_one_has_no_pulse():
     assert as_recorded.kind == scaled.kind == "yes"
     assert scaled.pgv == pytest.approx(as_recorded.pgv)
     still = pulse_of(Motion("still", 0.01, np.zeros(100)))
-    assert (still.kind, math.isnan(still.period_s)) == ("no", True)
+    assert (still.kind, still.indicator, still.pgv, still.early) == ("no", 0.0, 0.0, False)
+    assert math.isnan(still.period_s)
 
 
 @pytest.mark.slow
