@@ -7,7 +7,7 @@ import pytest
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.measures import velocity
-from rockbatch.motions.pulses import SHAPES, pulse
+from rockbatch.motions.pulses import LEAST_SAMPLES, SHAPES, pulse, pulse_length, unlikely
 
 
 def make(shape, dt=0.005, period=0.5, amplitude=9.81, duration=10.0, **more):
@@ -24,9 +24,9 @@ def test_a_sine_is_one_sine_then_zeros():
 
 def test_a_cosine_starts_and_ends_at_its_amplitude():
     motion = make("cosine", period=1.0)
-    assert motion.horizontal[0] == 9.81
-    assert motion.horizontal[200] == pytest.approx(9.81)
-    assert not motion.horizontal[201:].any()
+    expected = np.r_[9.81 * np.cos(2 * np.pi * np.arange(201) / 200), np.zeros(1800)]
+    np.testing.assert_allclose(motion.horizontal, expected, atol=1e-13)
+    assert motion.notes == ("cosine pulse, peak 9.81 m/s², T = 1 s",)
 
 
 @pytest.mark.parametrize("dt", [0.1 / 3, 0.01, 0.005, 0.7 / 49])
@@ -116,3 +116,21 @@ def test_an_amplitude_that_only_a_wrong_unit_explains_is_refused_as_typed_and_in
         make("sine", amplitude=40.0)
     confirmed = make("sine", amplitude=40.0, confirm=["amplitude"])
     assert confirmed.pga == pytest.approx(40.0, rel=1e-6)
+
+
+def test_the_least_samples_in_a_period_are_enough_and_one_in_a_hundred_fewer_are_not():
+    assert unlikely(0.5, LEAST_SAMPLES * 0.01, 0.01) == {}
+    assert list(unlikely(0.5, 0.99 * LEAST_SAMPLES * 0.01, 0.01)) == ["dt"]
+
+
+def test_the_length_of_each_shape_is_known_from_its_period():
+    lengths = [
+        pulse_length(shape, 0.6, 1.5) for shape in ("sine", "half-sine", "cosine", "ricker", "mavroeidis-papageorgiou")
+    ]
+    assert lengths == pytest.approx([0.6, 0.3, 0.6, 1.6, 0.9])
+
+
+@pytest.mark.parametrize("nu", [None, np.nan, np.inf])
+def test_a_phase_that_is_no_number_is_refused(nu):
+    with pytest.raises(InputError, match=f"nu = {nu}: a mavroeidis-papageorgiou pulse needs its phase"):
+        make("mavroeidis-papageorgiou", gamma=1.5, nu=nu)

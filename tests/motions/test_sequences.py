@@ -175,6 +175,12 @@ def test_one_factor_is_for_all_shocks_and_so_is_one_polarity():
     whole = ShockSequence("s", ("a", "b"), factors=(0.5,), polarity=("-",)).joined(parts)
     np.testing.assert_array_equal(whole.horizontal[:400], -0.5 * parts[0].horizontal)
     np.testing.assert_array_equal(whole.horizontal[-400:], -0.5 * parts[1].horizontal)
+    each = ShockSequence("s", ("a", "b"), factors=(1.0, 0.8), polarity=("-", "+")).joined(parts)
+    np.testing.assert_array_equal(each.horizontal[:400], -parts[0].horizontal)
+    np.testing.assert_array_equal(each.horizontal[-400:], 0.8 * parts[1].horizontal)
+    assert each.notes[:2] == ("shock 1, a: times 1, reversed", "shock 2, b: times 0.8")
+    times = [t for shock in each.shocks for t in (shock.start, shock.end, shock.until)]
+    assert times == pytest.approx([0.0, 3.99, 23.99, 23.99, 27.98, 47.98])
 
 
 def test_a_sequence_is_scaled_to_a_target_as_one_and_pulses_are_not(tmp_path):
