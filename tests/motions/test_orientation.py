@@ -2,7 +2,7 @@
 
 import pytest
 
-from rockbatch.motions.orientation import orientation_of, same_azimuth, split_stem
+from rockbatch.motions.orientation import Orientation, orientation_in, orientation_of, same_azimuth, split_stem
 
 
 @pytest.mark.parametrize(
@@ -75,6 +75,9 @@ def test_these_say_nothing(label):
         ("RSN57_SFERN_ORRDWN", "RSN57_SFERN_ORR", "DWN"),
         ("20220917134114_TSMIP_TTN021_E", "20220917134114_TSMIP_TTN021", "E"),
         ("CI.LRL..HNZ", "CI.LRL", "HNZ"),
+        ("KOBE2040", "KOBE2", "040"),
+        ("A-010", "A", "010"),
+        ("228", "", "228"),
     ],
 )
 def test_the_end_of_a_stem_tells_station_and_component(stem, station, label):
@@ -83,7 +86,21 @@ def test_the_end_of_a_stem_tells_station_and_component(stem, station, label):
     assert (part, found.label) == (station, label)
 
 
-@pytest.mark.parametrize("stem", ["record", "run_12", "site_5", "AOM0031801241951"])
+@pytest.mark.parametrize(
+    "stem",
+    [
+        "record",
+        "run_12",
+        "site_5",
+        "AOM0031801241951",
+        "KOBE1900",
+        "KOBE2039",
+        "A-001",
+        "A2019.187",
+        "001",
+        "SITE_1995_090",
+    ],
+)
 def test_a_stem_without_component_is_left_whole(stem):
     assert split_stem(stem) == (stem, None)
 
@@ -109,3 +126,13 @@ def test_points_of_the_compass_are_read_as_agencies_write_them(words, azimuth):
         for label in (word, word.lower(), f"Comp. {word}"):
             assert orientation_of(label).azimuth == azimuth
             assert orientation_of(label).label == label
+
+
+def test_the_name_of_a_column_tells_its_direction_or_nothing():
+    azimuths = {"0": 0.0, "00": 0.0, "90": 90.0, "360": 0.0, " N ": 0.0, "CCC_HNE": 90.0}
+    for label, azimuth in azimuths.items():
+        assert orientation_in(label) == Orientation(label.strip(), vertical=False, azimuth=azimuth)
+    for label in ("Z", "CCC_HNZ"):
+        assert orientation_in(label) == Orientation(label, vertical=True, azimuth=None)
+    for label in ("12", "45", "A_12"):
+        assert orientation_in(label) == Orientation(label, vertical=False, azimuth=None, known=False)
