@@ -65,7 +65,6 @@ def test_springs_stay_within_their_law():
         assert z[0] == pytest.approx(-1 / 2.2, rel=1e-14)
 
 
-@pytest.mark.slow
 def test_forces_of_damped_supports_are_those_of_their_deflections_and_reach_the_peaks_of_the_row():
     """F/M = ω_v² v/2 + ζ ω_v dv/dt with ω_v = β p of both supports, the rate by differences: 0.02 m/s² are their error."""
     t, base = 0.01 * np.arange(500), rb.ElasticBase(30.0, zeta=0.1)
@@ -90,6 +89,7 @@ def test_forces_of_damped_supports_are_those_of_their_deflections_and_reach_the_
         assert -force.min() <= peak
 
 
+@pytest.mark.slow
 def test_energy_starts_at_zero_and_is_kept_between_impacts_of_elastic_springs():
     """After the pulse, on elastic springs with ε = 1 and finite kinematics, only changes of H alter the stored energy.
 
