@@ -203,12 +203,14 @@ def methods(tests: Tests, by_alpha: Mapping[float, Predictions], specimen: int) 
     """Return the block and what it is compared with, for a specimen."""
     own = [i for i, name in enumerate(tests.columns) if name.startswith(f"Specimen {specimen}")]
     measures = np.column_stack([np.log(tests.pga), np.log(tests.pgv / tests.pga)])
+    spread = measures.std(axis=0)
+    spread[spread < 1e-9] = 1.0  # the same in all tests
     return {
         "block, α": partial(best_column, np.column_stack(list(by_alpha.values())), list(by_alpha)),
         "majority": majority,
         "threshold on PGA": partial(threshold, tests.pga),
         "threshold on PGV": partial(threshold, tests.pgv),
-        "logistic regression": partial(logistic, (measures - measures.mean(axis=0)) / measures.std(axis=0)),
+        "logistic regression": partial(logistic, (measures - measures.mean(axis=0)) / spread),
         "authors' simulations": partial(best_column, tests.simulated[:, own], [float(i) for i in own]),
     }
 
