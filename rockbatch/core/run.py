@@ -97,7 +97,7 @@ class Settings(NamedTuple):
 
 
 class Context(NamedTuple):
-    """All that the runs of a call share."""
+    """All that the runs of a call share; for what becomes part of the driver: a call copies it, a hundred numbers."""
 
     traits: tuple  # of their System
     lanes: np.record
@@ -133,7 +133,7 @@ def _strongest(lanes, i, ground):
     return strongest
 
 
-@kernel
+@inlined_once
 def _in_flight(context, i, m, y):
     """Return the status of a pier that has left the ground with both pivots."""
     lanes = context.lanes
@@ -182,7 +182,7 @@ def _is_zero(y):
     return zero
 
 
-@kernel
+@inlined_once
 def _apply_event(context, i, m, now, which, x):
     """Apply event ``which``, ``x`` [s] after the sample, to lane ``i``: status, and the Moment after it."""
     lanes, devices, history = context.lanes, context.devices, context.history
@@ -252,7 +252,7 @@ def _step_by_events(context, i, devices, substep):
     return status, t_sample + (start + done)
 
 
-@kernel
+@inlined_once
 def _start_lane(context, i, number, run):
     """Start the ``run`` with this ``number`` in lane ``i``: its status."""
     traits, lanes, devices = context.traits, context.lanes, context.devices
@@ -269,21 +269,20 @@ def _start_lane(context, i, number, run):
 
 
 @kernel
-def _finish(context, i, status, t):
-    """Write what the run in lane ``i`` has come to."""
-    lanes = context.lanes
-    close_window(lanes, i, context.results)
+def _finish(traits, lanes, i, status, t, rows, results):
+    """Write what the run in lane ``i`` has come to, with the number of ``rows`` of each history."""
+    close_window(lanes, i, results)
     peak, tally = lanes.peak, lanes.tally
     note_flight(lanes, i, False, t)
     number = int(lanes.clock.number[i])
-    result = context.results[number]
-    result.status, result.t_end, result.rows = status, t, context.history.written[number]
+    result = results[number]
+    result.status, result.t_end, result.rows = status, t, rows[number]
     result.theta_max, result.t_max = peak.theta[i], peak.time[i]
     result.impacts, result.uplifts, result.flights = int(tally.impacts[i]), int(tally.uplifts[i]), int(tally.flights[i])
     result.t_flight, result.flight_duration = tally.t_flight[i], tally.flight_duration[i]
     result.flight_height, result.t_impact, result.t_rest = tally.flight_height[i], tally.t_impact[i], tally.t_rest[i]
     result.v_end, result.theta_end = lanes.now.v[i], lanes.now.theta[i]
-    finish(context.traits, lanes, i, t, result)
+    finish(traits, lanes, i, t, result)
 
 
 @hook
@@ -327,7 +326,7 @@ def _to_samples(lanes, count, ground):
     return due
 
 
-@kernel
+@inlined_once
 def _at_sample(context, i):
     """Do what is due at the sample that lane ``i`` has come to: its status, RUNNING while it goes on."""
     lanes, clock, peak = context.lanes, context.lanes.clock, context.lanes.peak
@@ -389,7 +388,7 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
             if status == RUNNING:
                 count += 1
             else:
-                _finish(context, count, status, 0.0)
+                _finish(traits, lanes, count, status, 0.0, history.written, results)
         if count == 0 or stop[0] != 0:
             return
         for substep in range(settings.substeps):
@@ -402,7 +401,7 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
                 if status == SURVIVED:
                     i += 1
                 else:
-                    _finish(context, i, status, t)
+                    _finish(traits, lanes, i, status, t, history.written, results)
                     count -= 1
                     move(cells, count, i)
             if history.every_step and substep < settings.substeps - 1:
@@ -416,7 +415,8 @@ def _march(traits, runs, ground, settings, devices, marks, history, stop, memory
             if status == RUNNING:
                 i += 1
             else:
-                _finish(context, i, status, lanes.clock.sample[i] * lanes.clock.dt[i])
+                t = lanes.clock.sample[i] * lanes.clock.dt[i]
+                _finish(traits, lanes, i, status, t, history.written, results)
                 count -= 1
                 move(cells, count, i)
 
