@@ -319,6 +319,73 @@ def test_small_amplitudes_on_springs_have_the_linear_period_and_slender_blocks_h
     assert swings["period_s"].to_numpy() == pytest.approx(2.0 * np.arccosh(1.0 / (1.0 - share)), rel=1e-6)
 
 
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.9], ids=["in full contact", "beyond", "almost over"])
+@pytest.mark.parametrize("kinematics", ["finite", "first-order"])
+def test_a_swing_on_springs_takes_as_long_as_its_energy_says(kinematics, share):
+    """Each pad has k = ½ β² p² per mass and yields g/(2k); on one pad alone its toe does not move."""
+    base = ElasticBase(beta=15.0, kinematics=kinematics)
+    b, h, g, inertia = PIER.half_width, PIER.height, PIER.gravity, PIER.inertia
+    k, finite = 0.5 * (15.0 * PIER.p) ** 2, kinematics == "finite"
+    arm = math.sin if finite else lambda theta: theta
+    lift_off = math.asin(g / (2.0 * k * b)) if finite else g / (2.0 * k * b)
+    unstable = brentq(lambda theta: b - h * (math.tan(theta) if finite else theta), 0.0, 0.5)
+    start = {0.1: 0.7 * lift_off, 0.4: 0.4 * unstable, 0.9: 0.9 * unstable}[share]
+    assert (start < lift_off) == (share == 0.1)
+
+    def potential(theta):
+        v = -g / (2.0 * k) if theta <= lift_off else b * arm(theta) - g / k
+        depths = (min(v - b * arm(theta), 0.0), min(v + b * arm(theta), 0.0))
+        lowered = h * math.cos(theta) - h
+        return g * (v + lowered) + 0.5 * k * sum(depth * depth for depth in depths)
+
+    def kinetic(theta):
+        apart = theta > lift_off
+        across = h * math.cos(theta) + apart * b * math.sin(theta)
+        return inertia + across**2 + (apart * b * math.cos(theta) - h * math.sin(theta)) ** 2
+
+    def slowness(x):  # θ = start (1 − x²)
+        theta = start * (1.0 - x * x)
+        return 2.0 * start * x * math.sqrt(kinetic(theta) / (2.0 * (potential(start) - potential(theta))))
+
+    def moment_first_order(_, y):
+        theta = abs(y[0])
+        if theta <= lift_off:
+            return [y[1], -math.copysign((2.0 * k * b * b - g * h) * theta / (inertia + h * h), y[0])]
+        return [y[1], -math.copysign(g * (b - h * theta) / (inertia + h * h + b * (b - h * theta)), y[0])]
+
+    upright = lambda t, y: y[0]  # noqa: E731
+    upright.terminal = True
+    if finite:
+        bends = [math.sqrt(1.0 - lift_off / start)] if start > lift_off else None
+        quarter = quad(slowness, 1e-7, 1.0, points=bends, limit=200, epsabs=1e-11)[0]
+    else:
+        swing = solve_ivp(
+            moment_first_order,
+            (0.0, 50.0),
+            [start, 0.0],
+            method="DOP853",
+            rtol=1e-11,
+            atol=1e-14,
+            events=upright,
+            max_step=0.01,
+        )
+        quarter = swing.t_events[0][0]
+    free = FreeRocking(PIER, base)
+    assert free.periods(np.array([start])) == pytest.approx([4.0 * quarter], rel=1e-6)
+    linear = 2.0 * math.pi * math.sqrt((inertia + h * h) / (2.0 * k * b * b - g * h))
+    assert free.in_full_contact == pytest.approx(linear, rel=1e-6)
+
+
+def test_damping_by_impacts_of_large_swings_is_that_of_their_energy():
+    """The centre of mass is R (cos(α − θ) − cos α) above its place, and two impacts leave e⁴ of that."""
+    base, start = RigidBase(restitution=0.85), np.array([0.3, 0.6, 0.95]) * PIER.alpha
+    height = lambda theta: math.cos(PIER.alpha - theta) - math.cos(PIER.alpha)  # noqa: E731
+    after = [brentq(lambda theta, start=first: height(theta) - 0.85**4 * height(start), 0.0, first) for first in start]
+    measured = FreeRocking(PIER, base).impact_damping(start, 0.85)
+    assert measured == pytest.approx(np.log(start / after) / (2.0 * math.pi), rel=1e-6)
+    assert FreeRocking(PIER, base).in_full_contact is None
+
+
 def test_damping_by_impacts_is_the_decrement_of_housners_decay():
     """1 − √(1 − r² (1 − (1 − φ)²)) after two impacts (Housner 1963, slender), and −ln(r)/π for small amplitudes."""
     slender, e = Pier(alpha=1e-3, p=2.0), 0.9

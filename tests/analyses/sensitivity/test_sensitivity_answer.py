@@ -98,3 +98,44 @@ def test_of_many_cases_it_is_said_in_how_many_an_input_comes_first():
         "The median of θmax/α over 3 motions depends most, in 6 cases, on n in 3 (total Sobol index 0.75 to 0.75), on p in 2 "
         "(total Sobol index 0.80 to 0.90), on none of the inputs in 1."
     )
+
+
+def test_up_to_four_inputs_are_named_of_those_that_matter_and_one_at_the_threshold_is_among_them():
+    inputs = [(name, 0.2, 0.01, 0.1, 0.3) for name in ("p", "beta", "eta", "epsilon", "alpha")]
+    (line,), _ = said({"rock": inputs})
+    assert line.count(" ± ") == 4
+    assert "the other" not in line
+    assert "; α may matter, too (0.21 at most)" in line
+    (line,), _ = said({"rock": [("p", 0.9, 0.0, 0.1, 0.3), ("beta", 0.05, 0.0, 0.2, 0.2), ("n", 0.049, 0.0, 0.2, 0.2)]})
+    assert "then β (0.05 ± 0.00); n hardly matters (0.05 at most)." in line
+    (line,), _ = said({"rock": [("p", 0.9, 0.0, 0.1, 0.3), ("n", 0.04, 0.01, 0.2, 0.2)]})
+    assert "n may matter, too (0.05 at most)" in line
+
+
+def test_an_interval_that_just_reaches_another_does_not_tell_them_apart_and_half_a_total_is_narrow_enough():
+    apart = [("p", 0.5, 0.125, 0.1, 0.3), ("beta", 0.25, 0.125, 0.1, 0.3)]
+    assert said({"rock": apart})[1] == ["more samples would tell p and β apart"]
+    assert said({"rock": [apart[0], ("beta", 0.25, 0.0625, 0.1, 0.3)]})[1] == []
+    assert said({"rock": [("p", 0.5, 0.25, 0.1, 0.3)]})[1] == []
+
+
+def test_three_cases_have_their_sentences_and_four_share_one_and_one_motion_is_one():
+    cases = {f"case {n}": [("p", 0.9, 0.1, 0.1, 0.3)] for n in range(4)}
+    assert len(said(dict(list(cases.items())[:3]))[0]) == 3
+    ((line,), _) = said(cases, motions=1, statistic="max")
+    assert line.startswith("The maximum of θmax/α over one motion depends most, in 4 cases, on p in 4 (total")
+    assert "none" not in line
+
+
+def test_an_input_that_moves_nothing_alone_has_no_sentence_and_one_that_lowers_the_answer_has():
+    (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.2, 0.2)]})
+    assert line.endswith("(total Sobol index 0.90 ± 0.10).")
+    (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.3, 0.1), ("n", 0.1, 0.1, 0.25, 0.2)]})
+    assert line.endswith(" Alone p moves it from 0.3 at 0.3 to 0.1 at 0.5 (0.2 in the study).")
+
+
+def test_runs_that_only_flew_or_only_overturned_count():
+    for status in ("overturned", "flight"):
+        lines, _ = said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]}, statuses={"ok": 59, status: 1}, overturned=0.5)
+        assert lines[1:] == ["1 of 60 runs overturned or were ended by flight, and count as 0.5 here."]
+    assert len(said({"rock": [("p", 0.9, 0.1, 0.1, 0.3)]})[0]) == 1
