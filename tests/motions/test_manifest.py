@@ -128,6 +128,13 @@ def test_a_csv_says_the_same_also_as_excel_writes_it_where_decimals_have_commas(
         assert (motion.name, motion.azimuth, motion.magnitude) == ("a000", 12.5, 6.7)
 
 
+@pytest.mark.parametrize(("given", "azimuth"), [("0", 0.0), ("359.5", 359.5), ("360", 0.0)])
+def test_an_azimuth_of_360_is_north(tmp_path, given, azimuth):
+    write_records(tmp_path)
+    (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "a000.AT2"\nazimuth = {given}\n')
+    assert motions_of(tmp_path)["a000"].azimuth == azimuth
+
+
 def test_a_motions_csv_without_a_column_of_files_is_a_record(tmp_path):
     rows = "\n".join(f"{i / 100},{v}" for i, v in enumerate(wiggle(50)))
     (tmp_path / "motions.csv").write_text(f"time(s),NS(g)\n{rows}\n")
