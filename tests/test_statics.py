@@ -376,6 +376,13 @@ def test_a_swing_on_springs_takes_as_long_as_its_energy_says(kinematics, share):
     assert free.in_full_contact == pytest.approx(linear, rel=1e-6)
 
 
+def test_a_pier_that_no_rotation_overturns_swings_on_stiff_springs_as_on_rigid_ground_far_beyond_its_slenderness():
+    held, far = (rb.Tendon(psi=0.3, lam=2.0),), np.array([0.2, 0.5, 0.9])
+    stiff = FreeRocking(PIER, ElasticBase(beta=500.0, kinematics="finite", restraints=held))
+    assert stiff.turn.unstable is None
+    assert stiff.periods(far) == pytest.approx(FreeRocking(PIER, RigidBase(restraints=held)).periods(far), rel=2e-3)
+
+
 def test_damping_by_impacts_of_large_swings_is_that_of_their_energy():
     """The centre of mass is R (cos(α − θ) − cos α) above its place, and two impacts leave e⁴ of that."""
     base, start = RigidBase(restitution=0.85), np.array([0.3, 0.6, 0.95]) * PIER.alpha

@@ -318,6 +318,7 @@ ROWS = st.lists(st.lists(WORDS | st.sampled_from(("0.25", "-1.75")), min_size=0,
 @given(ROWS | st.lists(st.lists(st.sampled_from(("0.25", "-1.75", "3.00")), min_size=2, max_size=2), min_size=4),
        st.sampled_from((" ", "\t", ";", ",", ", ", "\xa0")), st.booleans())  # fmt: skip
 @example([["0.25", "1_0"]] * 4, " ", False)  # no number, whatever Python makes of it
+@example([["0.25", "3.00"], ["0.25", "1_0"], ["-1.75", "3.00"]], " ", False)
 def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, wrapped):
     """To the bit, and with the same words about the same line."""
     text = "time NS\n" + "\n".join(map(separator.join, rows))

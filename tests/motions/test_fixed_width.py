@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from motion_files import e15_7
 
-from rockbatch.motions.formats.fixed_width import aligned_numbers
+from rockbatch.motions.formats.fixed_width import _ends_within_a_column, aligned_numbers
 
 LAYOUTS = {
     "F8.3": (8, lambda x: f"{x:8.3f}"),
@@ -60,3 +60,13 @@ def test_a_damaged_field_is_left_to_the_reader_of_single_numbers_or_read_as_floa
 )
 def test_lines_of_other_lengths_and_numbers_of_more_digits_are_left_to_it(lines):
     assert aligned_numbers(lines, 5 if len(lines[0]) == 10 else len(lines[0])) is None
+
+
+@pytest.mark.parametrize(("lines", "per_line", "cut"), [
+    (["  100  200", "  300  400", "  500   60"], 2, False), (["  100  200", "  300  400", "  500  60"], 2, True),
+    (["  100  200", "  300  400", "  50"], 2, True), (["  100  200", "  300  400", "  500"], 2, False),
+    (["  100  200", "  500  60"], 2, False), (["  100  20", "  300  400", "  500  60"], 2, False),
+    (["  100", "  300", "  50"], 1, False), (["  100  200  300"] * 2 + ["  400  50"], 3, True),
+])  # fmt: skip
+def test_a_whole_number_that_has_lost_digits_ends_before_its_column(lines, per_line, cut):
+    assert _ends_within_a_column(lines, per_line) == cut

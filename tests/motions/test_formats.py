@@ -240,6 +240,14 @@ def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
     np.testing.assert_allclose(motion.horizontal, (data - data.mean()) * 10.0, atol=1e-6)  # single precision
 
 
+@pytest.mark.parametrize(("vertical", "partner"), [("HNZ", True), ("HLZ", False), ("BNZ", False)])
+def test_sac_files_of_another_instrument_of_the_station_are_no_partners(tmp_path, vertical, partner):
+    for channel in ("HNE", vertical):
+        trace(channel, wiggle(300).astype(np.float32)).write(str(tmp_path / f"{channel}.sac"), format="SAC")
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="g"))
+    assert [motion.vertical is not None for motion in found.motions] == [partner]
+
+
 @pytest.mark.parametrize("unit", [None, "g"])
 def test_the_clock_in_a_sac_file_needs_no_unit_and_no_direction(tmp_path, unit):
     trace("LCQ", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")

@@ -138,6 +138,7 @@ def test_an_event_that_no_record_may_do_reads_as_words(tmp_path):
         verdict("2", "fail", **event, value=1.0, high=1.0, ratio=math.inf),
     )
     assert [row[1] for row in card(shown)[1:]] == ["none✓", "some✗"]
+    assert ("class", "bar") not in shown.attributes
     assert "no record has a run that is missing or not settled" in shown.text
     assert not re.search(r"at most 0(?![.\d])", shown.text)  # but of an error
 

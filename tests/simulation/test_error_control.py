@@ -1,6 +1,7 @@
 """Error control: what is called settled, what is not, and what is refused before it is run."""
 
 import math
+import re
 import threading
 from dataclasses import replace
 from types import SimpleNamespace
@@ -123,6 +124,25 @@ def test_no_error_is_claimed_where_rotations_before_the_peak_have_not_settled(mo
     assert outcome.theta_max_error is None
     assert "before the peak" in outcome.note
     assert "no error of it is claimed" in outcome.note
+
+
+def test_a_run_that_never_settles_says_what_each_halving_still_changed(monkeypatch):
+    fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5}
+    for either, other, words in (
+        (ok(0.1), fallen, "halving the step still changed the outcome, from (ok to overturned|overturned to ok)"),
+        (ok(0.1), ok(0.11), r"halving the step still changed theta_max by 1\.0e-02 rad"),
+        (ok(0.1, theta_res=0.01), ok(0.11, theta_res=0.03), "theta_max by 1.0e-02 rad and theta_res by 2.0e-02 rad"),
+        (
+            fallen | {"t_end": 4.0},
+            fallen | {"t_end": 6.0},
+            "changed the time of overturning, from (4|6).00 to (6|4).00 s",
+        ),
+    ):
+        scripted(monkeypatch, *([either, other] * 20))
+        base = YieldingBase(5.0 * FIG5.least_beta, eta=3.0) if "theta_res" in either else RigidBase()
+        outcome = run_to_tolerance(FIG5, base, SINE, 1e-4)
+        assert outcome.status == "failed"
+        assert re.search(words, outcome.reason), outcome.reason
 
 
 @pytest.mark.parametrize(("window", "claimed"), [(5, False), (7, True), (31, True)])

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
+from rockbatch.common.notes import CHAOTIC
 from rockbatch.pier.sections import section_heights
 from rockbatch.simulation import sections as of_sections
 from rockbatch.simulation.forces import at_rows
-from rockbatch.simulation.histories import written
+from rockbatch.simulation.histories import forces_in_sections, written
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.sections import InSection, in_body, in_section, sections_of
 
@@ -254,6 +255,17 @@ def test_extremes_are_those_of_much_finer_steps_within_their_error(name):
         assert row["sections_error"] < 1e-3
         for column, value in zip(columns, exact[1:5], strict=True):
             assert row[column] == pytest.approx(value, rel=2.0 * row["sections_error"] + 1e-5, abs=1e-6), column
+
+
+def test_forces_in_sections_of_a_chaotic_run_and_of_an_odd_number_of_steps_have_no_error():
+    rng = np.random.default_rng(10)
+    run, _ = recorded(random_pier(rng), BASES["rigid"], random_motion(rng, random_pier(rng), 0.5), substeps=8)
+    for substeps, note, claimed in ((8, "", True), (8, CHAOTIC, False), (7, "", False)):
+        outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.2, wait=False).noted(note)
+        (foot,) = forces_in_sections(run, outcome, 0.2, [0.0], error=True, wait=False)
+        assert (foot.error is not None) == claimed
+    (foot,) = forces_in_sections(run, outcome.changed(substeps=8, note=""), 0.2, [0.0], error=False, wait=False)
+    assert foot.error is None
 
 
 def test_a_motion_that_begins_with_a_jump_bends_the_foot_by_no_more_than_its_normal_force_can():

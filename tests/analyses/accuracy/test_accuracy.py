@@ -1,6 +1,7 @@
 """``rockbatch accuracy``: what it measures is the error, and the report shows it. Times are never asserted."""
 
 import csv
+import itertools
 import math
 import re
 from contextlib import contextmanager
@@ -104,6 +105,32 @@ def test_runs_that_end_otherwise_are_counted_and_have_no_error(measured):
     assert set(table["status_differs"]) == {2}
     assert (table["error_max"] == table["error_median"]).all()  # of the one that is left
     assert measure(study, over)["error_max"].isna().all()
+
+
+def test_a_reference_has_the_outcome_of_the_step_before_and_its_peak_too(measured, monkeypatch):
+    """One that overturns has no peak to compare; the same outcome twice is what counts."""
+    run = measured[1][0].run
+    pier = run.case.pier
+    coarse = replace(measured[1][0].outcome, status="ok", theta_max=0.05)
+    fallen = replace(coarse, status="overturned", theta_max=0.5 * math.pi)
+    changed = replace(coarse, theta_max=0.05 + 1e-13 * pier.alpha)
+    for script, expected in (
+        ([coarse, fallen, coarse, changed], changed),
+        ([coarse, fallen, fallen], fallen),
+        ([fallen, coarse, changed], changed),
+        ([replace(coarse, status="failed")] * 40, None),
+    ):
+        steps, left = [], iter(script)
+
+        def scripted(pier, base, motion, substeps, quiet_s, left=left, steps=steps):
+            steps.append(substeps)
+            return next(left)
+
+        monkeypatch.setattr(rockbatch.analyses.accuracy.error_and_time, "run_fixed", scripted)
+        found = reference(run, 2.0)
+        assert (found and found.outcome) == expected
+        assert [after / before for before, after in itertools.pairwise(steps)] == [2.0] * (len(steps) - 1)
+        assert expected is None or (len(steps), found.change <= 2e-13) == (len(script), True)
 
 
 def test_steps_that_are_too_long_to_be_run_have_neither_error_nor_time(measured):
