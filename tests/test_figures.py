@@ -270,6 +270,24 @@ def test_words_beside_panels_stand_in_no_panel_and_inside_the_picture():
         assert sum(foot + 8.0 < y < foot + 18.0 and left <= x <= right for x, y in places) == len(axes["x"].ticks())
 
 
+def test_samples_in_a_legend_stand_in_the_middle_of_their_box():
+    marks = [
+        Points(X, Y),
+        Polyline(X, Y, look=Look("level")),
+        Area(X, Y),
+        Rule("x", X),
+        Rule("y", X, look=Look("limit")),
+    ]
+    boxes = [item[0] for item in parsed(svg.key([svg.Entry("one", [mark]) for mark in marks]))[0]]
+    assert [box.get("viewBox") for box in boxes] == ["0 0 22 14"] * 5
+    point, level, area, upright, limit = (box[0] for box in boxes)
+    assert (point.get("x"), point.get("y")) == ("11", "7")
+    assert [level.get(name) for name in ("x1", "x2", "y1", "y2")] == ["0", "22", "7", "7"]
+    assert [area.get(name) for name in ("x", "y", "width", "height")] == ["1", "1", "20", "12"]
+    assert [upright.get(name) for name in ("x1", "x2", "y1", "y2")] == ["11", "11", "0", "14"]
+    assert limit.get("d") == "M11 0v14M7 0h8M7 14h8"
+
+
 def test_panels_apart_have_their_captions_and_a_single_one_without_has_none():
     panel = Panel(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), [], "caption", note="note", reads="plane")
     alone = parsed(svg.drawn(Figure([panel], "one")))

@@ -40,8 +40,11 @@ def test_a_missing_station_is_amber_until_the_study_leaves_it_out(tmp_path, caps
     assert main(["check", str(tmp_path / "all")]) == 1
     assert "? 2 of 3 stations" in capsys.readouterr().out
 
+    assert "\n? Every check passes" in told
+
     code, told, page = run("named", leave_out=["RSN9"])
     assert code == 0
+    assert "\n✓ Every check passes" in told
     for text in (told, page):
         assert "✓ Every check passes in the only case." in text
         assert "Left out by name: RSN9." in " ".join(text.split())

@@ -14,6 +14,7 @@ from rockbatch.motions.stations import station_names
 
 RECORDS = Path(rb.__file__).parents[1] / "motions" / "near_fault"
 WTMC = RECORDS / "kaikoura2016_wtmc" / "20161113_110259_WTMC_20.V2A"
+HOUR = 3600.0 * 300_000  # in 2004
 NOISE = np.random.default_rng(1)
 
 
@@ -71,6 +72,18 @@ def test_two_formats_of_one_recording_are_one_record_by_their_headers():
     names = station_names([[v1], [v2], [sac], [later]])
     assert names[0] == names[1]
     assert len(set(names)) == 3, "without a time in common nothing says that they are of one event"
+
+
+@pytest.mark.parametrize("short", [-10.0, 1.0])
+def test_recordings_on_both_sides_of_a_full_hour_are_of_one_earthquake_if_they_share_a_moment(short):
+    """The long one lasts from 15 s before it to 15 s after it."""
+    found = [
+        component("long", sensor=Sensor("S", location="00"), start=HOUR - 15.0, samples=3000),
+        component("short", sensor=Sensor("S", location="10"), start=HOUR + short, samples=200),
+        component("later", sensor=Sensor("S", location="20"), start=HOUR + 20.0, samples=200),
+    ]
+    names = station_names([[each] for each in found])
+    assert names[0] == names[1] != names[2]
 
 
 @pytest.mark.parametrize(

@@ -589,6 +589,26 @@ def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     assert outcome.forces.friction_demand * share * G <= outcome.forces.base_shear * (1 + 1e-9)
 
 
+@pytest.mark.parametrize(("rotation", "side", "sign"), [(0.1, "left", 1.0), (-0.1, "right", -1.0)])
+def test_a_pier_that_stays_down_has_landed_on_the_pivot_that_was_up(rotation, side, sign):
+    """With e = 0 its first impact is its last; the ground stops H θ̇, h forward and 2 b up of the landing pivot."""
+    still = rb.Motion.still(3.0)
+    response = rb.simulate(
+        rb.Pier(0.2, 1.0, initial_rotation_rad=rotation), rb.RigidBase(restitution=0.0), still, forces=True
+    )
+    (landing,) = response.impacts.to_dict("records")
+    assert (landing["pivot"], landing["t"]) == (side, response.events.query("kind == 'rest'")["t"].item())
+    rate = landing["landing_velocity"] / (2.0 * PIER.half_width)
+    assert landing["impulse_horizontal"] == pytest.approx(sign * rate * PIER.height, rel=1e-9)
+    assert landing["impulse_vertical"] == pytest.approx(rate * PIER.half_width, rel=1e-9)
+
+
+def test_what_could_not_be_run_is_not_run_for_its_forces_either():
+    outcome = outcome_of(PIER, rb.ElasticBase(beta=4000.0), shaken(), substeps=1)
+    assert (outcome.status, outcome.was_run, outcome.forces) == ("failed", False, None)
+    assert "too few for the springs' frequency" in outcome.reason
+
+
 # What the model does not follow
 
 

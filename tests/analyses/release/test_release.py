@@ -305,6 +305,7 @@ def test_a_scatter_from_a_thousandth_on_is_said(share, said):
 WRONG = [
     ({"impact_s": [0.3, 0.8]}, "2 values were measured"),
     ({"impact_s": [0.3, 0.9, 0.8]}, "times have to rise"),
+    ({"impact_s": [0.3, 0.9, 0.9]}, "times have to rise"),
     ({"amplitude_rad": [0.1, 0.08, 0.07]}, "the first amplitude is the one after the first impact"),
     ({"impact_s": [0.3, 0.8, 1.3], "fit": "zeta"}, 'case "rigid" has restitution instead'),
     ({"impact_s": [0.3, 0.8, 1.3], "measured": "a.csv"}, "keep one"),
