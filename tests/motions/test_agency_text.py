@@ -289,6 +289,12 @@ def test_a_record_of_unam_begins_on_the_day_that_is_nearest_to_its_earthquake(or
     assert read(text, "x.012")[0].start == moment(2017, 9, day, hour, minute, second)
 
 
+@pytest.mark.parametrize("key", ["HORA EPICENTRO (GMT)", "HORA DE LA PRIMERA MUESTRA (GMT)"])
+def test_a_record_of_unam_with_an_impossible_time_begins_at_none(key):
+    assert read(unam_text(), "x.012")[0].start is not None
+    assert read(unam_text(**{key: "23:75:00"}), "x.012")[0].start is None
+
+
 def test_usc_times_from_film_are_interpolated_and_a_mark_between_channels_is_read_over():
     times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
     channels = [usc_channel("N90E", A / 100, times, ("/& END",)), usc_channel("DOWN", C / 100, times)]

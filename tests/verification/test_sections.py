@@ -13,7 +13,7 @@ from rockbatch.simulation import sections as of_sections
 from rockbatch.simulation.forces import at_rows
 from rockbatch.simulation.histories import forces_in_sections, written
 from rockbatch.simulation.runs import Run, run_fixed
-from rockbatch.simulation.sections import InSection, in_body, in_section, sections_of
+from rockbatch.simulation.sections import InBody, InSection, in_body, in_section, sections_of
 
 G = 9.81
 SUBSTEPS = 20
@@ -160,6 +160,18 @@ def test_forces_in_sections_during_flight(name):
 def test_springs_at_the_deck_act_in_all_sections_below_it(name):
     for seed in range(40, 44):
         check_against_points(seed, BASES[name], vertical=0.3, k_deck=0.3)
+
+
+def test_a_spring_at_the_deck_pushes_horizontally_however_far_the_shaft_leans():
+    """Its force in the axes of the shaft, and its moment about the middle of a section below it."""
+    zero, lean, push = np.zeros(1), np.array([0.6]), np.array([2.0])
+    body = InBody(zero, zero, zero, zero, np.sin(lean), np.cos(lean), [(9.0, push)])
+    pier = random_pier(np.random.default_rng(1))
+    below, above = in_section(pier, body, 4.0), in_section(pier, body, 9.5)
+    assert np.hypot(below.shear, below.axial) == pytest.approx(push)
+    assert np.arctan2(below.axial, below.shear) == pytest.approx(lean)
+    assert below.moment == pytest.approx(-5.0 * below.shear)
+    assert [*above] == [0.0, 0.0, 0.0]
 
 
 def test_devices_at_the_base_act_below_all_sections():
