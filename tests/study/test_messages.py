@@ -31,6 +31,8 @@ def said(folder, text):
         ({"cases": [{"base": "rigid", "shft": "elastic", "flexural_damping": 0.1}]},
          "[[case]] no. 1: shft: unknown key; did you mean shaft?"),
         ({"cases": [{"base": "yielding", "beta": 50.0, "eta_": 2.5}]}, "[[case]] no. 1: eta_: unknown key; did you mean eta?"),
+        ({"cases": [{"base": "yielding", "beta": 50.0, "eta_of_supports": 2.5}]},
+         "[[case]] no. 1: eta_of_supports: unknown key; did you mean eta?"),
     ],
 )  # fmt: skip
 def test_a_misspelt_key_is_reported_once_and_not_as_missing_too(tmp_path, tables, message):
