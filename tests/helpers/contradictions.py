@@ -163,6 +163,7 @@ HEADERS = [
         {
             "count": factor(r"(No\. of Points = +)(\d+)( )", 1.1),
             "step": text("at 100 pts/sec", "at 200 pts/sec"),
+            "rate": text("at 100 Samples/sec", "at 200 Samples/sec"),
             "duration": factor(rf"(Record Length = *){_N}( sec)", 3),
             "peak": factor(rf"(Max  = *){_N}( g)", 3),
             "time of the peak": factor(rf"(g, at +){_N}( sec)", 3),

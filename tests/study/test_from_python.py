@@ -168,6 +168,9 @@ def test_runs_of_motions_from_python_are_those_of_their_files(tmp_path):
     kept = rb.run(rb.load_study(study), tmp_path / "out", motions=motions)
     assert list(kept["record"]) == ["wave"]
     assert rb.open_results(tmp_path / "out").info["command"][-2:] == ["--motions", "(motions from Python)"]
+    for given in (folder, str(folder)):
+        rb.run(changed, tmp_path / "again", motions=given, fresh=True)
+        assert rb.open_results(tmp_path / "again").info["command"][-2:] == ["--motions", str(folder)]
 
 
 @pytest.mark.parametrize("way", ["tables", "changed"])

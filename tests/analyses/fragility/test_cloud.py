@@ -115,13 +115,14 @@ def test_the_share_is_that_of_the_penalised_likelihood():
     assert (share.intercept, share.slope) == pytest.approx(tuple(searched.x), rel=1e-5)
 
 
-def test_of_two_intensities_the_share_is_the_closed_form():
+@pytest.mark.parametrize(("records", "overturned"), [((10, 12), (2, 9)), ((2, 3), (1, 2))])
+def test_of_two_intensities_the_share_is_the_closed_form(records, overturned):
     """The penalty of a saturated model is half a record in each cell: ln((k + ½)/(n − k + ½)) at either intensity.
 
     Draws are those of Jeffreys' posterior, a beta distribution at either, without correlation; Kolmogorov–Smirnov of 1000.
     """
-    x = np.repeat([0.5, 2.0], [10, 12])
-    happened = np.arange(22) % 11 < np.repeat([2, 9], [10, 12])
+    x = np.repeat([0.5, 2.0], records)
+    happened = np.concatenate([np.arange(n) < k for n, k in zip(records, overturned, strict=True)])
     found = fit_event(x, happened)
     assert (found.limit, found.line) == (1.0, None)
     share, drawn = found.overturning, []
