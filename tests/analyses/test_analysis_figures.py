@@ -316,8 +316,9 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     assert [line.x.tolist() for line in whiskers] == [
         pytest.approx([value - error, value + error]) for value, error in zip(of_indices, errors, strict=True)
     ]
-    most = max(line.x.max() for line in whiskers)
-    assert most < indices.x.high <= most + 0.1 * (most - min(0.0, *(line.x.min() for line in whiskers)))
+    least, most = (limit(0.0, *(limit(*line.x) for line in whiskers)) for limit in (min, max))
+    assert most < indices.x.high <= most + 0.1 * (most - least)
+    assert least - 0.1 * (most - least) <= indices.x.low <= least
     assert whiskers[0].title == f"{of_indices[0]:.3f} ± {errors[0]:.3f}"
     hold_plot(result, tmp_path)
 

@@ -1,0 +1,27 @@
+"""What the compiled core is given of a pier on springs."""
+
+import pytest
+
+from rockbatch.pier import ElasticBase, Pier, YieldingBase
+from rockbatch.simulation.models import model
+
+UNITS = {
+    "half_width": (1, 0), "height": (1, 0), "inertia": (2, 0), "gravity": (1, -2), "yield_deflection": (1, 0),
+    "stiffness": (-1, 0), "yield_force": (1, -2), "damping": (0, -1), "rest": (1, -1),
+}  # fmt: skip
+"""Powers of length and time of the numbers that have a unit, per unit mass."""
+
+
+@pytest.mark.parametrize(
+    "base", [YieldingBase(60.0, 0.2, eta=2.5), ElasticBase(60.0, zeta=0.05)], ids=["yielding", "damped"]
+)
+def test_every_number_has_its_unit(base):
+    """Lengths of 8 m and times of 2 s instead of one: the same pier in other units."""
+    pier = Pier(alpha=0.2, p=1.0)
+    other = Pier(alpha=0.2, p=0.5, gravity=pier.gravity * 8.0 / 4.0)
+    first, second = model(pier, base), model(other, base)
+    assert (second.half_width, second.height) == pytest.approx((8.0 * first.half_width, 8.0 * first.height), rel=1e-14)
+    for name, (length, time) in UNITS.items():
+        assert getattr(second, name) == pytest.approx(getattr(first, name) * 8.0**length * 2.0**time, rel=1e-14), name
+    others = [name for name in first._fields if name not in UNITS]
+    assert [getattr(second, name) for name in others] == [getattr(first, name) for name in others]
