@@ -4,8 +4,8 @@
     python tests/mutants/run.py --seed 1 --count 200 [--only core] [--jobs 2]
 
 Places are drawn at random from all lines that compute (places.py). The fast tests run once, to record which of them runs which
-line (recording.py); an error meets those that run its line, three minutes of them, or those that run most of its module if it is
-in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
+line (recording.py); an error meets those that run its line, three minutes of them, or those that run anything of its module if
+it is in what runs when this is imported (judging.py). It is noticed where a test fails that passes without it, or computes far
 longer. Errors in the core meet tests without the compiler, of a few seconds each. What is finished is kept in build/mutants and
 not done again. An error that changes no answer is listed, with the reason, in equivalent.toml.
 """
