@@ -40,9 +40,10 @@ from rockbatch.core.table import record as record_of
 from rockbatch.core.types import RIGHT, SURVIVED, Ground, Instant
 from rockbatch.motions import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
-from rockbatch.simulation import block, ground_of, springs
+from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, springs
 from rockbatch.simulation.models import elements, line_of, system_of
 from rockbatch.simulation.models import model as model_of
+from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.starting import start_of
 
 BARE_STEPS = 200_000
@@ -192,6 +193,27 @@ def pass_alone(motion: Motion, repeats: int) -> str:
     return f"The lanes' pass alone, bouc-wen, a lane / bare step: best {best}, median {median}"
 
 
+def waiting(motion: Motion, runs: int, repeats: int) -> str:
+    """Return what a step takes of runs on weak supports that wait after a weak motion, over the bare one.
+
+    At each sample it is asked whether they are over.
+    """
+    weak, bases = motion.times(0.25), [replace(base, beta=0.5 * base.beta, eta=1.5) for base in foundations(runs)]
+    waiting_runs = [Run(TOWER, of_law("bouc-wen", base), weak) for base in bases]
+
+    def whole() -> list[Outcome | None]:
+        return run_all_fixed(waiting_runs, [1] * runs, QUIET_S, Stop())
+
+    steps = sum(round(end.t_end / weak.dt) for end in whole() if end is not None)
+    if steps < 3 * runs * weak.npts:
+        raise SystemExit("waiting: the runs were over too soon; their steps are no measure")
+    m = springs(TOWER, waiting_runs[0].base)
+    alone = (m, static_state(m, m.gravity), Contact(1.0, 1.0, 1.0, 1.0, 0.0), ground_of(weak), weak.dt, BARE_STEPS)
+    times = interleaved({"whole": whole, "bare": lambda: bare(*alone)}, repeats)
+    best, median = ratio(times["whole"], times["bare"], BARE_STEPS / steps).split(" | ")
+    return f"A step of runs that wait after a weak motion, bouc-wen / bare step: best {best}, median {median}"
+
+
 def with_devices(name: str, base: Base, motion: Motion, substeps: int, repeats: int) -> str:
     """Return the line of one run with two viscous dampers and a tendon, over one without, step by step."""
     ground, stop = ground_of(motion), np.zeros(1, np.uint8)
@@ -238,6 +260,7 @@ def main(repeats: int = 7, runs: int = 64, seconds: float | None = None) -> list
         ),
         "",
         pass_alone(motion, repeats),
+        waiting(motion, runs, repeats),
         "",
         "| base | steps per sample | run with devices / plain run, one each: best | median | with devices |",
         "| --- | --- | --- | --- | --- |",

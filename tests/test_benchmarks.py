@@ -1,6 +1,7 @@
 """The benchmarks run, and measure what they say. Times are never asserted."""
 
 import importlib
+import re
 from importlib.util import find_spec
 from pathlib import Path
 from zipfile import ZipFile
@@ -124,6 +125,8 @@ def test_the_bare_step_is_compared_for_every_law_the_rigid_base_every_step_and_c
     assert len({tuple(row[:3]) for row in laws}) == (4 + 1) * 2 * 3
     assert all(float(row[3]) > 0 for row in laws)
     assert any(float(row[5]) > 0 for row in laws)  # events per step: something happens within 3 s
+    (waits,) = (line for line in lines if "that wait after" in line)
+    assert float(re.search(r"best ([\d.]+)", waits)[1]) > 0
     assert {tuple(row[:2]) for row in devices} == {(base, steps) for base in ("rigid", "bouc-wen") for steps in "124"}
     assert all(float(row[2]) > 0 for row in devices)
 
