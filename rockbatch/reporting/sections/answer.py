@@ -112,7 +112,7 @@ def _of_devices(finished: Finished, runs: "pd.DataFrame", kind: str) -> list[obj
     force = f"{kind}_force_kN" if _weighed(finished.runs, kind) else f"{kind}_force_over_weight"
     cells: list[object] = []
     for column, factor in ((force, 1.0), (f"{kind}_{DEVICES[kind][0]}", 1000.0)):
-        values = stood[column].to_numpy(np.float64)
+        values = stood[column].to_numpy(np.float64) if column in stood else np.empty(0)
         if not np.isfinite(values).any():
             cells.append("–")
             continue
