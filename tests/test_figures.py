@@ -335,6 +335,21 @@ def test_a_curve_is_drawn_by_few_points_to_a_tenth_of_a_pixel_and_to_its_extreme
     assert (points[:, 1].min(), points[:, 1].max()) == pytest.approx((y.min(), y.max()), abs=0.051)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_each_piece_of_an_interrupted_curve_is_drawn_as_it_is_alone(seed):
+    rng = np.random.default_rng(seed)
+    x, y = np.cumsum(rng.random(300)), np.round(np.cumsum(rng.normal(0.0, (0.02, 1.0, 30.0)[seed % 3], 300)), 1)
+    y[1:-1][rng.choice(298, (2, 15, 90, 270)[seed % 4], replace=False)] = np.nan
+    pieces = [
+        piece
+        for piece in np.split(np.arange(300), np.flatnonzero(np.diff(np.isnan(y))) + 1)
+        if not np.isnan(y[piece[0]])
+    ]
+    alone = [re.search(' d="([^"]*)"', svg.curve(x[piece], y[piece], ""))[1] for piece in pieces]
+    assert all(path.count("M") == 1 for path in alone)
+    assert re.search(' d="([^"]*)"', svg.curve(x, y, ""))[1] == "".join(alone)
+
+
 def test_many_panels_that_share_their_axes_fit_a_page_and_are_numbered_at_its_edges():
     panel = Panel(
         Axis("x", 0.0, 1.0), Axis("θ_max/α", 0.0, 1.0), [], "Waiau 2016, Te Mara Farm, N28W", width=166.0, height=110.0

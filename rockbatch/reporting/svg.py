@@ -420,30 +420,32 @@ def curve(x: Array, y: Array, class_: str, name: str | None = None, title: str =
 
 def _relative(x: Array, y: Array) -> str:
     """Return points as a path of whole steps, without repeated points and those on a straight line between two others."""
-    in_range = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
+    drawn = (np.abs(x) < _FAR) & (np.abs(y) < _FAR)
+    points = np.rint(FINE * np.column_stack([x[drawn], y[drawn]])).astype(np.int64)
+    begins = (drawn & ~np.concatenate(([False], drawn[:-1])))[drawn]
+    places = _bends(points, begins)
     parts = []
-    for piece in np.split(np.arange(len(x)), np.flatnonzero(np.diff(in_range.astype(np.int8))) + 1):
-        if len(piece) == 0 or not in_range[piece[0]]:
-            continue
-        points = np.rint(FINE * np.column_stack([x[piece], y[piece]])).astype(np.int64)
-        points = points[_bends(points)]
-        steps = " ".join(map(str, np.diff(points, axis=0).ravel())).replace(" -", "-")
-        parts.append(f"M{points[0, 0]} {points[0, 1]}" + (f"l{steps}" if steps else "h0"))
+    for piece in np.split(points[places], np.flatnonzero(begins[places])[1:]) if len(places) else ():
+        steps = " ".join(map(str, np.diff(piece, axis=0).ravel().tolist())).replace(" -", "-")
+        parts.append(f"M{piece[0, 0]} {piece[0, 1]}" + (f"l{steps}" if steps else "h0"))
     return "".join(parts)
 
 
-def _bends(points: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+def _bends(points: npt.NDArray[np.int64], begins: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
     """Return the places of the points without which the drawing would change by more than a step (Ramer, Douglas, Peucker).
 
-    Turning points are kept, so that extremes are exact; between them the point farthest from its chord, until none is far.
+    A new piece begins at some. Turning points are kept, so that extremes are exact; between them the point farthest from its
+    chord, until none is far.
     """
-    places = np.concatenate(([0], np.flatnonzero(np.any(np.diff(points, axis=0) != 0, axis=1)) + 1))
-    points = points[places]
-    kept = np.ones(len(points), dtype=bool)
+    places = np.flatnonzero(
+        begins | np.concatenate(([False], np.any(np.diff(points, axis=0) != 0, axis=1)))[: len(points)]
+    )
+    points, begins = points[places], begins[places]
+    kept = begins | np.concatenate((begins[1:], [True]))[: len(points)]
     ways = np.sign(np.diff(points, axis=0))
-    last = np.maximum.accumulate(np.where(ways != 0, np.arange(len(ways))[:, None], 0), axis=0)
-    ways = np.take_along_axis(ways, last, axis=0)  # a level stretch goes on as before
-    kept[1:-1] = np.any(ways[1:] * ways[:-1] < 0, axis=1)
+    known = np.where((ways != 0) | begins[:-1, None], np.arange(len(ways))[:, None], 0)
+    ways = np.take_along_axis(ways, np.maximum.accumulate(known, axis=0), axis=0)  # a level stretch goes on as before
+    kept[1:-1] |= np.any(ways[1:] * ways[:-1] < 0, axis=1)
     (x, y), inner = np.ascontiguousarray(points.T), np.flatnonzero(~kept)
     while len(inner):
         ends = np.flatnonzero(kept)
