@@ -350,6 +350,14 @@ def test_each_piece_of_an_interrupted_curve_is_drawn_as_it_is_alone(seed):
     assert re.search(' d="([^"]*)"', svg.curve(x, y, ""))[1] == "".join(alone)
 
 
+def test_a_level_curve_whose_points_are_repeated_is_one_line_and_a_point_alone_is_a_dot():
+    x = np.repeat(np.arange(9.0), 3)
+    assert ' d="M0 20l80 0"' in svg.curve(x, np.full(27, 2.0), "")
+    assert ' d="M20 0l0 80"' in svg.curve(np.full(27, 2.0), x, "")
+    assert ' d="M0 20h0M20 30h0"' in svg.curve(np.arange(3.0), np.array([2.0, np.nan, 3.0]), "")
+    assert ' d=""' in svg.curve(np.arange(3.0), np.full(3, np.nan), "")
+
+
 def test_many_panels_that_share_their_axes_fit_a_page_and_are_numbered_at_its_edges():
     panel = Panel(
         Axis("x", 0.0, 1.0), Axis("θ_max/α", 0.0, 1.0), [], "Waiau 2016, Te Mara Farm, N28W", width=166.0, height=110.0

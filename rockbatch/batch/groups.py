@@ -60,7 +60,7 @@ def outcomes_of(
     runs: Iterable[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE, stop: Stop | None = None
 ) -> list[Outcome | None]:
     """Simulate a group of runs with the results of ``output``; ``None`` for those that ``stop`` has stopped."""
-    stop = stop or Stop()
+    stop = Stop() if stop is None else stop
     simulated = simulations(runs)
     outcomes = _run_all(simulated, numerics, stop)
     if output.both_laws:
@@ -106,7 +106,7 @@ def _with_other_law(
 
 def _observed(run: Run, outcome: Outcome, numerics: Numerics, output: Output, stop: Stop) -> Outcome | None:
     """Return ``outcome`` with what observers make of the recorded run: energy balance, forces; unless it is very long."""
-    if stop:
+    if stop.is_set:
         return None
     if not outcome.was_run or not (output.ledger or output.forces or output.devices_work):
         return outcome

@@ -89,7 +89,7 @@ def written_side_by_side(
         first = 0
         for n, i in enumerate(members, 1):
             if n == len(members) or (n + 1 - first) * room[members[n]] > ROWS_TOGETHER:
-                if stop:
+                if stop is not None and stop.is_set:
                     return
                 yield from _written_together(runs, outcomes, members[first:n], quiet_s, room[i], wait)
                 first = n

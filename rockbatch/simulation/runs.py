@@ -112,7 +112,9 @@ class Stop:
     def set(self) -> None:
         self.flag[0] = 1
 
-    def __bool__(self) -> bool:
+    @property
+    def is_set(self) -> bool:
+        """Whether the runs are to end."""
         return bool(self.flag[0])
 
 
@@ -229,7 +231,7 @@ def try_all(
             system, with_devices = kernel_of(run.pier, run.base)
             alike.setdefault((system, substeps[i], i if with_devices else None), []).append(i)  # each of them alone
     for (system, steps, alone), members in alike.items():
-        if stop:
+        if stop.is_set:
             break
         lines, ground = _lines([runs[i] for i in members], steps, quiet_s, wait)
         devices = None if alone is None else _devices(runs[alone].pier, runs[alone].base)

@@ -15,14 +15,15 @@ import rockbatch.batch.compiling
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.execution import execute_runs
-from rockbatch.batch.groups import NOTHING_MORE, groups
+from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.results.columns import columns
-from rockbatch.study import load_study
+from rockbatch.simulation import Stop
+from rockbatch.study import Output, load_study
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
@@ -184,6 +185,36 @@ def test_a_group_is_closed_when_its_work_is_a_second(study, monkeypatch):
     loaded, runs = plan_of(study)
     monkeypatch.setattr(rockbatch.batch.groups, "STEPS_OF_A_GROUP", 1.0)
     assert [len(group) for group in groups(runs, loaded.numerics, 1)] == [1] * 24
+
+
+class StopAfter(Stop):
+    """Set when it has been looked at so many times: a thread that stops a group at a certain place of it."""
+
+    def __init__(self, looks):
+        self.looks, self.cell = looks, np.zeros(1, np.uint8)
+
+    @property
+    def flag(self):
+        self.looks -= 1
+        self.cell[0] = self.looks < 0
+        return self.cell
+
+
+def test_a_group_that_is_stopped_anywhere_runs_no_further_and_what_it_returns_is_whole(study):
+    """Once it is set, it is looked at no more than twice for each run."""
+    loaded, runs = plan_of(study)
+    chosen, output = [runs[i] for i in (0, 1, 2, 7)], Output(rocking=True, forces=True)
+    unstopped = StopAfter(10**6)
+    whole = outcomes_of(chosen, loaded.numerics, output, unstopped)
+    assert None not in whole
+    looks = 10**6 - unstopped.looks
+    for number in range(looks):
+        stop = StopAfter(number)
+        found = outcomes_of(chosen, loaded.numerics, output, stop)
+        assert None in found
+        assert all(outcome is None or repr(outcome) == repr(full) for outcome, full in zip(found, whole, strict=True))
+        assert stop.looks >= -2 * len(chosen)
+    assert looks > 10
 
 
 def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study, tmp_path):
