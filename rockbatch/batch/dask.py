@@ -2,7 +2,6 @@
 
 import logging
 import signal
-import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
@@ -75,9 +74,12 @@ class Dask:
         self._opened.enter_context(config.set({"distributed.comm.timeouts.connect": f"{GONE_S} s"}))
         try:
             if self.address is None:
-                with _deaf_to_interrupts():
+                with _without_interrupts():
                     self._client = Client(
-                        n_workers=self.workers, threads_per_worker=1, dashboard_address=None, silence_logs=logging.ERROR
+                        n_workers=self.workers,
+                        threads_per_worker=1,
+                        dashboard_address=None,
+                        silence_logs=logging.CRITICAL,
                     )
             else:
                 self._client = Client(self.address, timeout=PATIENCE_S)
@@ -276,16 +278,16 @@ def _quiet() -> Iterator[None]:
 
 
 @contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """Leave Ctrl-C, which a terminal sends to all processes, to this one: those started meanwhile ignore it."""
-    if threading.current_thread() is not threading.main_thread():
+def _without_interrupts() -> Iterator[None]:
+    """Start processes that a terminal's Ctrl-C does not reach: they inherit that this thread blocks it. Another one takes it."""
+    if not hasattr(signal, "pthread_sigmask"):  # on Windows
         yield
         return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _unchanged(motion: Motion) -> Motion:

@@ -304,7 +304,8 @@ def test_where_no_more_threads_can_be_started_a_sentence_says_so(file, tmp_path,
 def carried_out_by_dask(file, out):
     """Return what is said, and the table."""
     with contextlib.redirect_stderr(io.StringIO()) as said:
-        assert main(["run", str(file), "--out", str(out), "--engine", "dask", "--jobs", "1"]) == 0
+        rc = main(["run", str(file), "--out", str(out), "--engine", "dask", "--jobs", "1"])
+    assert rc == 0, said.getvalue()
     return said.getvalue(), (out / "peaks.csv").read_bytes()
 
 
@@ -373,6 +374,29 @@ def test_workers_without_memory_are_not_waited_for_for_ever(monkeypatch, pause, 
     engine._client = client = FullWorkers(pause)
     with pytest.raises(OSError, match=said):
         engine._finished_of(client, ())
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX")
+def test_ctrl_c_while_a_cluster_starts_ends_this_process_and_not_its_workers(monkeypatch):
+    """A terminal sends it to all of them. It was lost in that second, and the batch went on to its end."""
+    workers = []
+
+    def starts(**_):
+        echo = "print(input(), flush=True)"
+        workers.append(subprocess.Popen([sys.executable, "-c", echo], stdin=-1, stdout=-1, stderr=-1, text=True))
+        for process in (workers[0].pid, os.getpid()):
+            os.kill(process, signal.SIGINT)
+        return SimpleNamespace(wait_for_workers=lambda *_, **__: time.sleep(5.0))
+
+    earlier = signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell ignores in the background
+    monkeypatch.setattr("distributed.Client", starts)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            Dask(workers=1).__enter__()
+        assert workers[0].communicate("goes on", timeout=60.0)[0] == "goes on\n"
+    finally:
+        signal.signal(signal.SIGINT, earlier)
+        workers[0].kill()
 
 
 def test_without_dask_the_engine_says_how_to_get_it(monkeypatch):
