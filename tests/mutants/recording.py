@@ -45,9 +45,8 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     _seconds()[report.nodeid] += report.duration if report.passed else float("inf")
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_call() -> Iterator[None]:
-    """End a test that takes too long."""
+def _within_limit() -> Iterator[None]:
+    """End a test, or its fixtures, if either takes too long."""
 
     def stop(*_: object) -> None:
         raise TimeoutError
@@ -59,6 +58,10 @@ def pytest_runtest_call() -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+pytest_runtest_setup = pytest.hookimpl(wrapper=True)(_within_limit)
+pytest_runtest_call = pytest.hookimpl(wrapper=True)(_within_limit)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
