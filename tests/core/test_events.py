@@ -2,6 +2,7 @@
 
 import functools
 import math
+from itertools import permutations
 
 import numba
 import numpy as np
@@ -17,12 +18,13 @@ from rockbatch.core.block.model import Rocking
 from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import NEAR, hermite, largest_within, lowest_within, turning_point
-from rockbatch.core.search import nearby
+from rockbatch.core.search import EventFunctions, _earliest, nearby
 from rockbatch.core.springs.equations import holding, touching
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.system import rates
 from rockbatch.core.types import (
     LEFT,
+    NO_EVENT,
     RIGHT,
     SURVIVED,
     Ground,
@@ -428,3 +430,13 @@ def test_a_pivot_that_grazes_its_support_leaves_the_other_on_its_branch(side, yi
         branches = {LEFT: (after.left, after.left_yields), RIGHT: (after.right, after.right_yields)}
         assert branches == {side: (0.0, 0.0), -side: (1.0, yields)}
         assert after.held == side
+
+
+@pytest.mark.parametrize("shares", [*permutations((0.2, 0.5, 0.7, math.inf))])
+def test_of_event_functions_that_fall_in_a_step_the_first_to_reach_zero_is_the_event(shares):
+    """Straight lines from 1 that reach zero at these shares of the step."""
+    h, falling = 0.1, np.divide(1.0, shares)
+    early, late = (EventFunctions(1.0 - at * falling, -falling / h) for at in (0.0, 1.0))
+    which, first = _earliest(early, late, h)
+    assert (which, first) == (np.argmin(shares), pytest.approx(0.02, rel=1e-12))
+    assert _earliest(early, early, h)[0] == NO_EVENT
