@@ -84,6 +84,9 @@ class Dask:
             else:
                 self._client = Client(self.address, timeout=PATIENCE_S)
             self._client.wait_for_workers(1, timeout=PATIENCE_S)
+        except KeyboardInterrupt:
+            self.__exit__(None, None, None)
+            raise
         except (OSError, ValueError) as error:  # TimeoutError is an OSError
             self.__exit__(None, None, None)
             raise InputError(
@@ -279,7 +282,10 @@ def _quiet() -> Iterator[None]:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Start processes that a terminal's Ctrl-C does not reach: they inherit that this thread blocks it. Another one takes it."""
+    """Start processes that a terminal's Ctrl-C does not reach: they inherit that this thread blocks it.
+
+    Nothing is lost here: another thread takes it, or it waits until this one no longer blocks it.
+    """
     if not hasattr(signal, "pthread_sigmask"):  # on Windows
         yield
         return

@@ -376,27 +376,43 @@ def test_workers_without_memory_are_not_waited_for_for_ever(monkeypatch, pause, 
         engine._finished_of(client, ())
 
 
-@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX")
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signal can be blocked here")
 def test_ctrl_c_while_a_cluster_starts_ends_this_process_and_not_its_workers(monkeypatch):
     """A terminal sends it to all of them. It was lost in that second, and the batch went on to its end."""
-    workers = []
+    pytest.importorskip("distributed")
+    workers, blocked = [], signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
     def starts(**_):
         echo = "print(input(), flush=True)"
         workers.append(subprocess.Popen([sys.executable, "-c", echo], stdin=-1, stdout=-1, stderr=-1, text=True))
         for process in (workers[0].pid, os.getpid()):
             os.kill(process, signal.SIGINT)
-        return SimpleNamespace(wait_for_workers=lambda *_, **__: time.sleep(5.0))
+        return SimpleNamespace(wait_for_workers=lambda *_, **__: time.sleep(5.0), close=lambda **_: None)
 
     earlier = signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell ignores in the background
     monkeypatch.setattr("distributed.Client", starts)
     try:
         with pytest.raises(KeyboardInterrupt):
             Dask(workers=1).__enter__()
+        assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == blocked
         assert workers[0].communicate("goes on", timeout=60.0)[0] == "goes on\n"
     finally:
         signal.signal(signal.SIGINT, earlier)
         workers[0].kill()
+
+
+def test_ctrl_c_while_workers_are_waited_for_closes_the_cluster(monkeypatch):
+    pytest.importorskip("distributed")
+    closed = []
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    client = SimpleNamespace(wait_for_workers=interrupted, close=lambda timeout: closed.append(timeout))
+    monkeypatch.setattr("distributed.Client", lambda **_: client)
+    with pytest.raises(KeyboardInterrupt):
+        Dask(workers=1).__enter__()
+    assert closed == [rockbatch.batch.dask.GONE_S]
 
 
 def test_without_dask_the_engine_says_how_to_get_it(monkeypatch):

@@ -164,9 +164,8 @@ def test_a_peak_is_final_from_where_energy_and_what_p_delta_returns_carry_the_pi
         middle = 0.5 * (low + high)
         final = peak_is_final(m, now, Load(load, stored), middle, False, NO_DRIFT)
         low, high = (low, middle) if final else (middle, high)
-    assert high == pytest.approx(
-        expected, rel=7e-9 if finite else 1e-11
-    )  # of the sum over parts of the way; of the bisection
+    # Of the sum over parts of the way; of the bisection
+    assert high == pytest.approx(expected, rel=7e-9 if finite else 1e-11)
 
 
 def test_a_period_of_rocking_is_that_of_full_contact():
