@@ -95,7 +95,7 @@ class Row:
 
 
 class Cache:
-    """References on disk: what is known of a case under the present pool and solver."""
+    """References on disk: what is known of a case, of this motion, under the present pool and solver."""
 
     def __init__(self, folder: Path, seed: int) -> None:
         sources = sorted((Path(__file__).parent / "independent").glob("*.py"))
@@ -107,14 +107,15 @@ class Cache:
 
     def get(self, case: Case) -> tuple[Case, Reference, Reference]:
         """The case as it is run (scaled to its share of overturning), its reference and the looser one."""
-        known = self.known.get(case.id)
+        name = f"{case.id} {case.motion.name} {case.motion.npts} {case.motion.pga:.6g}"  # records at hand differ
+        known = self.known.get(name)
         if known is None:
             factor = 1.0 if case.hair is None else case.hair * just_overturning(case)
             run = scaled(case, factor)
             fine, loose = twice(run.pier, run.base, run.motion)
             known = {"factor": factor, "fine": asdict(fine), "loose": asdict(loose)}
             with self.lock:
-                self.known[case.id] = known
+                self.known[name] = known
         return scaled(case, known["factor"]), Reference(**known["fine"]), Reference(**known["loose"])
 
     def save(self) -> None:
