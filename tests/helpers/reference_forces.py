@@ -53,9 +53,11 @@ class WithForces(TiedTwoSprings):
             lever, slope = self.lever(self.mode, y)
             shear = ah + lever * turning + slope * y[OM] ** 2
             swung = (self.deck - self.h) * (math.cos(y[TH]) * turning - math.sin(y[TH]) * y[OM] ** 2)
+        inertial = shear
+        shear += sum((place.way or 1.0) * self.pull(j, y) for j, place in enumerate(self.places) if place.height)
         normal = sum(pressed)
         passes = self._passing(t, shear, normal)
-        found = {"base_shear": abs(shear), "normal_force": normal, "deck_acceleration": abs(shear + swung)}
+        found = {"base_shear": abs(shear), "normal_force": normal, "deck_acceleration": abs(inertial + swung)}
         if not self.finite:  # where places of the base keep theirs
             ties = sum(self.pull(j, y) * s for j, (_, s) in enumerate(self.elements))
             found["base_moment"] = abs(self.b * (pressed[1] - pressed[0]) - ties)

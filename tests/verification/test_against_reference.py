@@ -166,27 +166,6 @@ def test_springs_agree_with_the_reference_in_peak_end_state_and_counts(pier, bas
         assert outcome.base_tilt == pytest.approx(tilt, abs=1e-7 * pier.alpha)
 
 
-WITH_KERNELS_OF_THEIR_OWN = {
-    "finite": YieldingBase(50, 0.1, "finite", "guided", eta=3.0),
-    "finite, any n": YieldingBase(40, 0.3, "finite", eta=1.5, spring="hardening", n=2.5),
-}
-
-
-@pytest.mark.parametrize("base", WITH_KERNELS_OF_THEIR_OWN.values(), ids=WITH_KERNELS_OF_THEIR_OWN)
-def test_springs_whose_kernels_fast_tests_do_not_compile_agree_with_the_reference(base, uncompiled):
-    """Uncompiled, at a quarter of the steps; the balance of energy, whose parts do not follow from each other, closes to 1e-5."""
-    motion = with_vertical(pulse("sine", 0.5, dt=0.02, end=1.3), 12.0)
-    expected = reference(FIG5, base, motion)
-    found = uncompiled(rb.simulate, FIG5, base, motion, substeps=8, quiet_s=0.0, wait=False, ledger=True)
-    end = found.history.iloc[-1]
-    assert found.row.impacts == expected.impacts > 2
-    assert found.row.theta_max_over_alpha == pytest.approx(expected.theta_max / FIG5.alpha, abs=1e-7)
-    assert end["theta"] == pytest.approx(expected.theta, abs=1e-6 * FIG5.alpha)
-    assert end["omega"] == pytest.approx(expected.omega, abs=1e-6 * FIG5.alpha)
-    assert end["v"] == pytest.approx(expected.v, abs=1e-7)
-    assert found.ledger.remainder.abs().max() < 1e-5 * found.ledger.input.abs().max()
-
-
 @pytest.mark.parametrize(
     "base",
     [RigidBase(), pytest.param(YieldingBase(80, 0.05, eta=2.5), marks=pytest.mark.slow)],

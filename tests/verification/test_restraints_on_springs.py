@@ -82,17 +82,6 @@ def _agree(base, restraints, motion):
     assert (last.v, last.omega) == pytest.approx((end.v, end.omega), abs=2e-7)
 
 
-def test_damped_springs_with_devices_in_finite_kinematics_agree_with_the_reference(uncompiled):
-    """Uncompiled, in an eighth of the steps."""
-    vertical = 0.4 * GRAVITY * np.sin(np.arange(41) * 0.44)
-    motion = Motion("both", 0.02, pulse("sine", 0.5, 1.0, dt=0.02, end=0.8).horizontal, vertical)
-    base = tied(FINITE, FRICTION["mixed"])
-    end = TiedTwoSprings(FIG5, base, motion, 0.0).run()
-    found = uncompiled(run_fixed, FIG5, base, motion, 8, 0.0, wait=False)
-    assert found.impacts == end.impacts > 0
-    assert found.theta_max == pytest.approx(end.theta_max, rel=1e-5)
-
-
 SMOOTH = {name: each for name, each in (RESTRAINTS | FRICTION).items() if name != "root"}
 
 
