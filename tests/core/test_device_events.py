@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from core_samples import FIG5, after_event, device_signals, friction_signals
+from core_samples import FIG5, after_event, device_signals, friction_signals, longest_step, values_of
 
 from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.devices.laws import (
@@ -44,6 +44,7 @@ NONE = 1.0, 0.0
         (TIE, YIELDING, CLOSES, (0.2, 0.3, -5.0, 0.01), (0.3, -5.0), NONE, NONE),
         (TIE, YIELDING, OPENS, (0.2, 0.0, 5.0, 0.01), (REST, 5.0), NONE, NONE),
         (TIE, TAUT, OPENS, (-1.0 / 30.0, 0.3, 5.0, 0.0), NONE, (30.0 * LENGTH, 9.0), (4.0, -9.0)),  # just taut
+        (TIE, TAUT, OPENS, (-1.0 / 30.0, 0.01, 5.0, 0.0), NONE, (30.0 * LENGTH, 0.3), (4.0, -0.3)),
         (TIE, TAUT, OPENS, (0.1, -0.3, 5.0, 0.0), NONE, (4.0, -9.0), (30.0 * LENGTH, 9.0)),
         (TIE, SLACK, OPENS, (-1.0 / 30.0, 0.0, 5.0, 0.0), NONE, (30.0 * LENGTH, 0.0), NONE),  # it hangs there
         (TIE._replace(strength=math.inf), TAUT, OPENS, (0.02, 0.3, 5.0, 0.0), NONE, (1.6, 9.0), NONE),
@@ -156,3 +157,35 @@ def test_friction_holds_a_block_until_weight_and_ground_exceed_it(offset, push, 
         assert values == pytest.approx([1.0] * 6 + [strength - abs(holds)], rel=1e-9, abs=1e-9)
         assert slopes == pytest.approx([0.0] * 6 + [-math.copysign(change, holds * change)], rel=1e-3)
         assert goes == (STICKS if factor > 1.0 else math.copysign(1.0, holds))
+
+
+B = FIG5.half_width
+ABOVE = IDLE._replace(height=9.0, way=1.0)
+
+
+@pytest.mark.parametrize(
+    ("of", "right", "left", "aloft"),
+    [
+        (IDLE, OPENS, OPENS, OPENS),
+        (IDLE._replace(offset=0.9 * B), OPENS, OPENS, OPENS),
+        (IDLE._replace(offset=1.1 * B), CLOSES, OPENS, OPENS),
+        (IDLE._replace(offset=-1.1 * B), OPENS, CLOSES, OPENS),
+        (IDLE._replace(offset=B), STICKS, OPENS, OPENS),
+        (ABOVE, OPENS, CLOSES, OPENS),
+        (ABOVE._replace(way=-1.0), CLOSES, OPENS, OPENS),
+    ],
+)
+def test_a_device_lengthens_or_shortens_by_where_it_is_as_the_pier_begins_to_turn(of, right, left, aloft, uncompiled):
+    """Below the base it lengthens but for one beyond the pivot or at it; at the deck towards its own side."""
+    m, stances = block(FIG5, RigidBase()), (RIGHT, LEFT, Stance(0.0, 0.0, 1.0, 1.0))
+    found = uncompiled(values_of, [("devices.pull", "way_of_opening", m, of, stance) for stance in stances])
+    assert tuple(found) == (right, left, aloft)
+
+
+def test_a_hysteretic_damper_is_drawn_out_by_half_its_yield_deflection_in_a_step(uncompiled):
+    """Of a sample's length, at a speed beside which the acceleration adds a hundredth."""
+    speed, dt = 2.0 * B * math.cos(0.5 * THETA) * 20.0, 0.01
+    for stiffness in (50.0, 100.0):
+        steel = STEEL._replace(offset=-B, stiffness=stiffness)
+        longest = uncompiled(longest_step, block(FIG5, RigidBase()), rocking(20.0), steel, dt)
+        assert longest * speed == pytest.approx(0.5 / stiffness, rel=0.02)

@@ -19,7 +19,8 @@ from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.roots import NEAR, hermite, largest_within, lowest_within, turning_point
 from rockbatch.core.search import EventFunctions, _earliest, nearby
-from rockbatch.core.springs.equations import holding, touching
+from rockbatch.core.springs.equations import holding, pivot_acceleration, touching
+from rockbatch.core.springs.events import settle
 from rockbatch.core.springs.model import Contact, State, Supports
 from rockbatch.core.system import rates
 from rockbatch.core.types import (
@@ -440,3 +441,19 @@ def test_of_event_functions_that_fall_in_a_step_the_first_to_reach_zero_is_the_e
     which, first = _earliest(early, late, h)
     assert (which, first) == (np.argmin(shares), pytest.approx(0.02, rel=1e-12))
     assert _earliest(early, early, h)[0] == NO_EVENT
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize("kinematics", ["first-order", "finite"])
+def test_a_pivot_at_its_support_stays_where_contact_presses_it_and_goes_where_freedom_lifts_it(kinematics, side):
+    """The ground falls away at an acceleration by which the pivot in contact rises by 0.5 m/s², or is pressed down by it."""
+    m = springs(FIG5, ElasticBase(50.0, 0.1, kinematics))
+    y = State(0.0, 0.01 * side, 0.0, 0.0, -0.4, -0.4)
+    both = Contact(1.0, 1.0, 0.0, 0.0, 0.0)
+    level = pivot_acceleration(m, y, both, side, Ground(0.0, 0.0, 0.0, 0.0))
+    for rises in (0.5, -0.5):
+        ground = Ground(0.0, 0.0, level - rises, 0.0)
+        assert pivot_acceleration(m, y, both, side, ground) == pytest.approx(rises, rel=1e-9)
+        after = settle(m, y, both, side, ground)
+        assert (after.left if side == LEFT else after.right, after.held) == (float(rises < 0.0), 0.0)
+        assert (after.right if side == LEFT else after.left) == 1.0

@@ -20,7 +20,7 @@ from rockbatch.core.devices.events import (
     settle_friction,
 )
 from rockbatch.core.devices.laws import FRICTION
-from rockbatch.core.devices.pull import START, device_rates, devices_of
+from rockbatch.core.devices.pull import START, device_rates, devices_of, resolved
 from rockbatch.core.springs.lanes import LANE, static_contact, static_state
 from rockbatch.core.system import rates, status_at_sample
 from rockbatch.core.table import put, table
@@ -173,6 +173,15 @@ def after_event(m, now, of, mode, goes, state, what):
     else:
         device_event(m, devices, now, still, 0.01, OF_PIER + what)
     return tuple(map(float, (devices.modes[0], devices.goes[0], devices.x[0], devices.use[0].times)))
+
+
+def longest_step(m, now, of, dt):
+    """Return the longest step [s] of a block with a device that is drawn out, of the samples' interval ``dt`` at most."""
+    devices, still = devices_of([of], (), 0.0), Ground(0.0, 0.0, 0.0, 0.0)
+    devices.goes[0] = 1.0
+    under, *_ = device_rates(m, devices, now, devices.x, still, START)
+    start = Instant(now.y, rates(under, now.y, now.contact, still), now.contact, None, still)
+    return float(resolved(under, devices, start, dt, dt))
 
 
 def friction_signals(m, y, contact, ground, offset, strength):

@@ -437,6 +437,21 @@ def test_rates_power_and_energy_are_those_of_the_mass_points(uncompiled):
         assert found == pytest.approx(wanted, rel=1e-9, abs=1e-11), call
 
 
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_steps_in_flight_resolve_the_mode(damping, uncompiled):
+    """A tenth of a radian of the vibration that the mass points have in the air."""
+    base = rb.RigidBase(shaft="elastic", flexural_damping=damping)
+    m, of, shift = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base), 1e-4
+    bent, straight = (
+        flexible_reference.motion_of(of, 1.0, [0, 1, 2], np.array([0.5, 0.0, u]), np.zeros(3), (0.0, 0.0))[0][2]
+        for u in (shift, 0.0)
+    )
+    y = state_at(m, 1.0, (0.5, 0.0, shift), (0.0, 0.0, 0.0))
+    start = Instant(y, y, Stance(0.0, 0.0, 1.0, 1.0), None, STILL)
+    (longest,) = uncompiled(values_of, [("flexure.events", "longest_step", m, start, 1.0)])
+    assert longest * math.sqrt((straight - bent) / shift) == pytest.approx(0.1, rel=1e-6)
+
+
 def test_devices_pull_a_pier_that_bends_as_their_work_along_its_motion_says(uncompiled):
     """What a force F and a moment M add is J⁻¹ of the points times their work −F δv − M δθ."""
     base, pull = rb.RigidBase(shaft="elastic"), Pull(3.0, -40.0)
