@@ -10,6 +10,7 @@ import pytest
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
+from rockbatch.pier.restraints import Restraint
 
 collect_rarely()
 
@@ -25,27 +26,30 @@ SHARED = [
 """Bases whose kernels fast tests compile (CONTRIBUTING.md)."""
 
 
-SLOW = ({"finite"}, {"n"}, {"damped", "devices"}, {"shaft"})
+SLOW = ({"finite"}, {"shaft"})
 """What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
 
 
-def compiled_traits(base):
-    """Return what distinguishes the kernel of a base from that of springs or a rigid base."""
-    traits = {"devices": bool(base.restraints), "shaft": base.bends}
+def compiled_traits(base, tied):
+    """Return what distinguishes the kernel of a base, to which devices may be ``tied``, from that of springs or a rigid base."""
+    traits = {"devices": tied or bool(base.restraints), "shaft": base.bends}
     if base.on_springs:
         n = base.has_exponent and base.n != 5.0
         traits |= {"finite": base.kinematics == "finite", "n": n, "damped": base.zeta is not None}
     return {name for name, present in traits.items() if present}
 
 
-def marks_of(parameter):
-    """Return the marks of a test that compiles the kernel of a base, or of the case with that name."""
-    if isinstance(parameter, str) and "finite" in parameter:
-        return ["slow"]
-    traits = compiled_traits(parameter) if isinstance(parameter, Base) else set()
-    if traits in ({"devices"}, {"damped"}) or not traits:
-        return []
-    return ["slow"] if traits in SLOW else ["slow", "thorough"]
+def marks_of(parameters):
+    """Return the marks of a test that compiles the kernel of a base with devices, if any, or of the case with that name."""
+    tied = any(
+        isinstance(each, Restraint) for one in parameters for each in (one if isinstance(one, tuple) else (one,))
+    )
+    marks = {"slow"} if any(isinstance(each, str) and "finite" in each for each in parameters) else set()
+    for base in parameters:
+        traits = compiled_traits(base, tied) if isinstance(base, Base) else set()
+        if traits and traits not in ({"devices"}, {"damped"}):
+            marks |= {"slow"} if traits in SLOW else {"slow", "thorough"}
+    return marks
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -53,7 +57,7 @@ def pytest_collection_modifyitems(items):
     """Mark tests of the physics that have a base with a kernel of its own among their parameters, and compile it."""
     for item in items:
         if item.path.parent.name in PHYSICS and hasattr(item, "callspec") and "uncompiled" not in item.fixturenames:
-            for mark in {mark for each in item.callspec.params.values() for mark in marks_of(each)}:
+            for mark in marks_of(item.callspec.params.values()):
                 item.add_marker(mark)
 
 

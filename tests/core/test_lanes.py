@@ -20,10 +20,10 @@ from rockbatch.pier import RigidBase, YieldingBase
 from rockbatch.simulation import Run, Stop, run_all_fixed, springs
 
 
-def crowd(every_kind):
+def crowd(kinds):
     """Three times as many runs as lanes, of many kinds, with records of different length and sampling interval."""
     runs = []
-    for seed in hard_seeds(range(13 * LANES), every_kind)[: 3 * LANES]:
+    for seed in hard_seeds(range(13 * LANES), kinds)[: 3 * LANES]:
         pier, base, motion = hard_case(seed, npts=60 + 17 * (seed % 11))
         if seed % 4 == 0 and isinstance(base, YieldingBase):
             base = replace(base, spring="hardening", n=base.n if base.has_exponent else 5.0)
@@ -32,8 +32,8 @@ def crowd(every_kind):
 
 
 @EVERY_KIND
-def test_what_a_run_comes_to_is_the_same_to_the_bit_alone_and_in_any_company(every_kind):
-    runs, substeps = crowd(every_kind)
+def test_what_a_run_comes_to_is_the_same_to_the_bit_alone_and_in_any_company(kinds):
+    runs, substeps = crowd(kinds)
     together = run_all_fixed(runs, substeps, 1.0, Stop())
     alone = [run_all_fixed([run], [steps], 1.0, Stop())[0] for run, steps in zip(runs, substeps, strict=True)]
     order = np.random.default_rng(1).permutation(len(runs))
@@ -127,7 +127,7 @@ def test_two_reversals_in_one_step_and_sharp_ones_are_left_to_the_search():
 
 def test_a_lane_that_finishes_early_makes_room_for_the_next_run():
     """Short and long runs mixed: all of them are there, each with its own end."""
-    runs, _ = crowd(False)
+    runs, _ = crowd("common")
     shaken = [replace(run, motion=replace(run.motion, horizontal=0.0 * run.motion.horizontal)) for run in runs]
     still = [replace(run, motion=replace(run.motion, vertical=None)) for run in shaken]
     found = run_all_fixed(still, [16] * len(still), 0.5, Stop(), wait=False)

@@ -63,14 +63,15 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 THOROUGH = (pytest.mark.slow, pytest.mark.thorough)
 
 EVERY_KIND = pytest.mark.parametrize(
-    "every_kind", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["common", "every"]
+    "kinds", ["common", pytest.param("usual n", marks=pytest.mark.slow), pytest.param("all", marks=THOROUGH)]
 )
-"""Of hard cases: those that fast tests compile anyway, and all of them."""
+"""Of hard cases: those whose kernels fast tests compile anyway, or slow ones, and all of them."""
 
 
-def hard_seeds(seeds: Iterable[int], every_kind: bool) -> list[int]:
-    """Return those ``seeds`` of hard cases that fast tests compile anyway."""
-    return [seed for seed in seeds if every_kind or is_common(hard_case(seed)[1])]
+def hard_seeds(seeds: Iterable[int], kinds: str) -> list[int]:
+    """Return those ``seeds`` whose hard cases are of these ``kinds``, of EVERY_KIND."""
+    belongs = {"common": is_common, "usual n": has_usual_n, "all": lambda base: True}[kinds]
+    return [seed for seed in seeds if belongs(hard_case(seed)[1])]
 
 
 def has_usual_n(base: Base) -> bool:
