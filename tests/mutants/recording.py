@@ -19,8 +19,8 @@ import pytest
 FAST = "not slow"
 PHYSICS = "tests/core", "tests/simulation", "tests/verification"
 """Tests that errors in the core meet: uncompiled, since all kernels would be compiled anew for each."""
-UNCOMPILED_LIMIT = "4"
-"""Seconds that a test may take uncompiled: those of functions and short runs do, others are not used."""
+UNCOMPILED_LIMIT = "20"
+"""Seconds that a test may take uncompiled while its lines are recorded: others are not used."""
 LIMIT, SECONDS = "MUTANTS_LIMIT", "MUTANTS_SECONDS"
 """Variables of the environment: a test's longest time, and the file for the times of all."""
 CONFIG = """
@@ -38,6 +38,16 @@ _CONTEXT = re.compile(r"(.+?)(?:\|(run|setup|teardown)| \((call|setup|teardown)\
 @functools.cache
 def _seconds() -> Counter[str]:
     return Counter()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of the physics, keep what is short without the compiler: functions of the core, and what asks for a run without it."""
+    if LIMIT in os.environ:
+        items[:] = [
+            item
+            for item in items
+            if item.path.parent.name == "core" or "uncompiled" in getattr(item, "fixturenames", ())
+        ]
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
