@@ -130,6 +130,20 @@ def test_a_block_that_is_let_go_by_no_more_than_rounding_goes():
         assert outcome.status == "ok", f"{seed}: {outcome.reason}"
 
 
+@pytest.mark.parametrize("f", [0.2, 0.3, 0.4])
+def test_friction_brings_to_rest_a_block_that_impacts_do_not_slow(f):
+    """As in the limit of restitutions below 1: of ever lower bounces there were more than a run follows."""
+    motion = pulse("sine", 0.5, 1.0, dt=0.01, end=4.0)
+    limit, found = (
+        rb.simulate(FIG5, base(Damper("friction", f=f), restitution=e), motion, substeps=4) for e in (1.0 - 1e-9, 1.0)
+    )
+    assert found.status == "ok"
+    assert found.theta_max == pytest.approx(limit.theta_max, rel=1e-8)
+    assert "rest" in set(found.events.kind)
+    assert list(found.events.kind) == list(limit.events.kind)
+    assert found.events.t.to_numpy() == pytest.approx(limit.events.t.to_numpy(), abs=1e-6)
+
+
 @pytest.mark.parametrize(("f", "psi"), [(0.499, 0.0), (0.501, 0.0), (0.749, 0.5), (0.751, 0.5)])
 def test_it_recentres_below_the_edge_and_is_held_above(f, psi):
     """2 f < 1 + ψ."""

@@ -247,11 +247,11 @@ def bounces(m, devices, still, omega, ground):
     ``still`` is the state of the block with its base at rest.
 
     Small bounces see a constant acceleration towards rest, friction added while they open and taken off while they close.
-    Infinite if there is no rest.
+    Infinite if there is no rest, as where neither impacts nor friction slow the block.
     """
     here = RIGHT if omega > 0.0 else LEFT
     speed, times, ratio, height = abs(omega), 0.0, 1.0, 0.0
-    if m.restitution == 1.0 or speed == 0.0:
+    if speed == 0.0:
         return math.inf, math.inf
     for side in (here, -here):
         slows = -lifting(m, devices, still, side, ground)
@@ -263,7 +263,7 @@ def bounces(m, devices, still, omega, ground):
         times += speed / slows + back / speeds
         ratio *= m.restitution * back / speed
         speed = m.restitution * back
-    return height, times / (1.0 - ratio)
+    return height, times / (1.0 - ratio) if ratio < 1.0 else math.inf
 
 
 @kernel
