@@ -298,7 +298,7 @@ def test_what_lifts_a_block_off_and_the_bounces_that_are_left():
     assert_units(
         [block_events.lift_rate(rigid(), None, Instant(at_rest, at_rest, ON_RIGHT, None, CALM), 1.0)], [RAD / S**3]
     )
-    assert_units(block_events.bounces(rigid(), None, at_rest, -0.1 * RAD / S, CALM), (RAD, S))
+    assert_units(block_events.bounces(rigid(), None, at_rest, -0.1 * RAD / S, 0.9, CALM), (RAD, S))
 
 
 @KINEMATICS
@@ -382,7 +382,7 @@ def rock(m, shaking):
     rk4.rk4(m, None, start, 0.01 * S)
     system.event_functions(m, None, start)
     still = Rocking(*quantities(Rocking, (0.0,) * 4))
-    height, remaining = block_events.bounces(m, None, still, -0.1 * RAD / S, CALM)
+    height, remaining = block_events.bounces(m, None, still, -0.1 * RAD / S, m.restitution, CALM)
     assert_units([height, remaining], [RAD, S])
     landed, _, _ = block_events._landing(m, Rocking(*quantities(Rocking, ROCKS)), IN_AIR, 1.0)
     assert_units(landed, UNITS[Rocking])

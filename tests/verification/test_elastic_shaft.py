@@ -25,6 +25,7 @@ from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
     LIFT_OFF,
+    REST,
     SAMPLE,
     TAKE_OFF,
     Ground,
@@ -450,6 +451,22 @@ def test_steps_in_flight_resolve_the_mode(damping, uncompiled):
     start = Instant(y, y, Stance(0.0, 0.0, 1.0, 1.0), None, STILL)
     (longest,) = uncompiled(values_of, [("flexure.events", "longest_step", m, start, 1.0)])
     assert longest * math.sqrt((straight - bent) / shift) == pytest.approx(0.1, rel=1e-6)
+
+
+@pytest.mark.parametrize("restitution", [None, 0.6, 0.99])
+def test_ever_lower_bounces_end_after_what_their_series_sums_up_to(restitution, uncompiled):
+    """Of a shaft that is straight, 2 θ̇⁺/(θ̈ (1 − q)), where each blow leaves q of the velocity: below 1 with e_H, too."""
+    base = rb.RigidBase(restitution=restitution, shaft="elastic", flexural_impact="rate")
+    m, of, omega = flexible_block(pier_of(*TOWER), base), points_of(*TOWER, base), -1e-9
+    behind, _ = flexible_reference._blow(of, 1.0, -1.0, np.zeros(3), np.array([0.0, omega, 0.0]), of.restitution)
+    back = flexible_reference.motion_of(of, -1.0, [1, 2], np.zeros(3), np.zeros(3), (0.0, 0.0))[0][1]
+    y = Flexing(0.0, 0.0, m.half_width * omega, omega, 0.0, 0.0)
+    ((state, contact, kind, remaining),) = uncompiled(
+        values_of, [("flexure.events", "_impact", m, None, y, 1.0, STILL, DT)]
+    )
+    assert (kind, contact.left, contact.right) == (REST, 1.0, 1.0)
+    assert state == Flexing(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert remaining == pytest.approx(-2.0 * behind / back / (1.0 - behind / omega), rel=1e-9)
 
 
 def test_devices_pull_a_pier_that_bends_as_their_work_along_its_motion_says(uncompiled):

@@ -56,8 +56,9 @@ def shaken(end: float) -> Motion:
 class Observed(WithForces):
     """``most``: greatest force, stroke and speed of each device, and the work that it has taken."""
 
-    def __init__(self, *arguments):
-        super().__init__(*arguments)
+    def __init__(self, base, motion):
+        super().__init__(FIG5, base, motion, 0.0)
+        self.base = base
         self.most, self.work, self.last = np.zeros((len(self.elements), 3)), np.zeros(len(self.elements)), None
 
     def _look(self, t, y):
@@ -125,8 +126,7 @@ def energies(solver, run):
 def test_a_row_is_that_of_the_reference(name, uncompiled):
     """Peaks and the end to the error of four steps a sample, forces and energies to a few in ten thousand."""
     base, motion = (FREE | TIED)[name], shaken(0.9 if name in FREE else 0.6)
-    solver = Observed(FIG5, base, motion, 0.0)
-    solver.base = base
+    solver = Observed(base, motion)
     run = solver.run()
     expected = peaks(solver, run) | (energies(solver, run) if name in FREE else {})
     response = uncompiled(

@@ -232,7 +232,7 @@ def lift_off(m, devices, y, side, ground):
 def _impact(m, devices, y, ground, dt):
     """Return state, stance, kind and the time [s] left to rest, as the block passes through θ = 0 (THEORY.md, eq. 16)."""
     omega = m.restitution * y.omega
-    height, remaining = bounces(m, devices, Rocking(0.0, 0.0, 0.0, 0.0), omega, ground)
+    height, remaining = bounces(m, devices, Rocking(0.0, 0.0, 0.0, 0.0), omega, m.restitution, ground)
     if omega == 0.0 or (height < NEGLIGIBLE * m.alpha and remaining < dt):
         return Rocking(0.0, 0.0, 0.0, 0.0), RESTING, REST, (remaining if omega != 0.0 else 0.0)
     side = RIGHT if omega > 0.0 else LEFT
@@ -241,10 +241,10 @@ def _impact(m, devices, y, ground, dt):
 
 
 @kernel
-def bounces(m, devices, still, omega, ground):
+def bounces(m, devices, still, omega, share, ground):
     """Return the height [rad] of the next bounce, and the time [s] of all that are left (Zeno), if the ground allows rest.
 
-    ``still`` is the state of the block with its base at rest.
+    ``still`` is the state of the block with its base at rest; each impact leaves a ``share`` of the angular velocity.
 
     Small bounces see a constant acceleration towards rest, friction added while they open and taken off while they close.
     Infinite if there is no rest, as where neither impacts nor friction slow the block.
@@ -261,8 +261,8 @@ def bounces(m, devices, still, omega, ground):
         height = max(height, 0.5 * speed * speed / slows)
         back = speed * math.sqrt(speeds / slows)
         times += speed / slows + back / speeds
-        ratio *= m.restitution * back / speed
-        speed = m.restitution * back
+        ratio *= share * back / speed
+        speed = share * back
     return height, times / (1.0 - ratio) if ratio < 1.0 else math.inf
 
 

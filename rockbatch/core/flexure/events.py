@@ -120,7 +120,8 @@ def _impact(m, devices, y, side, ground, dt):
         return _flat(m, y), RESTING, IMPACT_BOTH, 0.0
     landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
     if m.momentum == 0.0:
-        height, remaining = bounces(m, devices, Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate), omega, ground)
+        still = Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate)
+        height, remaining = bounces(m, devices, still, omega, omega / y.omega, ground)
         if height < NEGLIGIBLE * m.alpha and remaining < dt:
             return _flat(m, landed), RESTING, REST, remaining
     stance = on_side(-side)
