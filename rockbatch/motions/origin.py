@@ -16,7 +16,9 @@ _YEAR = re.compile(r"(?<!\d)(?:19|20)\d\d(?!\d)")
 _SHORT_YEAR = re.compile(r"(?<!\d)\d{1,2}/\d{1,2}/(\d\d)(?!\d)")
 _STAMP = re.compile(r"((?:19|20)\d\d)(0[1-9]|1[0-2])([0-3]\d)[ _T-]?(?:([0-2]\d)([0-5]\d)(?:\d\d)?)?")
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
-_DAY = re.compile(rf"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)[a-z]*,? +({'|'.join(_MONTHS)}) +(\d{{1,2}}), *(\d{{4}})")
+_DAY = re.compile(
+    rf"(?:Mon|Tue|Wed|Thu|Fri|Sat|Sun)[a-z]*,? +({'|'.join(_MONTHS)}) +(\d{{1,2}}), *(\d{{4}})", re.IGNORECASE
+)
 _DATED = re.compile(r"\d{1,2}/\d{1,2}/(?:\d{4}|\d{2})(?!\d)(?: +\d{4}\b)?")
 _DISTANCE = re.compile(
     r"^\d+(?:\.\d+)? ?km (?:[NSEW]{1,3}|(?:(?:north|south|east|west)-?)+) (?:of|from) ", re.IGNORECASE
@@ -98,7 +100,7 @@ def _event(text: str, date: str) -> str:
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     if day := _DAY.fullmatch(name):
-        return f"{day[3]}-{_MONTHS.index(day[1]) + 1:02d}-{int(day[2]):02d}"
+        return f"{day[3]}-{_MONTHS.index(day[1].capitalize()) + 1:02d}-{int(day[2]):02d}"
     name = _DATED.sub("", name).strip(" ,-") or name
     name = _in_words(_DISTANCE.sub("", _STATE.sub("", name)))
     if stamp := _STAMP.fullmatch(name):
