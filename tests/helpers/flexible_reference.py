@@ -116,6 +116,14 @@ def _blow(of, key, corner, q, rates, restitution):
     return np.linalg.solve(matrix, momentum)
 
 
+def kept_as_both_stop(of, key, q, rates):
+    """Return what u̇ gains of θ̇ as both corners stop a pier that turned about its ``key``, if to carry u̇ over creates energy."""
+    _, _, _, across, up = _places(of, key, q)
+    creates = of.mass @ (of.shape**2 * rates[2] ** 2 - (rates @ across) ** 2 - (rates @ up) ** 2) > 0.0
+    keeps = of.keeps_momentum or creates
+    return (of.mass * of.shape) @ of.z / (of.mass @ of.shape**2) if keeps else 0.0
+
+
 def run(of, ground, dt, theta=0.0, until=None, hop=HOP):
     """Return times, θ and u of the run under ``ground``, rows of horizontal and vertical acceleration each ``dt``."""
     steps = len(ground) - 1 if until is None else round(until / dt)
@@ -195,14 +203,12 @@ def run(of, ground, dt, theta=0.0, until=None, hop=HOP):
                 omega, u_rate = _blow(of, key, landing, state[:3], state[3:], of.restitution if down == "one" else 1.0)
                 if down == "one":
                     state[1] = 0.0
-                height = state[1]
+                height, turned_about = state[1], key
                 key, down = landing, "one"
                 state = np.array([0.0, height, state[2], 0.0, omega, u_rate])
                 if height == 0.0 and landing * omega <= STILL:
-                    kept = (
-                        np.sum(of.mass * of.shape * of.z) / np.sum(of.mass * of.shape**2) if of.keeps_momentum else 0.0
-                    )
                     before = found.y[:, -1]
+                    kept = kept_as_both_stop(of, turned_about, before[:3], before[3:])
                     state = np.array([0.0, 0.0, before[2], 0.0, 0.0, before[5] + kept * before[4]])
                     key, down = 0.0, "both"
         out.append((end, *state[:3]))

@@ -568,7 +568,8 @@ def test_states_behind_events_are_those_of_the_mass_points(impact, uncompiled):
             if -key * behind[0] > 0.0:
                 event(y, before, -key, landed(-key, q, behind), stance(-key, -key), impacts[-key], 1.0, 0.0)
             else:
-                flat = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + gamma * y.omega)
+                kept = flexible_reference.kept_as_both_stop(of, key, np.array(q), np.array(rates))
+                flat = Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + kept * y.omega)
                 event(y, before, -key, flat, BOTH, IMPACT_BOTH, 1.0, 0.0)
             resting = Flexing(0.0, 0.0, 0.0, 0.0, 0.01 * y.u, 0.01 * y.u_rate)
             event(resting, BOTH, -key, resting, stance(key, key), LIFT_OFF, 0.0, 1.0)

@@ -102,9 +102,9 @@ def _after_blow(m, y, key, rise, pivot, restitution):
 
 
 @kernel
-def _flat(m, y):
+def _flat(m, y, by_momentum):
     """Return the state as both pivots stop at once: nothing but the mode moves on, with its momentum or its rate."""
-    kept = m.coupling / m.second * y.omega if m.momentum != 0.0 else 0.0
+    kept = m.coupling / m.second * y.omega if by_momentum else 0.0
     return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + kept)
 
 
@@ -116,14 +116,16 @@ def _impact(m, devices, y, side, ground, dt):
     """
     y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
     omega, u_rate = _after_blow(m, y, side, 0.0, -side, m.restitution)
+    turns = 0.5 * masses_about(m, y.u, side).turning * y.omega + m.coupling * y.u_rate
+    flat = _flat(m, y, m.momentum != 0.0 or turns * y.omega < 0.0)  # to carry the rate over would create energy
     if -side * omega <= 0.0:
-        return _flat(m, y), RESTING, IMPACT_BOTH, 0.0
+        return flat, RESTING, IMPACT_BOTH, 0.0
     landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
     if m.momentum == 0.0:
         still = Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate)
         height, remaining = bounces(m, devices, still, omega, omega / y.omega, ground)
         if height < NEGLIGIBLE * m.alpha and remaining < dt:
-            return _flat(m, landed), RESTING, REST, remaining
+            return flat, RESTING, REST, remaining
     stance = on_side(-side)
     return constrained(m, landed, stance), stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT, 0.0
 
@@ -134,7 +136,7 @@ def _landing(m, y, contact, pivot):
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     other, other_velocity = (right, right_velocity) if pivot == LEFT else (left, left_velocity)
     if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
-        return _flat(m, y), RESTING, IMPACT_BOTH
+        return _flat(m, y, m.momentum != 0.0), RESTING, IMPACT_BOTH
     key = key_of(m, contact)
     omega, u_rate = _after_blow(m, y, key, y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega, pivot, 1.0)
     stance = on_side(pivot)
