@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from motion_files import at2_text, wiggle
+from motion_files import at2_text, wiggle, write_at2
 
 from rockbatch.common.errors import InputError
+from rockbatch.motions import read_motions
 from rockbatch.motions.formats.at2 import read_at2
 
 VALUES = wiggle(12)
@@ -141,3 +142,22 @@ def test_what_is_written_is_read_back(values, dt):
     trace = read(at2_text(values, dt=dt))
     assert trace.stats.npts == len(values)
     np.testing.assert_allclose(trace.data, values, rtol=1e-6, atol=0)  # E15.7 has seven digits
+
+
+@pytest.mark.parametrize(
+    ("title", "name", "direction"),
+    [
+        (
+            "Made-up, 1/17/1994, Test Station, 228",
+            "x_090.AT2",
+            "228",
+        ),  # what the header says goes before the file's name
+        ("Made-up, 1/17/1994, Test Station", "x_090.AT2", "090"),
+        ("N", "x_090.AT2", "090"),  # a title of one word is no direction
+        ("Made-up, N", "x_090.AT2", "N"),
+    ],
+)
+def test_the_direction_is_that_of_the_header_else_that_of_the_name(tmp_path, title, name, direction):
+    write_at2(tmp_path, name, wiggle(), title=title)
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.origin.direction == direction or motion.name.endswith(direction)

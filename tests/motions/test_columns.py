@@ -1,6 +1,7 @@
 """Text columns: the unit is declared or the file is not used; time is even or the file is not used."""
 
 import contextlib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,10 +9,10 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
-from rockbatch.motions.formats.time_steps import on_even_steps
+from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 
 T = np.arange(60) * 0.005
 NS, EW, UD = (wiggle(60, seed, 100.0) for seed in (1, 2, 3))
@@ -408,3 +409,34 @@ def test_columns_under_another_suffix_are_asked_to_be_called_text(tmp_path, suff
 def test_what_is_no_table_is_not_asked_to_be_called_text(tmp_path):
     (tmp_path / "x_000.smc").write_text("1 2 3\nnot a table\n4 5\n" * 40)
     assert reason(tmp_path).endswith("its header is another one")
+
+
+@pytest.mark.parametrize(("stated", "told"), [("EW", False), ("090", False), ("NS", True), ("UD", True)])
+def test_columns_that_are_stated_otherwise_than_a_header_has_them_are_those_of_other_files(tmp_path, stated, told):
+    write(tmp_path, "# time(s) EW(cm/s2)", T, EW)
+    motion = one(tmp_path, columns=("time", stated))
+    assert motion.horizontal == pytest.approx(EW / 100, rel=1e-6, abs=1e-12)
+    assert any("those of other files" in note for note in motion.notes) == told
+
+
+def test_decimal_commas_are_read_between_tabs_and_commas_between_columns_too(tmp_path):
+    rows = [f"{t:.3f}\t{value:.4f}" for t, value in zip(T, EW, strict=True)]
+    (tmp_path / "REC.txt").write_text("time(s)\tEW(cm/s2)\n" + "\n".join(rows).replace(".", ",") + "\n")
+    assert one(tmp_path).horizontal == pytest.approx(EW / 100, abs=6e-7)
+    (tmp_path / "REC.txt").write_text("time(s),\tEW(cm/s2)\n" + "\n".join(rows).replace("\t", ",\t") + "\n")
+    assert one(tmp_path).horizontal == pytest.approx(EW / 100, abs=6e-7)
+
+
+@pytest.mark.parametrize(("words", "kind"), [(3, InputError), (300, NoRecordError)])
+def test_a_text_with_some_numbers_in_it_is_no_record_and_a_table_that_is_damaged_is_one(words, kind):
+    rows = [f"{t:.3f} {value:.4f}" for t, value in zip(T, EW, strict=True)]
+    text = "\n".join([*rows[:30], *["more words, and 3 of them"] * words, *rows[30:], ""])
+    with pytest.raises(InputError) as refused:
+        read_record(RecordFile(Path("x.txt"), "x.txt", text.encode(), ReadOptions(unit="g")))
+    assert refused.type is kind
+
+
+def test_times_that_fall_do_not_grow_evenly():
+    assert grows_evenly(T)
+    assert not grows_evenly(T[::-1])
+    assert not grows_evenly(0.0 * T)

@@ -13,7 +13,7 @@ from waveform_files import COUNTS, START, channel_xml, station_xml, trace, write
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import ReadOptions, read_motions
-from rockbatch.motions.formats import FORMATS, with_obspy
+from rockbatch.motions.formats import FORMATS, RecordFile, read_record, with_obspy
 from rockbatch.motions.manifest_draft import write_manifest
 
 
@@ -368,3 +368,27 @@ def test_a_pickle_is_never_opened_as_one_whatever_its_suffix(tmp_path):
     assert not sprung.exists()
     pickle.loads(payload)
     assert sprung.exists()  # the trap was set
+
+
+def test_a_sac_file_without_a_station_has_none_and_its_event_ends_where_the_next_text_begins(tmp_path):
+    sent = trace("HNE", wiggle(300).astype(np.float32))
+    sent.stats.sac = {"kevnm": "SIXTEEN LETTERS.", "khole": "10"}
+    sent.write(str(tmp_path / "e.sac"), format="SAC")
+    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g")).motions
+    assert motion.origin.event.startswith("Sixteen Letters")
+    assert "10" not in motion.origin.event.removesuffix("1970")
+    sent.stats.station = sent.stats.network = ""
+    sent.write(str(tmp_path / "e.sac"), format="SAC")
+    (reading,) = read_record(
+        RecordFile(tmp_path / "e.sac", "e.sac", (tmp_path / "e.sac").read_bytes(), ReadOptions(unit="g"))
+    )
+    assert reading.station == ""
+
+
+def test_a_blockette_beside_that_of_the_record_length_has_none(tmp_path):
+    """Microseconds of the start are in a blockette of their own, whose seventh byte is no length."""
+    sent = trace("HNE", (1e5 * wiggle(300)).astype(np.int32))
+    sent.stats.starttime += 0.000123
+    sent.write(str(tmp_path / "e.mseed"), format="MSEED")
+    (motion,) = read_motions(tmp_path, options=ReadOptions(sensitivity=1e4)).motions
+    assert motion.npts == 300
