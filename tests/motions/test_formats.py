@@ -370,19 +370,19 @@ def test_a_pickle_is_never_opened_as_one_whatever_its_suffix(tmp_path):
     assert sprung.exists()  # the trap was set
 
 
-def test_a_sac_file_without_a_station_has_none_and_its_event_ends_where_the_next_text_begins(tmp_path):
-    sent = trace("HNE", wiggle(300).astype(np.float32))
-    sent.stats.sac = {"kevnm": "SIXTEEN LETTERS.", "khole": "10"}
-    sent.write(str(tmp_path / "e.sac"), format="SAC")
-    (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g")).motions
-    assert motion.origin.event.startswith("Sixteen Letters")
-    assert "10" not in motion.origin.event.removesuffix("1970")
-    sent.stats.station = sent.stats.network = ""
-    sent.write(str(tmp_path / "e.sac"), format="SAC")
-    (reading,) = read_record(
-        RecordFile(tmp_path / "e.sac", "e.sac", (tmp_path / "e.sac").read_bytes(), ReadOptions(unit="g"))
-    )
-    assert reading.station == ""
+def test_texts_of_a_sac_header_end_where_the_next_begins_and_without_a_station_there_is_none(tmp_path):
+    path, sent = tmp_path / "e.sac", trace("HNE", wiggle(300).astype(np.float32))
+
+    def read():
+        sent.write(str(path), format="SAC")
+        return read_record(RecordFile(path, "e.sac", path.read_bytes(), ReadOptions(unit="g")))[0]
+
+    sent.stats.sac, sent.stats.location = {"kevnm": "SIXTEEN LETTERS."}, "10"
+    found = read()
+    assert found.origin.event == "Sixteen Letters. 2019"
+    assert (found.sensor.network, found.sensor.location, found.station) == ("CI", "10", "CI.LRL.10.HN")
+    sent.stats.station = ""
+    assert read().station == ""
 
 
 def test_a_blockette_beside_that_of_the_record_length_has_none(tmp_path):
