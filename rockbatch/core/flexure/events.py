@@ -91,10 +91,7 @@ def _after_blow(m, y, key, rise, pivot, restitution):
     turning = m.coupling * y.u_rate + across * y.omega - rise * (m.height * sine - about.offset * cosine)
     if m.momentum == 0.0:
         omega = restitution * (turning - m.coupling * y.u_rate) / about.turning
-        before = masses_about(m, y.u, key)
-        was = 0.5 * before.turning * y.omega * y.omega + m.coupling * y.u_rate * y.omega + 0.5 * rise * rise
-        was += rise * ((before.offset * cosine - m.height * sine) * y.omega - m.first * sine * y.u_rate)
-        if 0.5 * about.turning * omega * omega + m.coupling * y.u_rate * omega <= was:
+        if 0.5 * about.turning * omega * omega + m.coupling * y.u_rate * omega <= _besides_mode(m, y, key, rise):
             return omega, y.u_rate
     determinant = m.second * about.turning - m.coupling * m.coupling
     omega = (m.second * turning - m.coupling * bending) / determinant
@@ -102,9 +99,22 @@ def _after_blow(m, y, key, rise, pivot, restitution):
 
 
 @kernel
-def _flat(m, y, by_momentum):
-    """Return the state as both pivots stop at once: nothing but the mode moves on, with its momentum or its rate."""
-    kept = m.coupling / m.second * y.omega if by_momentum else 0.0
+def _besides_mode(m, y, key, rise):
+    """Return the kinetic energy over the mass, less that of the mode alone; the base turns about its ``key``, which rises."""
+    sine, cosine = sine_and_cosine(y.theta)
+    about = masses_about(m, y.u, key)
+    energy = 0.5 * about.turning * y.omega * y.omega + m.coupling * y.u_rate * y.omega + 0.5 * rise * rise
+    return energy + rise * ((about.offset * cosine - m.height * sine) * y.omega - m.first * sine * y.u_rate)
+
+
+@kernel
+def _flat(m, y, key, rise):
+    """Return the state as both pivots stop at once: only the mode moves on.
+
+    It does so with its momentum, or with its rate where that creates no energy.
+    """
+    carries = m.momentum == 0.0 and _besides_mode(m, y, key, rise) >= 0.0
+    kept = 0.0 if carries else m.coupling / m.second * y.omega
     return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + kept)
 
 
@@ -116,16 +126,14 @@ def _impact(m, devices, y, side, ground, dt):
     """
     y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
     omega, u_rate = _after_blow(m, y, side, 0.0, -side, m.restitution)
-    turns = 0.5 * masses_about(m, y.u, side).turning * y.omega + m.coupling * y.u_rate
-    flat = _flat(m, y, m.momentum != 0.0 or turns * y.omega < 0.0)  # to carry the rate over would create energy
     if -side * omega <= 0.0:
-        return flat, RESTING, IMPACT_BOTH, 0.0
+        return _flat(m, y, side, 0.0), RESTING, IMPACT_BOTH, 0.0
     landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
     if m.momentum == 0.0:
         still = Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate)
         height, remaining = bounces(m, devices, still, omega, omega / y.omega, ground)
         if height < NEGLIGIBLE * m.alpha and remaining < dt:
-            return flat, RESTING, REST, remaining
+            return _flat(m, y, side, 0.0), RESTING, REST, remaining
     stance = on_side(-side)
     return constrained(m, landed, stance), stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT, 0.0
 
@@ -135,10 +143,11 @@ def _landing(m, y, contact, pivot):
     """Return state, stance and kind as ``pivot`` lands from flight; the other may land at the same instant."""
     left, right, left_velocity, right_velocity = clearances(m, y, contact.top)
     other, other_velocity = (right, right_velocity) if pivot == LEFT else (left, left_velocity)
-    if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
-        return _flat(m, y, m.momentum != 0.0), RESTING, IMPACT_BOTH
     key = key_of(m, contact)
-    omega, u_rate = _after_blow(m, y, key, y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega, pivot, 1.0)
+    rise = y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega
+    if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
+        return _flat(m, y, key, rise), RESTING, IMPACT_BOTH
+    omega, u_rate = _after_blow(m, y, key, rise, pivot, 1.0)
     stance = on_side(pivot)
     landed = constrained(m, Flexing(y.v, y.theta, 0.0, omega, y.u, u_rate), stance)
     return landed, stance, IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT
