@@ -48,17 +48,19 @@ def marks_of(parameters):
     for base in parameters:
         traits = compiled_traits(base, tied) if isinstance(base, Base) else set()
         if traits and traits not in ({"devices"}, {"damped"}):
-            marks |= {"slow"} if traits in SLOW else {"slow", "thorough"}
+            marks.add("slow" if traits in SLOW else "thorough")
     return marks
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark tests of the physics that have a base with a kernel of its own among their parameters, and compile it."""
+    """Mark tests of the physics that have a base with a kernel of its own among their parameters; what is thorough is slow."""
     for item in items:
         if item.path.parent.name in PHYSICS and hasattr(item, "callspec") and "uncompiled" not in item.fixturenames:
             for mark in marks_of(item.callspec.params.values()):
                 item.add_marker(mark)
+        if item.get_closest_marker("thorough"):
+            item.add_marker("slow")
 
 
 @pytest.hookimpl(tryfirst=True)

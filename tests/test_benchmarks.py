@@ -145,7 +145,7 @@ def test_the_small_pier_of_the_mixed_runs_overturns_early_and_the_tower_does_not
     assert set(module.one_group(module.many(4, motion))) == {"ok"}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # compiles its reference
 def test_a_survey_of_the_rigid_base_has_no_wrong_outcome(benchmark):
     survey = benchmark("rigid_survey")
     rows = list(survey.survey(survey.cases(100, seed=1)))

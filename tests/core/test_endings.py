@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, TOWER, hard_case, pulse, steady, values_of, waiting_after
+from core_samples import FIG5, TOWER, hard_case, pulse, steady, values_of, waiting_after
 from motion_files import RECORDS, needs_records
 
 import rockbatch as rb
@@ -261,8 +261,8 @@ def test_bouc_wen_springs_near_their_yield_force_need_more_stiffness(n, beta, st
     [
         ("bouc-wen", 5.0, 1.2),
         ("hardening", 5.0, 1.2),
-        pytest.param("bouc-wen", 1.0, 1.05, marks=THOROUGH),  # compiled by themselves
-        pytest.param("bouc-wen", 2.0, 1.1, marks=THOROUGH),
+        pytest.param("bouc-wen", 1.0, 1.05, marks=pytest.mark.thorough),  # compiled by themselves
+        pytest.param("bouc-wen", 2.0, 1.1, marks=pytest.mark.thorough),
     ],
 )
 def test_the_limit_is_where_a_small_push_begins_to_grow(spring, n, eta):

@@ -7,7 +7,6 @@ import re
 import numba
 import numpy as np
 import pytest
-from core_samples import THOROUGH
 from scipy.interpolate import CubicHermiteSpline
 
 from rockbatch.core.block.lanes import LANE
@@ -122,7 +121,7 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
     [
         *PIERS.values(),
         *(
-            pytest.param(pier, marks=THOROUGH if name == "finite-damped" else pytest.mark.slow)
+            pytest.param(pier, marks=pytest.mark.thorough if name == "finite-damped" else pytest.mark.slow)
             for name, pier in SLOW_PIERS.items()
         ),
     ],

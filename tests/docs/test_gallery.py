@@ -24,10 +24,7 @@ LONG = "fragility", "overturning_map", "peaks", "self_similar", "spectrum"  # `m
 
 @pytest.mark.parametrize(
     "path",
-    [
-        pytest.param(path, id=path.stem, marks=[pytest.mark.slow, pytest.mark.thorough] * (path.stem in LONG))
-        for path in SCRIPTS
-    ],
+    [pytest.param(path, id=path.stem, marks=[pytest.mark.thorough] * (path.stem in LONG)) for path in SCRIPTS],
 )
 def test_each_script_draws_a_picture(path):
     figure = drawn(path)

@@ -60,10 +60,9 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
-THOROUGH = (pytest.mark.slow, pytest.mark.thorough)
-
 EVERY_KIND = pytest.mark.parametrize(
-    "kinds", ["common", pytest.param("usual n", marks=pytest.mark.slow), pytest.param("all", marks=THOROUGH)]
+    "kinds",
+    ["common", pytest.param("usual n", marks=pytest.mark.slow), pytest.param("all", marks=pytest.mark.thorough)],
 )
 """Of hard cases: those whose kernels fast tests compile anyway, or slow ones, and all of them."""
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from core_samples import FIG5, THOROUGH
+from core_samples import FIG5
 from restrained_reference import TiedTwoSprings
 from stop_reference import StoppedBlock
 from stopped_piers import SHAKEN, stopped
@@ -14,7 +14,7 @@ from rockbatch.simulation import Run, run_to_tolerance, written_run
 
 SEEDS = [
     pytest.param(range(2), id="few", marks=pytest.mark.slow),
-    pytest.param(range(2, 34), id="most", marks=THOROUGH),
+    pytest.param(range(2, 34), id="most", marks=pytest.mark.thorough),
 ]
 
 

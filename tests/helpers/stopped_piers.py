@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core_samples import THOROUGH, pulse
+from core_samples import pulse
 
 from rockbatch.core.block import lanes
 from rockbatch.core.devices.pull import devices_of
@@ -36,7 +36,7 @@ def crossed(bases, devices, on_all, *, wholly=False, once=""):
         for name, each in devices.items():
             common = base.id == "bouc-wen" or (base.id == "rigid" and name != once)
             fast = common and (base.id == "rigid" or wholly or name == on_all)
-            marks = () if fast else (pytest.mark.slow,) if common or name == on_all else THOROUGH
+            marks = () if fast else (pytest.mark.slow,) if common or name == on_all else pytest.mark.thorough
             parameters.append(pytest.param(*base.values, each, id=f"{base.id}-{name}", marks=marks))
     return parameters
 

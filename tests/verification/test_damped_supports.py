@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, TOWER, broadband, hard_case, is_common, pulse
+from core_samples import FIG5, TOWER, broadband, hard_case, is_common, pulse
 from reference_solver import reference
 
 import rockbatch as rb
@@ -193,7 +193,7 @@ def test_random_hard_cases_on_damped_supports_agree_with_the_reference(seeds):
     assert compared >= len(seeds) * 2 // 5
 
 
-@pytest.mark.parametrize("kinematics", ["first-order", pytest.param("finite", marks=THOROUGH)])
+@pytest.mark.parametrize("kinematics", ["first-order", pytest.param("finite", marks=pytest.mark.thorough)])
 def test_the_forces_of_damped_supports_are_what_the_pier_feels(kinematics):
     """N/M = g + v̈_g + v̈ by differences of v̇ between events; a free pivot has no force, and its gap closes at 0."""
     base = ElasticBase(40.0, kinematics=kinematics, zeta=0.1)

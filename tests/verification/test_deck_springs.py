@@ -159,7 +159,6 @@ def test_the_base_bears_what_the_deck_springs_do_not(base):
     assert compared > 20
 
 
-@pytest.mark.slow
 @pytest.mark.thorough
 def test_the_residual_rotation_is_where_the_pier_comes_to_rest_against_the_spring():
     """Of a record that goes on until the pier rests: read before, as after 2 s, it is known to its error only."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, broadband, pulse
+from core_samples import FIG5, broadband, pulse
 from restrained_reference import TiedTwoSprings
 
 from rockbatch.common.units import GRAVITY
@@ -111,7 +111,7 @@ def _case(seed: int, base: Base) -> tuple[Pier, Base, Motion]:
 
 @pytest.mark.parametrize("base", [RigidBase(), PADS], ids=["rigid", "springs"])
 @pytest.mark.parametrize(
-    "seeds", [range(5), pytest.param(range(5, 60), marks=THOROUGH)], ids=["few", "many"]
+    "seeds", [range(5), pytest.param(range(5, 60), marks=pytest.mark.thorough)], ids=["few", "many"]
 )  # fmt: skip
 def test_no_demand_of_random_devices_is_further_off_than_the_error_says(seeds, base):
     held = 0

@@ -220,7 +220,6 @@ def test_keeping_the_momentum_tends_to_a_restitution_in_closed_form(heavy_top):
     assert far[0] / far[1] == pytest.approx(4.0, rel=0.1)
 
 
-@pytest.mark.slow
 @pytest.mark.thorough
 @pytest.mark.parametrize("impact", ["momentum", "rate"])
 def test_the_energy_balance_closes_by_order_four(impact):

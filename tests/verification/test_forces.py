@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 import pytest
-from core_samples import THOROUGH
 from reference_forces import greatest_forces
 
 import rockbatch as rb
@@ -50,7 +49,7 @@ BASES = {
         50, 0.3, flight="guided", kinematics="finite", restraints=(rb.Damper("viscous", nu=0.2), rb.Tendon(psi=0.1, lam=0.3)),
     ),
 }  # fmt: skip
-FINITE_TIED = pytest.param("elastic, finite, tied", marks=THOROUGH)
+FINITE_TIED = pytest.param("elastic, finite, tied", marks=pytest.mark.thorough)
 EVERY_BASE = pytest.mark.parametrize(
     "name", [FINITE_TIED if name == "elastic, finite, tied" else name for name in BASES]
 )
@@ -506,7 +505,7 @@ HARD = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=THOROUGH) if name == "little damping" else name for name in HARD]
+    "name", [pytest.param(name, marks=pytest.mark.thorough) if name == "little damping" else name for name in HARD]
 )
 def test_peaks_are_those_of_another_solver_where_a_law_is_steep(name):
     """DOP853 from event to event; the error of a run bounds what it differs by, and no parabola adds to a peak."""

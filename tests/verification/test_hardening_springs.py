@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, TOWER, hard_case, pulse
+from core_samples import FIG5, TOWER, hard_case, pulse
 from reference_solver import TwoSprings, reference
 
 import rockbatch as rb
@@ -54,7 +54,7 @@ def drawn(seeds, kinds):
     [
         pytest.param(drawn(range(20), "common"), id="common"),
         pytest.param(drawn(range(20, 60), "common"), id="common, more", marks=pytest.mark.slow),
-        pytest.param(drawn(range(60), "others"), id="others", marks=THOROUGH),
+        pytest.param(drawn(range(60), "others"), id="others", marks=pytest.mark.thorough),
     ],
 )
 def test_random_hard_cases_agree_with_the_reference(seeds):

@@ -12,7 +12,7 @@ from known_flights import KNOWN_ENDS, KNOWN_LANDINGS, KNOWN_PEAKS, MOTIONS, PIER
 
 from rockbatch.pier import RigidBase
 
-pytestmark = pytest.mark.slow  # compiled by itself
+pytestmark = pytest.mark.thorough  # compiles the reference, which hardly ever changes
 G = PIER.gravity
 
 

@@ -14,7 +14,7 @@ from known_flights import KNOWN_PEAKS, MOTIONS, PIER
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier, RigidBase
 
-pytestmark = pytest.mark.slow  # compiled by itself
+pytestmark = pytest.mark.thorough  # compiles the reference, which hardly ever changes
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 

@@ -32,16 +32,30 @@ def assert_nothing_wrong(outcomes, rows):
     assert counts["failed, settled"] == 0, told
 
 
-def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, references):
-    """The first of each kind whose kernel fast tests compile and that is the same whichever records are at hand.
+def has_kept_reference(case):
+    """Whether a case is the same whichever records are at hand, and its reference need not be followed to the end of a run.
 
     A weak motion's peak comes after the end of the run, until which the reference would have to be solved anew.
     """
+    return case.stratum != "weak" and "records" not in case.stratum
+
+
+def test_outcomes_of_a_part_of_the_pool_are_those_of_the_reference(outcomes, references):
+    """The first of each kind whose kernel fast tests compile."""
     first = {case.stratum: case for case in reversed(outcomes.cases(80)) if is_common(case.base)}
-    first = {kind: case for kind, case in first.items() if kind != "weak" and "records" not in kind}
-    assert len(first) == 15
-    rows = outcomes.judged([*first.values()], references, jobs=2)
+    chosen = [*filter(has_kept_reference, first.values())]
+    assert len(chosen) == 15
+    rows = outcomes.judged(chosen, references, jobs=2)
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.15 * len(rows)
+    assert_nothing_wrong(outcomes, rows)
+
+
+@pytest.mark.slow
+def test_outcomes_with_other_kernels_are_those_of_the_reference(outcomes, references):
+    chosen = [case for case in outcomes.cases(80) if has_usual_n(case.base) and has_kept_reference(case)]
+    assert len(chosen) >= 50
+    rows = outcomes.judged(chosen, references, jobs=2)
+    assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 
 
@@ -57,18 +71,16 @@ def test_a_kept_reference_is_of_one_motion(outcomes, references, monkeypatch):
     assert len(solved) == 2
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("count", "least"), [(80, 60), pytest.param(None, 1200, marks=pytest.mark.thorough)])
-def test_outcomes_of_the_pool_are_those_of_the_reference(outcomes, tmp_path, count, least):
-    """A part of it, and the whole; other seeds: ``python benchmarks/outcomes.py``."""
-    cases = [case for case in outcomes.cases(count) if count is None or has_usual_n(case.base)]
-    rows = outcomes.judged(cases, outcomes.Cache(tmp_path, 0), jobs=2)
-    assert len(rows) >= least
+@pytest.mark.thorough  # compiles the reference
+def test_outcomes_of_the_pool_are_those_of_the_reference(outcomes, tmp_path):
+    """All of it; other seeds: ``python benchmarks/outcomes.py``."""
+    rows = outcomes.judged(outcomes.cases(), outcomes.Cache(tmp_path, 0), jobs=2)
+    assert len(rows) >= 1200
     assert sum(row.verdict in outcomes.LEFT_OUT for row in rows) <= 0.1 * len(rows)
     assert_nothing_wrong(outcomes, rows)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # compiles the reference
 @pytest.mark.parametrize(
     ("seed", "name"),
     [
@@ -92,7 +104,7 @@ def test_the_pool_is_the_same_for_the_same_seed_and_another_for_another(outcomes
     assert [case.pier for case in first] != [case.pier for case in other]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # compiles the reference
 def test_references_are_those_of_the_solver_and_kept(outcomes, references, tmp_path):
     cache = outcomes.Cache(tmp_path, 0)
     for case in outcomes.cases(9, only="flight"):
@@ -150,7 +162,7 @@ class TestThePool:
             assert outcomes.verdict(case, ended, fine)[0] == "flight, guided"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # compiles the reference
 class TestTheReference:
     """The judge itself, against closed forms and against itself."""
 
@@ -211,10 +223,9 @@ class TestTheReference:
         assert found.impacts >= 10
         assert other.theta_max == pytest.approx(found.theta_max, rel=1e-8)
 
-    @pytest.mark.parametrize("count", [10, pytest.param(25, marks=pytest.mark.thorough)])
-    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path, count):
+    def test_stops_only_when_nothing_follows(self, outcomes, reference, tmp_path):
         cache = outcomes.Cache(tmp_path, 0)
-        for case in outcomes.cases(count):
+        for case in outcomes.cases(25):
             run, fine, _ = cache.get(case)
             if fine.decided and not isinstance(run.base, RigidBase):
                 patient = reference(run.pier, run.base, run.motion, 1e-12, patient=True, horizon=100.0)

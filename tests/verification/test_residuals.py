@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, pulse
+from core_samples import FIG5, pulse
 from reference_solver import reference
 
 from rockbatch.motions.motion import Motion
@@ -57,7 +57,7 @@ def test_residuals_of_many_bursts_do_not_depend_on_the_end_of_the_record():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("law", ["epp", "hardening"])
-@pytest.mark.parametrize("period", [0.5, pytest.param(0.8, marks=THOROUGH)])
+@pytest.mark.parametrize("period", [0.5, pytest.param(0.8, marks=pytest.mark.thorough)])
 def test_residuals_are_where_the_reference_comes_to_rest(law, period):
     base = YieldingBase(50.0, zeta=0.1, eta=2.0, spring=law)
     motion = pulse("sine", period, dt=0.01, end=2.0)

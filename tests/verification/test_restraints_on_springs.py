@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from core_samples import FIG5, THOROUGH, TOWER, broadband, hard_case, pulse, steady
+from core_samples import FIG5, TOWER, broadband, hard_case, pulse, steady
 from restrained_reference import TiedTwoSprings
 from scipy.signal import lsim
 from stopped_piers import crossed
@@ -155,7 +155,8 @@ def with_peak(motion):
 
 
 @pytest.mark.parametrize(
-    "base", BASES[1:2] + [pytest.param(*base.values, marks=THOROUGH) for base in BASES if base.id != "bouc-wen"]
+    "base",
+    BASES[1:2] + [pytest.param(*base.values, marks=pytest.mark.thorough) for base in BASES if base.id != "bouc-wen"],
 )
 def test_friction_at_both_pivots_lets_go_at_one_time(base):
     """Without vertical motion both dampers reach their force at the same instant, time and again, and neither can go alone."""
@@ -377,7 +378,6 @@ def test_random_elements_on_real_records_settle(seeds):
     assert runs > len(seeds) / 2
 
 
-@pytest.mark.slow
 @pytest.mark.thorough  # finite kinematics or another n, with devices: kernels of their own
 @pytest.mark.parametrize(
     ("seed", "kinds"),

@@ -147,7 +147,6 @@ def test_times_that_share_the_error_of_the_first_are_fitted_as_a_line_whose_star
     assert scales[0, 0] == pytest.approx(line.stderr, rel=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.thorough
 @pytest.mark.parametrize(("spread", "reading"), KINDS)
 def test_intervals_hold_the_truth_in_many_tests(block, spread, reading):
