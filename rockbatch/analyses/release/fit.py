@@ -14,7 +14,7 @@ EXACT = 1e-7
 NEAR = 1e-4
 """Change of the parameter by which slopes are taken."""
 
-ROUNDS = 6
+ROUNDS = 8
 """Steps of the fit with unknown scatters; a few are enough."""
 
 RATIOS, UNLIKELY = 24.0, 12.0
@@ -76,8 +76,7 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
     Times and amplitudes have errors of measurement, independent and normal, each kind with a scatter that is not known; and the
     parameter itself scatters from impact to impact, which all later values keep (THEORY.md, Release tests). The value is the
     median of what is then known of it, the interval holds the middle of it with a probability of ``confidence``. ``grid`` are
-    values between which the fit begins, at that of least squares. Times that count from the first impact have its error,
-    ``shared``.
+    values, at one of which the fit begins. Times that count from the first impact have its error, ``shared``.
     """
     bounds = float(grid[0]), float(grid[-1])
     value = _least_squares(measured, model, grid)
@@ -109,8 +108,7 @@ def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float)
 
 
 def _least_squares(measured: Passages, model: Model, grid: Samples) -> float:
-    """Return the parameter at which n_t ln S_t + n_a ln S_a is least, S being sums of squared differences of either kind."""
-    from scipy.optimize import minimize_scalar
+    """Return the value of ``grid`` at which n_t ln S_t + n_a ln S_a is least, S being sums of squares of either kind."""
 
     def misfit(value: float) -> float:
         total = 0.0
@@ -121,10 +119,7 @@ def _least_squares(measured: Passages, model: Model, grid: Samples) -> float:
                 total += 0.5 * misses.size * math.log(float(misses @ misses) + misses.size * least**2)
         return total
 
-    best = int(np.argmin([misfit(float(value)) for value in grid]))
-    low, high = float(grid[max(best - 1, 0)]), float(grid[min(best + 1, len(grid) - 1)])
-    result = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"xatol": 1e-7 * (high - low)})
-    return float(result.x) if result.fun < misfit(float(grid[best])) else float(grid[best])
+    return float(min(grid, key=misfit))
 
 
 def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float, float]) -> _Linear:
