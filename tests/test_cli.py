@@ -22,7 +22,7 @@ from rockbatch.batch import listening
 from rockbatch.commands import messages
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.motions import _by_reason
-from rockbatch.commands.streams import in_width, is_lost, show
+from rockbatch.commands.streams import filled, in_width, is_lost, show
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 
@@ -357,6 +357,13 @@ def test_wide_tables_fit_the_terminal(monkeypatch):
     assert len(in_width(["", "a" * 100], [["one", "0"]]).splitlines()) == 2  # too wide for any block, and below none
     blocks = "\n".join(lines).split("\n\n")
     assert all(block.splitlines()[1].split()[0] == "one" for block in blocks)  # whose numbers they are
+
+
+def test_prose_is_indented_behind_its_first_line():
+    first, *rest = filled("word " * 100).splitlines()
+    assert first.startswith("word")
+    assert rest
+    assert all(line.startswith("  word") for line in rest)
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,8 @@ def test_every_error_leaves_a_program_and_another_one():
 
 SMALL = """
 LIMIT = 3
+HALVES = [x / 2 for x in (10, 11)]
+RATIO = 12 / (13 - 14)
 def small(x):
     return x < LIMIT
 def stopped(x):
@@ -74,7 +76,8 @@ class Few:
 """
 TESTS = """
 import pytest, sys
-from few import Few, small, stopped
+from few import HALVES, Few, small, stopped
+def test_halves(): assert HALVES == [5.0, 5.5]
 def test_small(): assert small(1) and not small(9)
 def test_few(): assert Few().all_small([1, 2]) and not Few().all_small([5, 1])
 def test_stopped(): assert stopped(0) == 5
@@ -88,6 +91,8 @@ JUDGED = {
     "x < 5 → (x <= 5)": (["small", "stopped"], "stopped"),
     "4 → (5)": (["unsound", "few"], "few"),  # in a generator in a method
     "3 → (4)": (["unsound", "small"], ""),  # when it is imported
+    "x / 2 → (x * 2)": (["small", "halves"], "halves"),
+    "13 → (14)": (["small"], "test_few.py"),  # which cannot be imported
     "1 → (2)": (["stopped"], "stopped"),
 }
 """Errors, the tests that they meet, and which notices them."""

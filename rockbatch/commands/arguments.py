@@ -126,7 +126,7 @@ class _Demands(argparse.Action):
         from rockbatch.quantities.catalogue import listed
 
         for group, names in listed().items():
-            show(filled(f"{group}: {', '.join(names)}", 0, 2))
+            show(filled(f"{group}: {', '.join(names)}"))
         parser.exit()
 
 

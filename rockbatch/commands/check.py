@@ -96,21 +96,21 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
             worst, lambda response: results.named_case(response.case["case"], response.case["columns"], varied)
         )
     lines = [table, ""] if table else []
-    lines += [filled(words, 0, 2) for words in (weak_supports(saved.info["cases"]),) if words]
+    lines += [filled(words) for words in (weak_supports(saved.info["cases"]),) if words]
     stations = stations_of(saved.info)
     for line in answer(
         verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
     ):
         words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
-        lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}", 0, 2), line.verdict))
+        lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}"), line.verdict))
     ended, planned = (sum(counts) for counts in zip(*((sum(s.ended.values()), s.runs) for s in suites), strict=True))
     if not checked:
         lines.append("No limits were set: no response passes or fails; `rockbatch check --rules FILE` sets some.")
         if ended:
             lines.append(f"Greatest of {planned - ended} of {planned} runs that end standing.")
-    lines += [filled(words, 0, 2) for words in (wording.both_axes(verdicts),) if words]
+    lines += [filled(words) for words in (wording.both_axes(verdicts),) if words]
     if undamped := undamped_settlement(worst):
-        lines.append(filled(undamped, 0, 2))
+        lines.append(filled(undamped))
     return "\n".join(lines)
 
 

@@ -90,8 +90,8 @@ def width() -> int | None:
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
-def filled(text: str, first: int, rest: int) -> str:
-    """Return prose in lines of the terminal's width, indented by ``first`` and ``rest`` columns."""
+def filled(text: str, first: int = 0, rest: int = 2) -> str:
+    """Return prose in lines of the terminal's width, the first indented by ``first`` columns, all others by ``rest``."""
     lines = _in_lines(text, min(WIDTH, width() or WIDTH), " " * first, " " * rest)
     return shown(lines, lines.encode("ascii", "replace").decode())
 

@@ -127,7 +127,7 @@ class AsceSpectrum:
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
         falling = np.where(t <= self.tl_s, self.sd1_g / t, self.sd1_g * self.tl_s / t**2)
-        return np.select([t < t0, t <= ts], [self.sds_g * (0.4 + 0.6 * t / t0), self.sds_g], falling)
+        return np.where(t < t0, self.sds_g * (0.4 + 0.6 * t / t0), np.minimum(self.sds_g, falling))
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,8 @@ class AashtoSpectrum:
         ts = self.sd1_g / self.sds_g
         t0 = 0.2 * ts
         t = np.maximum(periods, 1e-12)
-        return np.select([t < t0, t <= ts], [self.as_g + (self.sds_g - self.as_g) * t / t0, self.sds_g], self.sd1_g / t)
+        rising = self.as_g + (self.sds_g - self.as_g) * t / t0
+        return np.where(t < t0, rising, np.minimum(self.sds_g, self.sd1_g / t))
 
 
 class SubsoilShape(NamedTuple):

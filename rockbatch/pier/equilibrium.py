@@ -56,7 +56,7 @@ def _bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: 
 def _share(low: Array, high: Array) -> Array:
     """Return the share of the way from values ``low`` to ``high`` at which 0 lies on the straight line between them."""
     gap = high - low
-    return np.where(gap > 0.0, np.clip(-low / np.where(gap > 0.0, gap, 1.0), 0.0, 1.0), 0.5)
+    return np.clip(np.divide(-low, gap, out=np.full_like(gap, 0.5), where=gap > 0.0), 0.0, 1.0)
 
 
 def without_dampers(restraints: tuple[Restraint, ...]) -> tuple[Restraint, ...]:

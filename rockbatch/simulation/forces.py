@@ -91,8 +91,7 @@ def _outline(pier: Pier, base: RigidBase) -> Outline:
 
 def _events(rows: np.recarray, kinds: Sequence[float]) -> np.ndarray:
     """Return the indices of the rows behind events of these ``kinds``."""
-    events = np.flatnonzero(rows.kind > 0.0)
-    return events[np.isin(rows.kind[events], kinds)]
+    return np.flatnonzero(np.isin(rows.kind, kinds))
 
 
 def impacts(rows: np.recarray, forces: np.recarray) -> Impacts:

@@ -132,6 +132,12 @@ def test_companions_are_left_out_and_hidden_files_passed_over_as_in_folders(tmp_
     assert list(reasons_of(found)) == ["x.zip/unknown.xyz"]
 
 
+def test_an_archive_without_files_is_whole(tmp_path):
+    write_zip(tmp_path / "x.zip", {})
+    (tmp_path / "x.tar").write_bytes(tarred({}, "w"))
+    assert reasons_of(read_motions(tmp_path)) == dict.fromkeys(("x.tar", "x.zip"), "an archive without files")
+
+
 def test_manifest_and_draft_reach_into_archives(tmp_path):
     peer_zip(tmp_path / "peer.zip")
     (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(at2("000.AT2", 4).encode()))

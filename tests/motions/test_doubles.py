@@ -9,8 +9,9 @@ from agency_files import geonet_text, renadic_channel
 from fixed_column_files import A, B, C, cosmos_text, csmip_channel, csmip_text, smc_text
 from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
 from national_files import csmnc_text
+from waveform_files import COUNTS, START, trace, write_mseed
 
-from rockbatch.motions import read_motions
+from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.manifest_draft import draft
 
@@ -50,6 +51,17 @@ def test_old_headers_without_a_time_are_compared_by_their_event(tmp_path, modern
     write(tmp_path, a_RAW=another)
     found = read_motions(tmp_path)
     assert {m.source.partition(" ")[0] for m in found.motions} == {"a.RAW", "b.V2"}
+    assert not found.left_out
+
+
+@pytest.mark.parametrize("names", [("a.mseed", "b.mseed"), ("b.mseed", "a.mseed")])
+def test_what_begins_with_the_last_sample_of_another_file_is_no_copy_of_it(tmp_path, names):
+    for name, values, start in zip(
+        names, (COUNTS, COUNTS[::-1]), (START, START + 0.01 * (len(COUNTS) - 1)), strict=True
+    ):
+        write_mseed(tmp_path / name, trace("HNN", values, start))
+    found = read_motions(tmp_path, confirmed=["*"], options=ReadOptions(unit="cm/s2"))
+    assert len(found.motions) == 2
     assert not found.left_out
 
 

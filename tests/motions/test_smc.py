@@ -70,12 +70,15 @@ def test_an_evenly_sampled_uncorrected_file_is_raw():
     assert read(smc_text(title="1 UNCORRECTED ACCELEROGRAM"), "x.smc")[0].raw
 
 
-@pytest.mark.parametrize("clock", [(1989, 291, 0, 4, 0, -32768), (0, 0, 0, 0, 0, 0), (1989, 291, 25, 4, 15, 0)])
-def test_a_clock_that_is_not_known_to_the_millisecond_gives_no_start(clock):
+@pytest.mark.parametrize(
+    "clock",
+    [(1989, 291, 0, 4, 0, -32768), (1989, -32768, 0, 4, 15, 250), (0, 0, 0, 0, 0, 0), (1989, 291, 25, 4, 15, 0)],
+)
+def test_a_clock_of_which_a_part_is_not_known_gives_no_start(clock):
     assert read(smc_text(clock=clock), "x.smc")[0].start is None
 
 
-@pytest.mark.parametrize("second", [0, 59])
+@pytest.mark.parametrize("second", [0, 59, 60])
 def test_every_second_of_a_minute_gives_a_start(second):
     assert read(smc_text(clock=(1989, 291, 0, 4, second, 250)), "x.smc")[0].start == START - 15 + second
 

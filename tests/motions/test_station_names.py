@@ -76,11 +76,12 @@ def test_two_formats_of_one_recording_are_one_record_by_their_headers():
 
 @pytest.mark.parametrize("short", [-10.0, 1.0])
 def test_recordings_on_both_sides_of_a_full_hour_are_of_one_earthquake_if_they_share_a_moment(short):
-    """The long one lasts from 15 s before it to 15 s after it."""
+    """The long one lasts from 15 s before it to 15 s after it; what begins with its last sample is another."""
+    long = component("long", sensor=Sensor("S", location="00"), start=HOUR - 15.0, samples=3000)
     found = [
-        component("long", sensor=Sensor("S", location="00"), start=HOUR - 15.0, samples=3000),
+        long,
         component("short", sensor=Sensor("S", location="10"), start=HOUR + short, samples=200),
-        component("later", sensor=Sensor("S", location="20"), start=HOUR + 20.0, samples=200),
+        component("later", sensor=Sensor("S", location="20"), start=long.start + long.duration, samples=200),
     ]
     names = station_names([[each] for each in found])
     assert names[0] == names[1] != names[2]

@@ -7,6 +7,7 @@ tests that start processes of their own.
 
 import contextlib
 import gc
+import inspect
 import itertools
 import json
 import os
@@ -28,6 +29,7 @@ LONGEST = 600
 """Seconds of computing after which the tests of an error count as failed; by the clock it is twice as long."""
 TOO_SLOW = "no end"
 OPTIONS = "-q", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", FAST
+COMPREHENSIONS = "<listcomp>", "<setcomp>", "<dictcomp>", "<genexpr>"
 Codes = dict[tuple[str, int], CodeType]
 
 
@@ -45,6 +47,12 @@ def _own(code: CodeType) -> tuple[object, ...]:
     return code.co_code, [value for value in code.co_consts if not isinstance(value, CodeType)], code.co_names
 
 
+def _runs_at_import(code: CodeType) -> bool:
+    """Return whether it is the body of a class, or a comprehension outside of functions, which is made and gone then."""
+    made = code.co_name in COMPREHENSIONS and "<locals>" not in code.co_qualname
+    return made or not code.co_flags & inspect.CO_NEWLOCALS
+
+
 def changed_functions(source: str, wrong: str, path: str) -> Codes | None:
     """Return the functions of a module with an error, by their name and line without it.
 
@@ -52,7 +60,7 @@ def changed_functions(source: str, wrong: str, path: str) -> Codes | None:
     """
     module, other = (compile(text, path, "exec") for text in (source, wrong))
     before, after = (dict(_codes(code, Counter())) for code in (module, other))
-    bodies = [(module, other), *((code, after.get(name)) for name, code in before.items() if not code.co_flags & 2)]
+    bodies = [(module, other), *((code, after.get(name)) for name, code in before.items() if _runs_at_import(code))]
     if before.keys() != after.keys() or any(b is None or _own(a) != _own(b) for a, b in bodies):
         return None
     return {(name, code.co_firstlineno): after[name, i] for (name, i), code in before.items()}
@@ -119,7 +127,8 @@ class Judge:
                     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
                 if not failed:
                     break
-                if failed in self.sound or failed.endswith(TOO_SLOW) or not self._failing([failed], str(path), {}):
+                # Too slow, or a file that cannot be imported, is no single test
+                if failed not in self.items or failed in self.sound or not self._failing([failed], str(path), {}):
                     self.sound.add(failed)
                     return failed
                 names.remove(failed)

@@ -143,6 +143,14 @@ def test_an_event_that_no_record_may_do_reads_as_words(tmp_path):
     assert not re.search(r"at most 0(?![.\d])", shown.text)  # but of an error
 
 
+def test_the_legend_says_of_which_statistic_a_check_is_but_not_of_a_ban(tmp_path):
+    ban = {"check": "stands", "demand": "overturned", "statistic": "max", "limit": 0.0, "value": 0.0, "high": 0.0}
+    shown = page(
+        tmp_path, verdict("1", "pass"), verdict("1", "pass", check="tilt"), verdict("1", "pass", **ban, ratio=0.0)
+    )
+    assert "Mean over records (margin, tilt). The mark on a bar is the limit." in shown.text
+
+
 def test_of_many_cases_the_six_nearest_to_passing_stand_open_and_the_others_follow_folded(tmp_path):
     some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(1, 41)]
     write_results(tmp_path)

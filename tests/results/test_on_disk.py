@@ -292,12 +292,13 @@ def test_an_error_on_the_way_leaves_the_earlier_file_and_nothing_else(tmp_path, 
     assert (tmp_path / "histories.h5").read_bytes() == earlier
 
 
-def test_a_full_disk_is_reported_before_it_is_written_to(tmp_path, monkeypatch):
+@pytest.mark.parametrize("free", [3e6, histories_file.MARGIN + 1])  # the second leaves no room for the table
+def test_a_full_disk_is_reported_before_it_is_written_to(tmp_path, monkeypatch, free):
     """HDF5 itself would print a page of errors and may crash at exit."""
     stored(tmp_path, at_rest())
     earlier = (tmp_path / "histories.h5").read_bytes()
-    monkeypatch.setattr(histories_file, "disk_usage", lambda folder: SimpleNamespace(free=3e6))
-    with pytest.raises(rb.InputError, match="the disk is full, 3 MB are left; make room"):
+    monkeypatch.setattr(histories_file, "disk_usage", lambda folder: SimpleNamespace(free=free))
+    with pytest.raises(rb.InputError, match=f"the disk is full, {free / 1e6:.0f} MB are left; make room"):
         stored(tmp_path, at_rest())
     assert [file.name for file in tmp_path.iterdir()] == ["histories.h5"]
     assert (tmp_path / "histories.h5").read_bytes() == earlier

@@ -374,6 +374,7 @@ def test_a_step_that_would_blow_up_is_not_run():
     assert outcome.status == "failed"
     assert f"at least {least}" in outcome.reason
     assert math.isnan(outcome.theta_max)
+    assert (outcome.impacts, outcome.separations, outcome.flights) == (0, 0, 0)
     assert run_fixed(FIG5, base, SINE, least).status != "failed"
 
 

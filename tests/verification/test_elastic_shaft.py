@@ -147,6 +147,10 @@ def test_modes_have_the_integrals_of_a_beam_under_a_force_at_its_top():
     np.testing.assert_allclose(lumped, (1.0, 1.0, 20.0), rtol=1e-8)
     raised = mode_of(rb.Pier.of_parts(6.0, [legs, rb.Part(1000.0, 22.0, 500.0, 0.0)], top_m=20.0))
     np.testing.assert_allclose(raised, (1.15, 1.15**2, 1.15 * 22.0), rtol=1e-8)  # 1 + 1.5 · 2/20
+    whole, lower = rb.Part.shaft(2.0, 30.0, 1000.0), rb.Part.shaft(2.0, 12.0, 400.0)
+    upper = rb.Part(600.0, 21.0, 600.0 * (2.0**2 + 18.0**2) / 12, 18.0)  # of which the shaft's top cuts another piece
+    cut, uncut = (mode_of(rb.Pier.of_parts(6.0, parts, top_m=24.0)) for parts in ([lower, upper], [whole]))
+    np.testing.assert_allclose(cut, uncut, rtol=1e-13)
 
 
 def test_a_pier_that_stands_is_an_oscillator_and_lifts_off_at_the_moment_of_its_weight(uncompiled):

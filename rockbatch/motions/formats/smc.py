@@ -63,7 +63,7 @@ def parse(text: str) -> list[Recording]:
     refuse_more(lines, end, f"the {npts} values that line 14 declares")
     dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
-    start = None if unknown in (second, ms) or not 0 <= second < 60 else moment(year, 1, 1, hour, minute, second)
+    start = None if unknown in (day, ms) else moment(year, 1, 1, hour, minute, second)
     extremes = [(peak, _real(lines, n - 1)) for n in (30, 32) if (peak := _real(lines, n))]
     peak, time_of_peak = max(extremes, key=lambda extreme: abs(number_in(extreme[0], 22)), default=("", ""))
     origin_line = line_at(lines, 3)

@@ -376,6 +376,14 @@ def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_pat
     assert [stripe.undecided for stripe in curve.stripes] == [0, 8, 4, 0]
 
 
+def test_without_a_curve_undecided_runs_leave_no_median_open(tmp_path):
+    """All that is decided stands: only those that failed could give a curve."""
+    (curve,), *_ = made_up(tmp_path, STRIPES, lambda motion, x: "failed" if motion % 3 == 0 and x > 0.4 else "ok")
+    assert isinstance(curve.fitted, str)
+    assert curve.readings is not None
+    assert not curve.inconclusive
+
+
 def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
     """Each by the closed form ν(θ) exp(k²β²/2) under a power law; without undecided runs neither."""
 

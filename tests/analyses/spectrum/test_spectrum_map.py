@@ -188,6 +188,18 @@ def test_lines_between_columns_follow_a_curved_boundary_within_the_tolerance():
     assert len(columns) < 100
 
 
+def test_two_columns_alone_are_not_joined_however_alike_they_are():
+    columns, _ = searched(
+        lambda f, a: "falls" if a > 1.0 + f * (1.0 - f) else "stands",
+        [0.0, 2.0],
+        1e-3,
+        frequencies=[0.0, 1.0],
+        width=0.5,
+    )
+    assert [*columns] == [0.0, 0.5, 1.0]
+    assert regions(columns[0.5])[0].high == pytest.approx(1.25, abs=1e-3)
+
+
 def test_the_ends_of_a_map_are_no_boundaries():
     (only,) = regions([(1.0, End(SAFE)), (2.0, End(SAFE))])
     assert (only.low, only.high) == (1.0, 2.0)
