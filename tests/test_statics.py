@@ -27,7 +27,7 @@ from rockbatch.pier import (
     rocking_frequency,
     static_deflection,
 )
-from rockbatch.pier.equilibrium import SlowTurn
+from rockbatch.pier.equilibrium import Place, SlowTurn
 from rockbatch.pier.first_loading import deflection_under, first_loading
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import FACTS, in_words, sheet_of
@@ -58,6 +58,11 @@ def test_the_curve_of_a_bare_pier_is_tan_of_what_is_left_to_alpha():
     assert curve["moment_over_weight_m"].to_numpy() == pytest.approx(
         PIER.size * np.sin(0.2 - curve["theta_rad"].to_numpy()), abs=1e-8
     )
+
+
+def test_friction_pulls_against_the_way_since_the_pier_lifted_off():
+    pull = Place(FRICTION, 0.0, math.inf).pull(np.array([0.01, 0.02, 0.03]), 0.02)
+    np.testing.assert_array_equal(pull, [-0.05, 0.0, 0.05])
 
 
 def test_friction_at_both_pivots_and_a_tendon_on_the_axis_raise_the_lift_off():

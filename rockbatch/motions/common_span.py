@@ -42,13 +42,6 @@ def too_unlike(a: Component, b: Component) -> str:
     return ""
 
 
-def _parts(first: Component, second: Component) -> int:
-    """Return in how many parts a step of the first component is cut so that it is no coarser than that of the second."""
-    if abs(first.dt - second.dt) <= _SAME_STEP * first.dt:
-        return 1
-    return math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
-
-
 def on_common_samples(first: Component, second: Component, names: tuple[str, str]) -> Common:
     """Return both components on common samples, over their common time, with notes with their ``names``.
 
@@ -69,7 +62,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
         dt, a, b = first.dt, a[start:end], b[start - shift : end - shift]
         begin, offset = start * dt, shift * dt
     else:
-        parts = _parts(first, second)
+        parts = math.ceil(first.dt / second.dt * (1 - _SAME_STEP))
         dt = first.dt / parts
         slack = _SAME_SAMPLE * dt
         earliest = max(0, math.ceil((offset - slack) / dt))

@@ -283,6 +283,25 @@ def test_a_result_that_does_not_come_is_waited_for_only_while_the_scheduler_answ
     assert never.asked == 2
 
 
+@pytest.mark.parametrize("error", ["cancelled", OSError("timed out")])
+def test_a_lost_scheduler_is_reported_with_what_lost_it(study, runs, monkeypatch, error):
+    distributed = pytest.importorskip("distributed")
+    words = "timed out" if isinstance(error, OSError) else "the connection to the scheduler broke"
+
+    def lost(self, client, pending):
+        raise distributed.CancelledError("task-1") if error == "cancelled" else error
+
+    monkeypatch.setattr(Dask, "jobs", 1)
+    monkeypatch.setattr(Dask, "_finished_of", lost)
+    engine = Dask("tcp://10.0.0.1:8786")
+    engine._client = SimpleNamespace(status="closed")
+    engine._records = SimpleNamespace(submit=lambda *task: object())
+    with pytest.raises(
+        InputError, match=re.escape(f"tcp://10.0.0.1:8786: lost ({words}); give the same command again")
+    ):
+        list(engine.outcomes(runs, study.numerics))
+
+
 def test_an_empty_address_is_a_mistake_and_not_threads(file, tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["run", str(file), "--out", str(tmp_path / "out"), "--scheduler", ""])

@@ -111,6 +111,18 @@ def test_a_coarse_horizontal_is_brought_to_the_vertical_samples():
     assert any(note.startswith("horizontal interpolated") for note in motion.notes)
 
 
+@pytest.mark.parametrize(("finer", "parts"), [(0.5, 2), (0.4, 3), (1.0 - 1e-7, 1)])
+def test_steps_of_the_horizontal_are_cut_until_they_are_no_coarser_than_those_of_the_vertical(finer, parts):
+    """The last are the same but for rounding, and begin a quarter of a step apart."""
+    h = component([0, 6, 0, 6], 0.01, start=1e9)
+    v = component(np.arange(40.0), 0.01 * finer, True, start=1e9 - 0.0025)
+    (motion,) = to_motions([h, v]).motions
+    assert motion.dt == pytest.approx(0.01 / parts, rel=1e-12)
+    np.testing.assert_allclose(motion.horizontal[: 3 * parts : parts], [0, 6, 0], atol=1e-12)
+    t = motion.dt * np.arange(motion.npts) + 0.0025
+    np.testing.assert_allclose(motion.vertical, t / v.dt, rtol=1e-4)
+
+
 @pytest.mark.parametrize("late", [1e-4, -1e-4, 4.9e-4, 0.01 + 1e-4])
 def test_starts_that_jitter_by_less_than_a_tenth_of_a_step_count_as_simultaneous_and_cost_no_peak(late):
     """0.1 ms between two clocks; the motion is linear between samples, so the error is below a tenth of a step's."""

@@ -240,6 +240,13 @@ def test_sac_files_are_read_in_the_stated_unit(tmp_path, byteorder):
     np.testing.assert_allclose(motion.horizontal, (data - data.mean()) * 10.0, atol=1e-6)  # single precision
 
 
+def test_a_number_where_sac_has_its_version_makes_no_sac_file_of_another_name(tmp_path):
+    trace("HNE", wiggle(300).astype(np.float32)).write(str(tmp_path / "e.sac"), format="SAC")
+    (tmp_path / "e.sac").rename(tmp_path / "e.bin")
+    (unusable,) = read_motions(tmp_path, options=ReadOptions(unit="g")).unusable
+    assert "not a format that rockbatch reads" in unusable.reason
+
+
 @pytest.mark.parametrize(("vertical", "partner"), [("HNZ", True), ("HLZ", False), ("BNZ", False)])
 def test_sac_files_of_another_instrument_of_the_station_are_no_partners(tmp_path, vertical, partner):
     for channel in ("HNE", vertical):

@@ -130,6 +130,12 @@ def test_every_agency_s_header_names_event_station_and_sensor(name, text, event,
     assert len({component.sensor for component in components}) in (1, len(components))
 
 
+def test_an_event_without_a_year_has_that_of_its_origin_time():
+    """The line before it has the place, the next one the station."""
+    text = cosmos_text().replace(" of Fri Nov 30, 2018 17:29 UTC", "").replace("Señor", "Alum Rock")
+    assert {component.origin.event for component in read(text, "x.V1c")} == {"Alum Rock Quake 2018"}
+
+
 @pytest.mark.parametrize("form", ["SAC", "MSEED"])
 def test_what_has_no_event_is_called_by_its_day(tmp_path, form):
     import obspy

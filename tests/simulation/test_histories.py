@@ -132,6 +132,7 @@ def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its
     assert len(loops) == (0 if isinstance(response.base, rb.RigidBase) else 2)
     yields = isinstance(response.base, rb.YieldingBase)
     for loop in loops:
+        assert 2 * loop.width <= panels[0].width  # both side by side
         assert (loop.x.plain == "v [mm]", loop.y.plain == "F/(M g)") == (not yields, not yields)
         line, *limit = loop.marks
         assert np.nanmax(line.y) < 0.0
@@ -148,6 +149,8 @@ def test_the_figure_shows_the_loop_of_every_damper_and_tendon(width):
     assert {name: [mark.name for mark in marks] for name, marks in loops.items()} == {
         "damper 1": ["F/(M g) right", "F/(M g) left"], "tendon 1": ["F/(M g)"],
     }  # fmt: skip
+    histories, *_, one, other = of_one(response, "title").panels
+    assert one.width + other.width <= histories.width
     (tendon,) = loops["tendon 1"]
     rows = np.isin(1000.0 * response.restraints["tendon 1 elongation"].to_numpy(), tendon.x)
     assert rows.sum() >= len(tendon.x) > 100

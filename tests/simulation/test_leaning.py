@@ -83,6 +83,9 @@ def test_who_does_not_ask_has_the_note_all_the_same_and_pays_for_it_where_the_pe
     assert (leaned.theta_max_is, "mostly lean" in leaned.note) == ("lean", True)
     assert rb.simulate(PIER, PADS, pulse_and_vibration(0.5)).row["theta_max_is"] == "lean"
     assert outcome_of(PADS, pulse_and_vibration(0.0)).theta_rocking is None
+    assert (
+        outcome_of(PADS, pulse_and_vibration(0.3)).theta_rocking is None
+    )  # rests at half of its peak, which is rocking
 
 
 @pytest.mark.parametrize(

@@ -293,9 +293,7 @@ def _(mark: Polyline, axes: Axes) -> Artist:
 def _(mark: Area, axes: Axes) -> Artist:
     gaps = np.flatnonzero(np.isnan(mark.x))
     pieces = np.split(np.column_stack([mark.x, mark.y]), gaps)
-    outlines = [
-        Path(np.vstack([piece, piece[:1]]), closed=True) for each in pieces if len(piece := each[~np.isnan(each[:, 0])])
-    ]
+    outlines = [Path(piece) for each in pieces if len(piece := each[~np.isnan(each[:, 0])])]
     together = Path.make_compound_path(*outlines) if outlines else Path(np.empty((0, 2)))  # or a hair stays between two
     return axes.add_patch(PathPatch(together, **_area(mark.look)))
 

@@ -340,6 +340,14 @@ def test_a_file_of_measured_values_is_refused_with_its_line(tmp_path, content, w
     assert any(words in problem for problem in error.value.problems), error.value.problems
 
 
+def test_an_amplitude_in_a_file_that_cannot_be_is_reported_where_the_study_names_the_file(tmp_path):
+    (tmp_path / "a.csv").write_text(f"impact_s,amplitude_rad\n0.3,{START}\n", encoding="utf-8")
+    study = rb.Study.from_toml(rb.Study.from_dict(tomllike(measured="a.csv")).text, tmp_path / "study.toml")
+    (line,) = [number for number, text in enumerate(study.text.splitlines(), 1) if text.startswith("measured")]
+    with pytest.raises(InputError, match=rf"study.toml:{line}: .*amplitude 1 is {START:g} rad, not below"):
+        rb.release(study)
+
+
 def test_the_command_leaves_what_python_has(tmp_path):
     study = study_of(lists(passages([0.9] * FEW)))
     path = tmp_path / "study.toml"
