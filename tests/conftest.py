@@ -9,7 +9,7 @@ import pytest
 
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
+from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.pier.restraints import Restraint
 
 collect_rarely()
@@ -28,6 +28,8 @@ SHARED = [
 
 SLOW = ({"finite"}, {"shaft"})
 """What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
+OF_SLOW = [RigidBase(shaft="elastic"), ElasticBase(50.0, kinematics="finite"), YieldingBase(50.0, eta=2.0, n=1.0)]
+"""Bases whose kernels slow tests compile."""
 
 
 def compiled_traits(base, tied):
@@ -67,11 +69,17 @@ def pytest_collection_modifyitems(items):
 def pytest_collection_finish(session):
     """Compile the shared kernels before the first test of the physics, each in one of the workers."""
     worker = getattr(session.config, "workerinput", None)
-    if worker and any(item.path.parent.name in PHYSICS for item in session.items):
+    physics = [item for item in session.items if item.path.parent.name in PHYSICS]
+    if worker and physics:
         from rockbatch import simulate
 
-        for base in SHARED[int(worker["workerid"][2:]) :: worker["workercount"]]:
-            simulate(Pier(0.2, 1.0), base, Motion.still(0.1), substeps=1, forces=True, ledger=True)
+        pier, share = (
+            Pier(0.2, 1.0, flexural_period_s=0.3),
+            slice(int(worker["workerid"][2:]), None, worker["workercount"]),
+        )
+        slow = any(item.get_closest_marker("slow") and not item.get_closest_marker("thorough") for item in physics)
+        for base in SHARED[share] + OF_SLOW[share] * slow:
+            simulate(pier, base, Motion.still(0.1), substeps=1, forces=True, ledger=True)
 
 
 @pytest.hookimpl(wrapper=True)
