@@ -196,6 +196,9 @@ def test_a_suite_is_fitted_by_the_spectra_of_its_pairs(rule):
     described = target.described(scaled, 9.81)
     np.testing.assert_allclose(described["mean_sa_g"], np.mean(means, axis=0), rtol=1e-4)
     assert (described["pairs"], described["alone"]) == (rule, 0)
+    third = component(9, 45.0, size=100.0, station="S0")
+    assert target.described([*scaled, third], 9.81)["alone"] == 0  # two of the three are square to each other
+    np.testing.assert_allclose(TABLE.at(np.array([0.1, 6.0, 0.09, 6.1])), [0.8, 0.05, np.nan, np.nan], rtol=1e-12)
     whole = at_target(MotionSet(suite()), replace(target, factors="suite", at_least=0.9), 9.81).motions
     mean = target.mean(whole, target.periods, 9.81)
     assert (mean / TABLE.at(target.periods)).min() == pytest.approx(0.9)
