@@ -210,8 +210,7 @@ def _from_gzip(data: bytes, first: int | None = None) -> bytes:
 
 def _from_archive(path: Path, first: int | None = None) -> bytes:
     """Return what a file in an archive holds, or its ``first`` bytes."""
-    disk = archive_of(path)
-    archive = next(above for above in path.parents if is_archive(above) or above == disk)
+    archive = next(filter(is_archive, path.parents))
     opened = _held(archive, state(archive))
     entry = opened.by_path.get(PurePosixPath(path.relative_to(archive).as_posix()))
     if entry is None:

@@ -11,7 +11,7 @@ import pytest
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import Motion, measures
-from rockbatch.motions.description import suite_spectra
+from rockbatch.motions.description import entry, suite_spectra
 from rockbatch.motions.motion import Initial
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.spectrum import PERIODS, spectral_acceleration
@@ -243,6 +243,9 @@ def test_every_measure_of_the_table_grows_with_amplitude_and_time_as_its_unit_do
     assert table["pga_h_g"][0] == pytest.approx(np.abs(a).max() / GRAVITY)
     assert table["pga_v_g"][0] == pytest.approx(0.4 * table["pga_h_g"][0])
     assert table["duration_s"][0] == pytest.approx((len(a) - 1) * 0.01)
+    told, row = entry(first, "a", GRAVITY, with_pulse=False), table.iloc[0]
+    names = {name: name.replace("_h_", "_") for name in (*factors, "npts")}
+    assert {name: told[names[name]] for name in names} == pytest.approx({name: row[name] for name in names}, rel=1e-12)
 
 
 def test_the_cav_of_a_sine_is_four_amplitudes_over_omega_each_period():
