@@ -75,8 +75,7 @@ class HazardCurve:
             return np.exp(np.polyval(self._parabola, np.maximum(log_x, self._summit)))
         logs, k = np.log(self.levels), self._slopes
         segment = np.clip(np.searchsorted(logs, log_x) - 1, 0, len(k) - 1)
-        first = np.minimum(segment, len(logs) - 1)
-        return np.exp(np.log(np.array(self.rates))[first] - k[segment] * (log_x - logs[first]))
+        return np.exp(np.log(np.array(self.rates))[segment] - k[segment] * (log_x - logs[segment]))
 
     def log_slope(self, x: Values) -> Values:
         """Return k(x) = −d ln ν/d ln x, shape of ``x``, 0 where a parabola has passed its summit."""
