@@ -138,6 +138,14 @@ def test_an_archive_without_files_is_whole(tmp_path):
     assert reasons_of(read_motions(tmp_path)) == dict.fromkeys(("x.tar", "x.zip"), "an archive without files")
 
 
+def test_a_folder_with_the_name_of_an_archive_is_a_folder(tmp_path):
+    (tmp_path / "day.zip").mkdir()
+    (tmp_path / "day.zip" / "x.AT2").write_text(at2("x.AT2", 1))
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == ["day.zip/x.AT2"]
+    assert archives.archive_of(tmp_path / "day.zip" / "x.AT2") is None
+
+
 def test_manifest_and_draft_reach_into_archives(tmp_path):
     peer_zip(tmp_path / "peer.zip")
     (tmp_path / "x.AT2.gz").write_bytes(gzip.compress(at2("000.AT2", 4).encode()))
