@@ -82,18 +82,18 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     """Return the bounds of every run, and True for those that count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
+    status = runs["status"].to_numpy()
+    counting = np.ones(len(runs), dtype=bool)
+    if demand.event:
+        open_ = noted(runs, OVERTURNS) & (rule.demand == "overturned")
+        if rule.demand != "failed":  # what a run that was cut short would have come to is open
+            open_ |= (status == "failed") | (status == "flight")
+        return Bounds(value, value, np.where(open_, 1.0, value), False), counting
+
     estimated = bool(np.isfinite(error).any())
     margin, wild = np.nan_to_num(error), chaotic(rule, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
-    status = runs["status"].to_numpy()
-    counting = np.ones(len(runs), dtype=bool)
-    if demand.event:
-        if rule.demand != "failed":  # what a run that was cut short would have come to is open
-            open_ = (status == "failed") | (status == "flight")
-            high = np.where(open_ | (noted(runs, OVERTURNS) & (rule.demand == "overturned")), 1.0, high)
-        return Bounds(value, low, high, False), counting
-
     by_other = by_other_law(rule, runs, case)
     if by_other is not None:  # the worse counts
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))

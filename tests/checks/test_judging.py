@@ -11,9 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rockbatch.checks import Rule, judge
+from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon, YieldingBase
-from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Stop, Tendon, YieldingBase
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.statistics import STATISTICS, quantile
 from rockbatch.results.rows import suites
 
@@ -225,6 +226,8 @@ def test_a_count_of_records_is_bounded_by_those_that_are_unknown():
     found = judged(table, statistic="count", above=0.5, at_most=1)
     assert (found.low, found.high, found.verdict) == (1, 2, "not decided")
     assert judged(table, statistic="count", above=0.5, at_most=2).verdict == "pass"
+    sunk = judged(runs([0.1], settlement_m=0.02), demand="settlement_m", statistic="count", above=0.01, at_most=2)
+    assert (sunk.value, sunk.unit) == (1.0, "")
 
 
 def test_a_run_that_is_missing_is_one_that_failed():
@@ -713,6 +716,38 @@ def test_a_chaotic_peak_is_known_to_a_factor_of_2_and_is_said(theta, verdict):
     found = judged(runs([0.1, theta], theta_max_error=[1e-6, None], note=["", CHAOTIC]))
     assert (found.verdict, found.low, found.high) == (verdict, pytest.approx(theta / 2), pytest.approx(2 * theta))
     assert "1 run is chaotic, and is known to a factor of 2" in found.note
+
+
+def test_an_event_of_a_chaotic_run_is_one_and_not_known_to_a_factor():
+    table = runs([0.1, 0.3], theta_max_error=None, note=CHAOTIC, flight_s=[math.nan, 2.0])
+    found = judged(table, demand="flight", statistic="mean", at_most=0.5)
+    assert (found.verdict, found.low, found.high) == ("pass", 0.5, 0.5)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "base", [PADS, replace(PADS, spring="epp"), ElasticBase(50.0), RigidBase()], ids=lambda b: b.name
+)
+def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_or_no(base, seed):
+    rng, n = np.random.default_rng(seed), 40
+    cells = {
+        name: rng.choice([1.0, np.nan], n, p=[0.7, 0.3]) * rng.uniform(0.0, 0.01 if "error" in name else 1.0, n)
+        for name, column in COLUMNS.items()
+        if column.kind != "text"
+    }
+    cells[IN_MOTION] = np.where(np.isnan(cells[IN_MOTION_ERROR]), np.nan, rng.uniform(0.0, 1.0, n))
+    cells["status"] = rng.choice(["ok", "ok", "overturned", "flight", "failed"], n)
+    cells["note"] = rng.choice(["", CHAOTIC, FALLS, "the residuals are chaotic"], n)
+    plain = runs(rng.uniform(0.0, 1.2, n)).drop(columns=cells, errors="ignore")
+    table = pd.concat([plain, pd.DataFrame(cells)], axis=1)
+    for name, demand in DEMANDS.items():
+        if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
+            continue
+        bounds, counting = of_runs(Rule("check", name, 0.5), table, case(base=base))
+        value, low, high = (part[counting] for part in bounds[:3])
+        assert (low <= value).all(), name
+        assert (value <= high).all(), name
+        assert not demand.event or set(low) | set(value) | set(high) <= {0.0, 1.0}, name
 
 
 def test_chaotic_residuals_leave_the_demands_on_a_peak_that_converged_as_they_are():
