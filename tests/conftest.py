@@ -9,7 +9,7 @@ import pytest
 
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
 from rockbatch.pier.restraints import Restraint
 
 collect_rarely()
@@ -28,7 +28,7 @@ SHARED = [
 
 SLOW = ({"finite"}, {"shaft"})
 """What is compiled by itself in the bases whose kernels slow tests compile beside these; those of all others are thorough."""
-OF_SLOW = [RigidBase(shaft="elastic"), ElasticBase(50.0, kinematics="finite"), YieldingBase(50.0, eta=2.0, n=1.0)]
+OF_SLOW = [RigidBase(shaft="elastic"), ElasticBase(50.0, kinematics="finite")]
 """Bases whose kernels slow tests compile."""
 
 

@@ -36,10 +36,10 @@ def test_a_damaged_one_ends_in_words_or_in_what_is_right(small, what, times):
 @pytest.mark.parametrize(
     ("what", "times"), [("study", 2000), ("journal", 2000), ("folder", 200), ("analysis", 200), ("rules", 2000)]
 )
-@pytest.mark.parametrize("part", ["a twentieth", pytest.param("the rest", marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("part", ["a fortieth", pytest.param("the rest", marks=pytest.mark.thorough)])
 def test_thousands_do(sample, what, times, part):
-    some = math.ceil(times / 20)
-    first, times = (0, some) if part == "a twentieth" else (some, times - some)
+    some = math.ceil(times / 40)
+    first, times = (0, some) if part == "a fortieth" else (some, times - some)
     _, bad = damage.repeated(getattr(sample, f"damage_{what}"), times, seed=4, first=first)
     assert bad == []
 

@@ -245,7 +245,9 @@ def test_all_that_is_written_about_a_base_and_its_devices_has_a_shape(base):
 
 @pytest.mark.filterwarnings("ignore::rockbatch.common.errors.AboutResults")  # of a digest that is another
 @pytest.mark.parametrize("command", ["report", "check"])
-@pytest.mark.parametrize("part", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "part", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.thorough)]
+)
 def test_whatever_stands_in_the_place_of_a_value_of_run_json_there_are_words(foreign, command, part):
     """Every place that is read, with one of many values: a page, a sentence, or verdicts."""
     good = (foreign / "run.json").read_text(encoding="utf-8")

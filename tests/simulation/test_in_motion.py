@@ -15,7 +15,7 @@ from rockbatch.simulation import Run, Stop, run_all_fixed, run_fixed, run_to_tol
 
 FILE = Path(__file__).parents[1] / "verification" / "ratcheting_motion.txt"
 PIER = Pier(alpha=0.082997, p=0.353807, mu=1.861922)
-SOFT = YieldingBase(beta=25.95608, eta=1.045591, epsilon=1.0, n=8.0, flight="stop")
+SOFT = YieldingBase(beta=25.95608, eta=1.06, epsilon=1.0, flight="stop")
 """A base that tilts on by free vibration after the motion of the file."""
 
 
@@ -37,9 +37,9 @@ def peak_of_history(run, substeps, until):
     return abs(rows.theta[rows.t <= until + 1e-9]).max()
 
 
-@pytest.mark.slow
 def test_a_run_that_fails_after_its_motion_has_the_peak_until_then_within_its_error(failed, motion):
     assert failed.status == "failed"
+    assert "further and further" in failed.reason
     assert failed.t_max > motion.duration
     assert 0.0 < failed.theta_max_in_motion < failed.theta_max
     fine = run_fixed(PIER, SOFT, motion, 16 * failed.substeps, wait=False).theta_max_in_motion
@@ -83,7 +83,6 @@ def test_a_fixed_step_claims_no_error_of_it():
     assert fixed.theta_max_in_motion_error is None
 
 
-@pytest.mark.slow
 def test_the_page_and_the_terminal_say_so_and_a_check_that_it_breaks_fails(tmp_path, capsys, failed):
     least = (failed.theta_max_in_motion - failed.theta_max_in_motion_error) / PIER.alpha
     rule = {"demand": "theta_max_over_alpha", "statistic": "max", "basis": "judgement", "reason": "r"}
@@ -93,7 +92,6 @@ def test_the_page_and_the_terminal_say_so_and_a_check_that_it_breaks_fails(tmp_p
         "beta": SOFT.beta,
         "eta": SOFT.eta,
         "epsilon": 1.0,
-        "n": 8,
         "flight": "stop",
     }
     text = study_text(

@@ -210,7 +210,7 @@ def test_static_deflection_is_the_integral_of_the_law(n, eta):
 
 @pytest.mark.parametrize(
     ("spring", "n"),
-    [("bouc-wen", 5.0), ("epp", 5.0), ("hardening", 5.0), pytest.param("bouc-wen", 1.0, marks=pytest.mark.slow)],
+    [("bouc-wen", 5.0), ("epp", 5.0), ("hardening", 5.0), pytest.param("bouc-wen", 1.0, marks=pytest.mark.thorough)],
 )
 def test_dissipated_energy_is_the_area_of_the_hysteresis_loops(spring, n):
     """∮ F dv by the trapezoidal rule, less what the spring stores elastically; 1e-4: the rule's error at these rows."""

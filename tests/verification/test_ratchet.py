@@ -64,7 +64,7 @@ def test_settlement_per_cycle_is_the_known_number(eta, percent):
     [
         (2.5, 5.0, "first-order"),
         (3.0, 5.0, "finite"),
-        pytest.param(2.5, 1.0, "first-order", marks=pytest.mark.slow),  # compiled by itself, like those below
+        pytest.param(2.5, 1.0, "first-order", marks=pytest.mark.thorough),  # compiled by itself, like those below
         pytest.param(2.5, 1.0, "finite", marks=pytest.mark.thorough),
     ],
 )
@@ -93,7 +93,7 @@ def test_an_elastic_plastic_spring_does_not_ratchet():
     [
         (2.5, 5.0, "first-order"),
         (1.5, 5.0, "finite"),
-        pytest.param(1.5, 2.0, "first-order", marks=pytest.mark.slow),
+        pytest.param(1.5, 2.0, "first-order", marks=pytest.mark.thorough),
         pytest.param(1.5, 2.0, "finite", marks=pytest.mark.thorough),
     ],
 )

@@ -86,7 +86,7 @@ def test_a_landing_is_no_reversal_after_which_only_lesser_rotations_come():
     assert found.t_end > 8.99
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # another n
 def test_a_base_that_ratchets_on_is_not_called_over():
     """It overturns at 383 s; within 40/p after its motion, for which a run is judged, it leans further and further."""
     samples = np.loadtxt(Path(__file__).parent / "ratcheting_motion.txt")
