@@ -148,8 +148,6 @@ def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) 
         wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
     if not (math.isfinite(numerics.quiet_s) and numerics.quiet_s >= 0):
         wrong.append(f"quiet_s = {numerics.quiet_s:g}: must be 0 or more [s]")
-    if substeps is not None and (isinstance(substeps, bool) or not isinstance(substeps, int)):
-        wrong.append(f"substeps = {substeps}: must be a whole number")
     if substeps is None and not wait:
         wrong.append("wait = False: a run that is cut off has no error estimate; give substeps")
     if substeps is not None and not wrong and substeps < (least := least_substeps(pier, base, motion.dt)):

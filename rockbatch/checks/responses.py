@@ -8,7 +8,7 @@ import numpy as np
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import Case, bends, creeps
+from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
 from rockbatch.results.rows import rows_of_cases
 
@@ -145,7 +145,7 @@ def in_words(worst: Worst) -> str:
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
         return f"{value:.3g} m ({_millimetres(value)} mm)"
-    if worst.demand == "settlement_m" and creeps(worst.case) and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
+    if worst.demand == "settlement_m" and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
         low, high = sorted((value, float(worst.run[OTHER_LAW])))
         return f"{_millimetres(low)} to {_millimetres(high)} mm, by the law of the springs"
     return f"{_millimetres(value)} mm" if DEMANDS[worst.demand].unit == "m" else f"{value:.3g}"

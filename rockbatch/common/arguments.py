@@ -20,7 +20,7 @@ _AS_THEY_ARE = {float, bool, type(None)}
 """Types whose values are taken without a further look, since every record has hundreds."""
 _WORDS: dict[Any, str] = {
     float: "a number", int: "a whole number", str: "a text", bool: "True or False", os.PathLike: "a path", Callable: "a function",
-    None: "None",
+    type(None): "None",
 }  # fmt: skip
 
 
@@ -35,7 +35,7 @@ def checked(door: Door) -> Door:
     kinds = dict(_kinds(parameters))
     keywords = kinds.keys() - parameters.keys() if any(map(_is_unpacked, parameters.values())) else None
     kinds = {name: alternatives for name, alternatives in kinds.items() if all(map(_is_known, alternatives))}
-    plain = {name: {type(None) if kind is None else kind for kind in kinds[name]} & _AS_THEY_ARE for name in kinds}
+    plain = {name: _AS_THEY_ARE.intersection(kinds[name]) for name in kinds}
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -81,12 +81,12 @@ def _is_unpacked(parameter: inspect.Parameter) -> bool:
 def _alternatives(annotation: Any) -> tuple[Any, ...]:
     if get_origin(annotation) in (Union, types.UnionType):
         return tuple(kind for part in get_args(annotation) for kind in _alternatives(part))
-    return (None if annotation is type(None) else annotation,)
+    return (annotation,)
 
 
 def _is_known(kind: Any) -> bool:
     plain = get_origin(kind) or kind
-    return plain in (None, Literal) or (
+    return plain is Literal or (
         isinstance(plain, type)
         and plain not in (inspect.Parameter.empty, object, Any)
         and plain.__module__ != "numpy"
@@ -111,8 +111,6 @@ def _take(value: Any, kind: Any) -> Any:
             return plain(value)
     elif plain in (tuple, Sequence) and isinstance(value, tuple | list):
         return _members(value, get_args(kind))
-    elif plain is None:
-        fits = value is None
     elif plain is Literal:
         fits = type(value) in map(type, get_args(kind))  # which words there are is said where they are read
     elif isinstance(value, str):

@@ -378,8 +378,8 @@ class SlowTurn:
             before *= 2
         start = min(start or 0.0, until)
         beyond = [] if self.lift_off is None else [float(np.nextafter(start, 2.0))]
-        grid = [ONSET, *beyond, *np.linspace(0.0, start, before + 1)[1:]]
-        grid += [*(start + (until - start) * np.linspace(0.0, 1.0, after + 1) ** 2)[1:]]
+        grid = [ONSET, *beyond, *np.linspace(0.0, start, before + 1)]
+        grid += [*(start + (until - start) * np.linspace(0.0, 1.0, after + 1) ** 2)]
         return self._from_rest(grid)
 
     def _from_rest(self, grid: Sequence[float] | Array) -> Equilibria:

@@ -59,6 +59,12 @@ class Logistic:
     draws: Values
 
 
+def _dispersion(x_16: Values, x_84: Values) -> Values:
+    """Return half of ln(x_84/x_16), shape (n,), infinite where a curve does not come from one to the other."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where((x_16 > 0) & np.isfinite(x_84), 0.5 * np.log(x_84 / x_16), np.inf)
+
+
 @dataclass(frozen=True)
 class Cloud:
     """A fragility curve of a cloud analysis.
@@ -102,8 +108,7 @@ class Cloud:
     @property
     def dispersion(self) -> float:
         """Return half of ln(x_84/x_16), which is β of a lognormal curve."""
-        low, high = (self._quantiles(float(ndtr(z)))[0] for z in (-1.0, 1.0))
-        return 0.5 * math.log(high / low) if low > 0 and math.isfinite(high) else math.inf
+        return float(_dispersion(*(self._quantiles(float(ndtr(z))) for z in (-1.0, 1.0)))[0])
 
     @property
     def median_interval(self) -> tuple[float, float]:
@@ -114,10 +119,8 @@ class Cloud:
     @property
     def dispersion_interval(self) -> tuple[float, float]:
         """Return the interval of the dispersion."""
-        low, high = (self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            half = np.where((low > 0) & np.isfinite(high), 0.5 * np.log(high / low), np.inf)
-        least, most = np.quantile(half, self._ends, method="nearest")
+        of_draws = _dispersion(*(self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0)))
+        least, most = np.quantile(of_draws, self._ends, method="nearest")
         return float(least), float(most)
 
     def widened(self, added: float) -> "Cloud":

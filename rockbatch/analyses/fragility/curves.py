@@ -297,7 +297,8 @@ def _stripe_of_one(run: CloudPoint, plan: LevelPlan) -> Stripe:
 
 
 def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec) -> Fitted | str:
-    x, demand = np.array([[run.intensity, run.demand] for run in points], dtype=np.float64).reshape(-1, 2).T
+    x = np.array([run.intensity for run in points], dtype=np.float64)
+    demand = np.array([run.demand for run in points], dtype=np.float64)
     exceeded = np.array([run.state == EXCEEDED for run in points], dtype=np.bool_)
     if DEMANDS[rule.demand].event:
         return cloud.fit_event(x, exceeded, spec.confidence)

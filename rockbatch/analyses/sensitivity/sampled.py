@@ -76,8 +76,7 @@ class Design:
 
     def __init__(self, study: Study, points: Points, motions: Sequence[Motion]) -> None:
         self.cases, self.points = study.cases, points
-        turned = any(parameter.name == "polarity" for inputs in points.inputs for parameter in inputs)
-        polarity = "+" if turned else study.motions.simulated
+        polarity = study.motions.simulated
         self.members = [(number, polarity, scale) for number in range(len(motions)) for scale in study.motions.scale]
         self._motions = {True: motions, False: [replace(motion, vertical=None) for motion in motions]}
 

@@ -237,7 +237,7 @@ def _panel(axes: Axes, panel: Panel, across: float, entries: Entries) -> None:
         _axis(axes, axis, scale)
     axes.yaxis.label.set(rotation=0.0, horizontalalignment="left", verticalalignment="bottom")
     axes.yaxis.set_label_coords(0.0, 1.02)
-    pad = 1.5 * float(axes.yaxis.label.get_fontsize()) if panel.y.label and panel.framed else 0.0
+    pad = 1.5 * float(axes.yaxis.label.get_fontsize()) if panel.y.label else 0.0
     axes.set_title("\n".join(map(_text, _caption(panel, across))), pad=pad + 4.0)
     if not panel.framed:
         axes.set_axis_off()

@@ -91,7 +91,7 @@ def _path(source: str | None) -> object:
 
 
 def _processing(record: Record) -> object:
-    return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
+    return record["notes"] and tag("ul", *(tag("li", note) for note in record["notes"]))
 
 
 def unusable(finished: Finished) -> Markup:
