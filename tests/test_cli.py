@@ -11,6 +11,7 @@ import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
@@ -23,6 +24,7 @@ from rockbatch.commands import messages
 from rockbatch.commands.cli import COMMANDS, EXIT_CODES, main, parser
 from rockbatch.commands.motions import _by_reason
 from rockbatch.commands.streams import filled, in_width, is_lost, show
+from rockbatch.commands.summary import summary
 from rockbatch.reporting import write_report
 from rockbatch.results.beside_peaks import write_semicolons
 
@@ -341,6 +343,16 @@ def test_progress_is_a_bar_with_the_time_left_on_a_terminal_that_has_a_size(size
         assert shown[0].startswith("1 of 3 runs, ")
 
 
+def test_plain_lines_of_progress_are_a_while_apart_and_estimate_the_time_left(monkeypatch, capsys):
+    clock = iter([100.0, 105.0, 111.0, 115.0, 122.0])
+    monkeypatch.setattr(messages, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    monkeypatch.setattr(messages, "SECONDS_BETWEEN_LINES", 10.0)
+    with messages.Terminal().progress(80) as advance:
+        for _ in range(4):
+            advance(10)
+    assert capsys.readouterr().err.splitlines() == ["20 of 80 runs, 33 s left", "40 of 80 runs, 22 s left"]
+
+
 def test_wide_tables_fit_the_terminal(monkeypatch):
     """On a terminal columns that do not fit go below the others; elsewhere a line is a row, for whoever reads it in."""
     head = ["", *(f"case {i}" for i in range(30))]
@@ -550,3 +562,22 @@ def test_reading_results_loads_no_record_format():
     code += "print([m for m in sys.modules if m.startswith('rockbatch.motions.formats')])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_the_table_in_the_terminal_has_a_line_for_each_record_and_a_column_for_each_value_of_a_case():
+    values = {("b", 1.0): 0.3, ("a", 1.0): 0.1, ("b", 2.0): 0.4, ("a", 2.0): 0.2}
+    table = pd.DataFrame(
+        [
+            {"record": record, "case": "pads", "eta": eta, "polarity": "+", "scale": 1.0, "status": "ok",
+             "theta_max_over_alpha": peak, "theta_max_is": ""}
+            for (record, eta), peak in values.items()
+        ]
+    )  # fmt: skip
+    lines = summary(table, ("eta",), {"a": "first", "b": "second"}).splitlines()
+    assert [line.split() for line in lines[-2:]] == [["first", "0.1000", "0.2000"], ["second", "0.3000", "0.4000"]]
+    assert lines[0] == "Peak rotation theta_max/alpha"
+    of_piers = summary(table.rename(columns={"eta": "alpha"}), ("alpha",), {"a": "first", "b": "second"})
+    assert [block.splitlines()[-1].split() for block in of_piers.split("\n\n")] == [
+        ["second", "0.3000"],
+        ["second", "0.4000"],
+    ]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockbatch.common.files import csv_lines, csv_plain, csv_safe, csv_text, legible
+from rockbatch.common.files import csv_lines, csv_plain, csv_safe, csv_text, legible, read_table
 from rockbatch.toml import kinds
 
 FORMULAS = ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("http://x")', "＝1+1", "＋1", "－2", "＠A1"]
@@ -113,3 +113,11 @@ def test_columns_make_the_lines_that_a_csv_writer_makes_of_their_cells():
         csv.writer(buffer, lineterminator="\n").writerow(row)
         lines.append(buffer.getvalue())
     assert [f"{line}\n" for line in csv_lines(columns)] == lines
+
+
+def test_a_name_that_a_reader_of_tables_takes_for_no_value_stays_a_name(tmp_path):
+    names = ["NA", "nan", "None", "NULL", "", "12", "1e5", "=1+1"]
+    (tmp_path / "a.csv").write_text(csv_text(("record", "x"), [{"record": name, "x": 1.5} for name in names]), "utf-8")
+    table = read_table(tmp_path / "a.csv")
+    assert table["record"].to_list() == names
+    assert table["x"].to_list() == [1.5] * len(names)

@@ -1,12 +1,16 @@
 """Ctrl-C on the command line: answered at once, whatever the program is in, and over soon."""
 
 import signal
+import socket
 import subprocess
 import sys
 import time
 
 import pytest
 from studies import RIGID, study_text, write_study
+
+from rockbatch.commands import interrupts
+from rockbatch.commands.interrupts import answered_interrupts
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 
@@ -73,8 +77,6 @@ def test_an_interrupt_while_modules_are_loaded_is_answered_in_one_line(tmp_path,
 
 
 def test_an_interrupt_of_what_ends_at_once_is_not_remarked_upon(capsys):
-    from rockbatch.commands.interrupts import answered_interrupts
-
     earlier = signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell ignores in the background
     try:
         with pytest.raises(KeyboardInterrupt), answered_interrupts():
@@ -82,3 +84,10 @@ def test_an_interrupt_of_what_ends_at_once_is_not_remarked_upon(capsys):
     finally:
         signal.signal(signal.SIGINT, earlier)
     assert capsys.readouterr().err == ""
+
+
+def test_of_two_interrupts_that_wait_each_is_read_on_its_own():
+    bell, rope = socket.socketpair()
+    with bell, rope:
+        rope.send(bytes([signal.SIGINT, signal.SIGTERM]))
+        assert [interrupts._next(bell, 1.0) for _ in range(2)] == [signal.SIGINT, signal.SIGTERM]

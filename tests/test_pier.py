@@ -22,6 +22,7 @@ from rockbatch.pier import (
     Stop,
     Tendon,
     YieldingBase,
+    plausibility,
     problems,
     static_deflection,
     tilt_over_residual,
@@ -259,6 +260,20 @@ def test_what_is_impossible_of_devices_is_said_once_and_nothing_else(devices, sa
     found = wrong_restraints(SQUARE, devices)
     assert len(found) == len(said)
     assert all(sentence.startswith(start) for sentence, start in zip(found, said, strict=True)), found
+
+
+def test_the_columns_of_a_frame_are_no_frames():
+    light = Pier.frame(Pier.rectangle(1.0, 7.0, mass_t=20.0), 4, 1e-7, confirm=("deck_mass_t",))
+    assert light.mu == pytest.approx(3.0)
+    with pytest.raises(InputError, match="the columns of a frame are solid rectangles"):
+        Pier.frame(light, 2, 100.0)
+
+
+@pytest.mark.parametrize(("share", "doubtful"), [(0.249, True), (0.251, False), (2.49, False), (2.51, True)])
+def test_a_spring_at_the_deck_is_at_a_quarter_to_two_and_a_half_heights_of_the_pier(share, doubtful):
+    spring = DeckSpring(0.2, height_m=share * 2.0 * FIG5.height)
+    doubt = plausibility.doubt(FIG5, spring)
+    assert (doubt is not None and doubt.name == "height_m") == doubtful
 
 
 def test_devices_of_a_frame_are_at_the_feet_of_its_columns():

@@ -63,12 +63,14 @@ def test_a_unit_at_the_end_of_a_name_has_the_size_that_pint_knows(unit, end):
     [
         ("width_m", "m", "mm cm km"), ("yield_mm", "mm", "m cm km"), ("dt_s", "s", "ms"), ("mass_t", "metric_ton", "kg kt"),
         ("force_kN", "kN", "MN N"), ("stiffness_kN_m", "kN/m", "MN/m N/m"), ("pgv_m_s", "m/s", "cm/s mm/s"),
-        ("area_m2", "m^2", "mm² cm²"), ("pga_g", "standard_gravity", "m/s² cm/s²"),
+        ("area_m2", "m^2", "mm² cm²"), ("own_inertia_t_m2", "metric_ton m^2", "kg·m² kt·m²"),
+        ("c_kN_s_m", "kN s/m", "MN·s/m N·s/m"), ("pga_g", "standard_gravity", "m/s² cm/s²"),
     ],
 )  # fmt: skip
 def test_a_value_in_another_unit_is_told_with_what_to_write(key, own, others):
-    for other in others.split():
-        meant = U(other.replace("²", "^2")).to(own).magnitude if other != "kt" else 1e3
+    for other in others.replace("·", "\u00a0").split(" "):
+        other = other.replace("\u00a0", " ")
+        meant = U(other.replace("²", "^2").replace("kt", "kilometric_ton")).to(own).magnitude
         said = in_another_unit(key, 1.0, lambda value, meant=meant: value == pytest.approx(meant, rel=5e-4))
         found = re.fullmatch(rf"; 1 {re.escape(other)} are {key} = (.*)", said)
         assert found

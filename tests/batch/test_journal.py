@@ -247,6 +247,7 @@ def test_only_one_writes_into_a_folder_at_a_time(path):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no processes are forked here")
 def test_a_forked_process_that_leaves_takes_neither_lock_nor_journal_along(path):
     with Journal(path, COLUMNS, DIGEST) as journal:
+        assert path.exists()  # and has no rows: its own process would remove it
         child = os.fork()
         if not child:  # which leaves the context on its own, as an exception or sys.exit does
             try:
@@ -254,6 +255,7 @@ def test_a_forked_process_that_leaves_takes_neither_lock_nor_journal_along(path)
             finally:
                 os._exit(0)
         os.waitpid(child, 0)
+        assert path.exists()
         with pytest.raises(InputError, match="another process is writing"):
             Journal(path, COLUMNS, DIGEST).__enter__()
         journal.add_all(ROWS)

@@ -389,3 +389,10 @@ def test_a_folder_is_looked_through_for_station_xml_once(tmp_path, monkeypatch):
     assert looked == [tmp_path]
     (tmp_path / "stations.xml").unlink()
     assert len(read_motions(tmp_path).unusable) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "inside"), [("a/b.at2", "a/b.at2"), ("/etc/x", "etc/x"), ("../../x", "x"), ("..", "?"), ("/", "?")]
+)
+def test_no_name_in_an_archive_leads_out_of_it_and_none_is_empty(name, inside):
+    assert str(archives._within(name)) == inside

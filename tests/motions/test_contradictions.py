@@ -125,8 +125,9 @@ def test_extremes_of_a_sac_header_may_be_stale_and_are_no_more_than_a_factor_of_
         reasons, _ = sac(change)
         assert "its header states a range of " in reasons[0]
         assert 'if it is right, write confirm = ["x"]' in reasons[0]
-    unset = sac(lambda data: word(4, "<f", lambda _: -12345.0)(scaled(10.0)(data)))
-    assert unset == ([], [])
+    for unset in (-12345.0, 0.0):
+        both = word(4, "<f", lambda _, value=unset: value), word(8, "<f", lambda _, value=unset: value)
+        assert sac(lambda data, both=both: both[0](both[1](scaled(10.0)(data)))) == ([], [])
 
 
 def test_the_times_of_a_sac_header_count_from_1970_in_some_files():

@@ -248,3 +248,16 @@ def test_of_real_recordings_in_several_files_one_is_used():
     }
     doubles = [double for double in found.left_out if "which is used" in double.reason]
     assert len(doubles) == 6
+
+
+@pytest.mark.parametrize(("stage", "used"), [("Corrected", "cosmos.v2c"), ("Uncorrected", "unknown.AT2")])
+def test_a_copy_of_unknown_processing_is_used_before_an_uncorrected_one_and_after_a_corrected_one(
+    tmp_path, stage, used
+):
+    values = np.round(wiggle(1500, 4, 90.0) * np.hanning(1500), 3)
+    text = cosmos_text(values, "90 Deg", stage=stage, scnl="")
+    (tmp_path / "cosmos.v2c").write_text(text, encoding="latin-1")
+    at2 = at2_text(values / 981.0, title="EARTHQUAKE, 1/17/1994, 8040, 090", dt=".0050")
+    (tmp_path / "unknown.AT2").write_text(at2.replace("PEER NGA STRONG MOTION DATABASE RECORD", "A RECORD"))
+    found = read_motions(tmp_path)
+    assert [motion.source for motion in found.motions] == [used]

@@ -7,7 +7,7 @@ import pytest
 from motion_files import wiggle, write_at2
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions import ReadOptions, common_span, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.pairing import to_motions
@@ -338,3 +338,12 @@ def test_a_vertical_without_two_samples_in_common_with_its_horizontal_is_not_use
     (motion,) = to_motions([h, v]).motions
     assert (motion.npts, motion.vertical) == (10, None)
     assert any("does not last over the horizontal peak" in note for note in motion.notes)
+
+
+@pytest.mark.parametrize(("first", "second", "delay"), [(None, 3.0, 0.0), (3.0, None, 0.0), (1.0, 3.0, 2.0)])
+def test_components_without_both_starts_begin_together(first, second, delay):
+    one, other = (
+        Component(name, 0.01, np.ones(500), Orientation(name), start=start)
+        for name, start in (("000", first), ("090", second))
+    )
+    assert common_span._offset(one, other, "090") == (delay, [])

@@ -4,9 +4,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
+from agency_files import geonet_text
 from layouts import LAYOUTS
 
 from rockbatch.motions.formats import read_record
+from rockbatch.motions.formats.geonet import is_geonet
+from rockbatch.motions.formats.unam import _texts_of
 from rockbatch.motions.record_file import RecordFile
 
 GEONET = "20161113_110256_WTMC_20"
@@ -113,3 +116,15 @@ def test_a_header_says_which_sensor_has_recorded(form):
     found = read(form, next(row[1] for row in READ if row[0] == form))
     sensor = found[min(1, len(found) - 1)].sensor
     assert (sensor.station, sensor.network, sensor.location, sensor.place, sensor.channel) == SENSORS[form]
+
+
+def test_a_geonet_file_begins_with_its_title_whatever_stands_below():
+    head = geonet_text(1).encode()
+    assert is_geonet(head)
+    first, rest = head.split(b"\n", 1)
+    assert not is_geonet(b"of another agency".ljust(len(first)) + b"\n" + rest)
+
+
+def test_a_key_of_unam_that_has_no_value_for_each_channel_says_nothing():
+    assert _texts_of("/a/ b /c/", 3) == ["a", "b", "c"]
+    assert _texts_of("/a/b/", 3) == ["", "", ""]

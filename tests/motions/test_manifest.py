@@ -3,6 +3,8 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +13,8 @@ from motion_files import wiggle, write_at2
 from waveform_files import trace
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import read_motions
+from rockbatch.motions import Unusable, read_motions
+from rockbatch.motions.manifest import Entry
 from rockbatch.motions.manifest_draft import write_manifest
 
 
@@ -119,13 +122,14 @@ def test_one_component_of_a_file_can_be_meant(tmp_path):
 
 def test_a_csv_says_the_same_also_as_excel_writes_it_where_decimals_have_commas(tmp_path):
     for folder, text in (
-        ("comma", "file,azimuth,use,magnitude\na000.AT2,12.5,,6.7\na090.AT2,,false,\n"),
-        ("semicolon", "\ufefffile;azimuth;use;magnitude\r\na000.AT2;12,5;;6,7\r\na090.AT2;;FALSE;\r\n"),
+        ("comma", "file,station,azimuth,use,magnitude\na000.AT2,24,12.5,,6.7\na090.AT2,,,false,\n"),
+        ("semicolon", "\ufefffile;station;azimuth;use;magnitude\r\na000.AT2;24;12,5;;6,7\r\na090.AT2;;;FALSE;\r\n"),
     ):
         write_records(tmp_path / folder)
         (tmp_path / folder / "motions.csv").write_text(text)
         (motion,) = motions_of(tmp_path / folder).values()
         assert (motion.name, motion.azimuth, motion.magnitude) == ("a000", 12.5, 6.7)
+        assert motion.station == "STA 24"
 
 
 @pytest.mark.parametrize(("given", "azimuth"), [("0", 0.0), ("359.5", 359.5), ("360", 0.0)])
@@ -301,3 +305,10 @@ def test_mistakes_come_in_one_order_whatever_the_hashes_of_texts(tmp_path):
     first = said(0)
     assert first.count("write component =") == 2
     assert said(1) == first
+
+
+def test_an_entry_of_a_whole_file_is_for_none_of_its_components():
+    without_number = Unusable("a", "a.txt", "it ends early")
+    assert not Entry(Path("a.txt"), None, {}).is_for(without_number)
+    assert Entry(Path("a.txt"), None, {"component": 2}).is_for(replace(without_number, number=2))
+    assert not Entry(Path("a.txt"), None, {"component": 0}).is_for(without_number)

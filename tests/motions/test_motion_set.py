@@ -1,5 +1,7 @@
 """A set of motions as a list of them, and as a table; what it tells of itself."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -89,6 +91,7 @@ def test_a_notebook_shows_the_first_of_many_rows_and_escapes_names():
     assert "<12>" not in html
     assert "&lt;12&gt;" not in html
     assert "and 8 more" in html
+    assert [cell for cell in re.findall("<th>(.*?)</th>", html) if cell.isdecimal()] == []  # no numbers of rows
 
 
 def test_what_is_stated_about_files_is_public(tmp_path):

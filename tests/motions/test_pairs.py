@@ -137,6 +137,7 @@ def test_pairs_are_brought_to_their_common_time():
         ({"azimuth": 40.0}, "m1 and m2 are 40° apart, not square to each other"),
         ({"azimuth": 91.5}, "are 91.5° apart"),
         ({"dt": 0.02}, "are sampled at 0.01 s and 0.02 s"),
+        ({"dt": 0.0100005}, "are sampled at 0.01 s and 0.0100005 s"),
         ({"start": 100.005}, "start 0.50 samples apart"),
         ({"start": 500.0}, "have no time in common"),
     ],

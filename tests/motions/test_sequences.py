@@ -104,6 +104,9 @@ def test_factors_polarities_and_missing_verticals():
     assert "shock 1, a: times 0.5, reversed" in whole.notes
     assert "no vertical component in b: zeros" in whole.notes
     assert rb.sequence([b, b]).vertical is None
+    stronger = rb.sequence([b, a], factors=[1.0, 1.1])
+    np.testing.assert_allclose(stronger.horizontal[second:], 1.1 * a.horizontal, rtol=1e-15)
+    assert [note for note in stronger.notes if "times" in note] == ["shock 2, a: times 1.1"]
 
 
 def test_after_a_long_pause_a_sequence_has_the_larger_of_the_spectra_of_its_shocks():

@@ -8,7 +8,7 @@ import pytest
 from studies import study_text, write_study
 
 from rockbatch.common.errors import InputError
-from rockbatch.motions import Motion, MotionSet
+from rockbatch.motions import Motion, MotionSet, description
 from rockbatch.motions.design_spectra import (
     EUROCODE,
     AashtoSpectrum,
@@ -160,6 +160,14 @@ def test_none_leaves_records_as_they_are_and_says_how_they_compare():
     told = target.described(SUITE, 10.0)
     np.testing.assert_allclose(told["mean_sa_g"], spectra(SUITE, target).mean(axis=0), rtol=1e-4)
     np.testing.assert_allclose(told["sa_g"], TABLE.at(target.periods), rtol=1e-4)
+    shown = description.spectra(SUITE, SUITE, 10.0, target)
+    periods = np.array(shown["period_s"])
+    within = (periods >= 0.3) & (periods <= 3.0)
+    found, mean = (
+        [sa for sa, one in zip(shown[name], within, strict=True) if one] for name in ("target_sa_g", "mean_sa_g")
+    )
+    np.testing.assert_allclose(found, TABLE.at(periods[within]), rtol=1e-3)
+    np.testing.assert_allclose(mean, np.array(shown["sa_g"])[:, within].mean(axis=0), rtol=1e-3)
 
 
 def test_a_record_without_motion_is_unusable_and_does_not_spoil_the_others():

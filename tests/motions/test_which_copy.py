@@ -510,3 +510,9 @@ def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():
         Component("b", 0.01005, shaken(fine), north, source="b"),
     )
     assert likeness._correlate(one, two)
+
+
+def test_series_that_never_move_have_no_independent_values():
+    assert likeness._independent_values(np.ones(100), np.ones(100)) == 0.0
+    moving = np.random.default_rng(0).normal(size=(2, 4096))  # of white noise each sample is one, to its scatter
+    assert likeness._independent_values(*moving) == pytest.approx(4096.0, rel=0.1)

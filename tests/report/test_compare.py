@@ -11,7 +11,7 @@ from report_samples import FIG7, FOUNDATIONS, case_entry, three_piers, write_res
 
 from rockbatch.checks import write_verdicts
 from rockbatch.commands.cli import main
-from rockbatch.pier import Pier, YieldingBase
+from rockbatch.pier import Pier, RigidBase, YieldingBase
 from rockbatch.reporting import write_comparison
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.pair import pair
@@ -109,6 +109,14 @@ def test_values_that_both_vary_are_matched_and_those_that_one_varies_are_not_gue
     assert matched.runs[0].empty  # two runs of A would fit every run of B
     assert (len(matched.only[0]), len(matched.only[1])) == (12, 6)
     assert "Every pair" not in Page(write_comparison(a, b).read_text(encoding="utf-8")).headings
+
+
+def test_a_case_is_named_after_the_matched_values_that_it_has(tmp_path):
+    grid = [case_entry("soil", {"eta": eta}, PIER, YieldingBase(beta=40.0, eta=eta)) for eta in (2.5, 3.5)]
+    grid.append(case_entry("rock", {"eta": ""}, PIER, RigidBase()))
+    matched = pair(*map(read, two(tmp_path, {"cases": grid, "varied": ("eta",)}, {"cases": grid, "varied": ("eta",)})))
+    labels = [series.label.replace("\u00a0", " ") for series in matched.named.series]
+    assert labels == ["soil: η = 2.5", "soil: η = 3.5", "rock"]
 
 
 def test_piers_of_both_are_matched_by_their_values(tmp_path):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from check_samples import case
+from report_samples import write_results
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
@@ -88,3 +89,12 @@ def test_foundations_have_short_names_of_their_own_or_letters_and_rigid_ground_i
     for rigid in (True, False):
         own = [one.index for one in found if one.rigid is rigid]
         assert own == [*range(len(own))]
+
+
+def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_record(tmp_path):
+    write_results(tmp_path, scales=(1.0, 2.0))
+    finished = read(tmp_path)
+    run = finished.runs[finished.runs["scale"] == 2.0].iloc[0].to_dict()
+    turned = finished.case_of(run | {"polarity": "-"})
+    assert finished.case_of(run | {"polarity": "+"}) == turned.replace(", reversed", "")
+    assert "scale 2, reversed" in turned

@@ -461,3 +461,13 @@ def test_the_report_of_made_up_histories_still_comes(tmp_path):
 
     base = rb.YieldingBase(beta=40.0, eta=2.5, epsilon=0.05)
     assert write_report(tmp_path, [response("ERZ-NS", "1", base)]).exists()
+
+
+def test_what_is_expected_of_a_value_is_said_in_words():
+    shape = {"a": [float], "b": {str: int}, "c": (str, None), "d": ([int], {"x": int})}
+    right = {"a": [1.5], "b": {"k": 2}, "c": None, "d": {"x": 1}}
+    assert fits(right, shape)
+    expected = {"a": "a list", "b": "an object", "c": "a text or null", "d": "a list or an object"}
+    for key, words in expected.items():
+        (problem,) = unfit(right | {key: 1.25}, shape)
+        assert (problem.place, problem.expected) == (key, words)

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections import deque
 
 import numba
 import pytest
@@ -40,3 +41,10 @@ def test_runs_without_the_compiler_are_announced_before_the_first(monkeypatch):
     assert "NUMBA_DISABLE_JIT is set" in only
     assert "a thousand times as long" in only
     assert "`unset NUMBA_DISABLE_JIT`" in only
+
+
+def test_what_another_process_cannot_compile_is_left_without_a_word(capfd):
+    waiting = deque(["no task"])
+    compiling._compile_elsewhere(waiting)
+    assert not waiting
+    assert capfd.readouterr() == ("", "")

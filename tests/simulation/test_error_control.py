@@ -631,3 +631,13 @@ def test_residuals_lie_apart_by_their_difference_and_settlements_by_theirs_over_
     ]
     assert chaos._residuals_apart(*tilted, QUICK) == pytest.approx(apart)
     assert chaos._residuals_apart(*sunk, QUICK) == pytest.approx(apart / QUICK.half_width)
+
+
+def test_the_errors_of_a_shaft_are_its_changes_by_halving_the_step():
+    bent = run_fixed(FIG5, RigidBase(), SINE, 1)
+    fine = bent.changed(deflection_max=0.030, top_drift_max=0.75, theta_res=None)
+    coarse = bent.changed(deflection_max=0.032, top_drift_max=0.70, theta_res=None)
+    for one, other in ((fine, coarse), (coarse, fine)):
+        errors = error_control._with_errors(Run(FIG5, RigidBase(), SINE), one, other)
+        assert errors.deflection_max_error == pytest.approx(0.002)
+        assert errors.top_drift_max_error == pytest.approx(0.05)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockbatch.simulation.half_cycles import Path, half_cycles
+from rockbatch.simulation.half_cycles import Path, _peak, half_cycles
 
 
 def test_an_oscillation_passes_upright_and_turns_where_its_cosine_does():
@@ -26,3 +26,15 @@ def test_an_oscillation_passes_upright_and_turns_where_its_cosine_does():
     assert found.t_amplitude[1 : count + 1] == pytest.approx(turns, abs=1e-3)
     heights = 0.02 * np.exp(-decay * turns) * math.cos(math.atan(decay / omega))
     assert found.amplitude[1 : count + 1] == pytest.approx(heights, rel=2e-4)
+
+
+@pytest.mark.parametrize("before", [0.1, 0.4])
+def test_between_two_rows_it_turns_where_their_cubic_does_and_without_a_turn_nowhere(before):
+    """θ = cos t, by rows that are 0.5 apart, of which the first two are on both sides of the top."""
+    t = np.array([0.0, 0.5, 1.0]) - before
+    path = Path(t, np.cos(t), -np.sin(t))
+    assert _peak(path, 0, 3) == (pytest.approx(1.0, abs=2e-4), pytest.approx(0.0, abs=2e-3))
+    assert _peak(path, 0, 2) == _peak(path, 0, 3)
+    assert np.isnan(_peak(path, 1, 3)).all()
+    at_rest = Path(t + before, np.cos(t + before), -np.sin(t + before))
+    assert _peak(at_rest, 0, 3) == (1.0, 0.0)

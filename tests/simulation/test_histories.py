@@ -151,7 +151,9 @@ def test_the_figure_shows_the_loop_of_every_damper_and_tendon(width):
     }  # fmt: skip
     histories, *_, one, other = of_one(response, "title").panels
     assert one.width + other.width <= histories.width
+    assert [mark.label for mark in loops["damper 1"]] == ["at the right pivot", "at the left pivot"]
     (tendon,) = loops["tendon 1"]
+    assert not tendon.label  # it is the only one
     rows = np.isin(1000.0 * response.restraints["tendon 1 elongation"].to_numpy(), tendon.x)
     assert rows.sum() >= len(tendon.x) > 100
     force = response.restraints["tendon 1 force"].to_numpy() / PIER.gravity

@@ -192,3 +192,11 @@ def test_a_check_of_rocking_is_refused_where_nobody_asked_for_it(tmp_path):
     check = {"name": "rocking", "demand": "theta_rocking_over_alpha", "at_most": 0.1, "reason": "a limit"}
     with pytest.raises(InputError, match="there is no column of rocking; write rocking = true under"):
         load_study(write_study(tmp_path, study_text(check=[check])))
+
+
+def test_only_a_pier_that_was_let_go_from_a_rotation_is_said_to_have_been():
+    still = rb.Motion("still", 0.01, np.zeros(50))
+    released = Pier(0.2, 1.0, initial_rotation_rad=0.1)
+    notes = [rb.simulate(pier, rb.RigidBase(), still).row.note for pier in (Pier(0.2, 1.0), released)]
+    assert notes[0] == ""
+    assert "the rotation from which the pier was let go" in notes[1]

@@ -1,8 +1,9 @@
 """What is said about the mistakes that people make most: one message each, at the key that is wrong."""
 
 import pytest
-from studies import PIER, SINE, study_text, write_study
+from studies import PIER, RIGID, SINE, study_text, write_study
 
+import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
 from rockbatch.toml.reader import MOST_REPORTED
@@ -125,3 +126,18 @@ def test_the_greatest_number_of_reported_mistakes_ends_in_words(tmp_path, header
     mistakes = "".join(f"k{n} = 1\n" for n in range(number))
     text = WHOLE.replace(f"{header}\n", f"{header}\n{mistakes}", 1) if header else mistakes + WHOLE
     assert sum("unknown key" in problem for problem in said(tmp_path, text)) == min(number, MOST_REPORTED)
+
+
+@pytest.mark.parametrize(
+    ("pier", "damper", "said"),
+    [
+        ({"alpha": 0.2, "p": 1.0}, 'kind = "viscous"\nnu = 1.0\nexponent = 1.05\nbrace = 10.0',
+         "damper 1: brace = 10: with one the exponent must be 1 at most; leave the brace out"),
+        ({"width_m": 8.0, "height_m": 30.0, "mass_t": 2000.0}, 'kind = "friction"\nforce_kN = 1e9',
+         "damper 1: force_kN = 1e+09 means f = 50968.4: its force over the weight must be within 0..10; check the unit"),
+    ],
+)  # fmt: skip
+def test_what_is_impossible_of_a_device_is_said_of_the_key_that_was_written(pier, damper, said):
+    with pytest.raises(InputError) as raised:
+        rb.Study.from_toml(study_text(pier=pier, cases=[RIGID]) + f"\n[[case.damper]]\n{damper}\n")
+    assert str(raised.value).endswith(said)

@@ -144,6 +144,14 @@ def test_friction_brings_to_rest_a_block_that_impacts_do_not_slow(f):
     assert found.events.t.to_numpy() == pytest.approx(limit.events.t.to_numpy(), abs=1e-6)
 
 
+@pytest.mark.parametrize(("at", "most"), [(0.0, 1.2), (0.5, 1.1), (-0.5, 1.1), (1.5, 1.1)])
+def test_a_tendon_beside_the_axis_rights_by_its_arm_about_the_nearer_corner(at, most):
+    """ψ = 0.2, at so many half widths from the axis: 2 f < 1 + ψ |1 − |at||."""
+    for share in (1.0 - 1e-9, 1.0 + 1e-9):
+        devices = Damper("friction", f=0.5 * most * share), Tendon(psi=0.2, at=at * FIG5.half_width)
+        assert recentres(FIG5, devices) == (share < 1.0)
+
+
 @pytest.mark.parametrize(("f", "psi"), [(0.499, 0.0), (0.501, 0.0), (0.749, 0.5), (0.751, 0.5)])
 def test_it_recentres_below_the_edge_and_is_held_above(f, psi):
     """2 f < 1 + ψ."""

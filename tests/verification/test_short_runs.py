@@ -139,4 +139,12 @@ def test_a_row_is_that_of_the_reference(name, uncompiled):
         assert found == pytest.approx(np.nan if value is None else value, rel=3e-4, abs=rounding, nan_ok=True), column
     assert row.theta_max_over_alpha == pytest.approx(expected["theta_max_over_alpha"], abs=1e-6)
     assert [end.theta, end.omega, end.v] == pytest.approx([run.theta, run.omega, run.v], abs=5e-6)
-    assert response.ledger.remainder.abs().max() < 5e-4 * response.ledger.input.abs().max()
+    ledger = response.ledger
+    assert ledger.remainder.abs().max() < 5e-4 * ledger.input.abs().max()
+    if base.kinematics == "finite":  # the corners of a rigid body that turns about its centre of mass
+        corners = np.array([[-FIG5.half_width], [FIG5.half_width]]) - 1j * FIG5.height
+        raised = response.v + (corners * np.exp(-1j * response.theta)).imag + FIG5.height
+        np.testing.assert_allclose(response.history[["v_left", "v_right"]].T, raised, rtol=0.0, atol=1e-14)
+    if name in FREE:
+        stored = ledger.kinetic + ledger.potential + ledger.elastic
+        np.testing.assert_allclose(response.energy, stored, rtol=0.0, atol=1e-14)

@@ -199,6 +199,7 @@ def test_without_time_the_setting_of_the_study_is_measured_and_nothing_else(meas
     heard = Heard()
     table = measure(study, every[1:3], listener=heard, clock=Clock(1e-9))
     assert table["method"].to_list() == ["study"]
+    assert heard.counts == [[2, 2 * (1 + 2 * len(SUBSTEPS))]]
     assert table["error_max"][0] <= study.numerics.tolerance
     assert [told for told in heard.said if told.startswith("left out")] == [
         "left out, for want of time: from 1 steps per sample on",

@@ -135,6 +135,8 @@ def test_other_spectra_are_drawn_over_each_of_their_axes_and_not_over_this_one()
     assert result.plot().axes[0].get_xlabel() == over["two_pi_over_p_s"].get_xlabel()
     with pytest.raises(InputError, match="for omega_g_over_p write it as the range in"):
         result.plot(axis="omega_g_over_p")
+    with pytest.raises(InputError, match=r'axis = "period": must be .* in this spectrum$'):
+        result.plot(axis="period")
 
 
 @pytest.mark.parametrize(("change", "line", "words"), [
