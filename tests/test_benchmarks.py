@@ -55,7 +55,7 @@ def test_every_solver_is_as_accurate_as_asked(benchmark):
             assert float(row[3]) <= module.ACCURACY
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_loops_of_spring_laws_are_closed_but_for_bouc_wen(benchmark):
     """A cycle of ±30 % about the weight, over δ_s: ∫ zⁿ/(1 − zⁿ) dz for Bouc–Wen (test_ratchet), nothing for the others."""
     module = benchmark("spring_laws")

@@ -121,7 +121,7 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
     [
         *PIERS.values(),
         *(
-            pytest.param(pier, marks=pytest.mark.thorough if name == "finite-damped" else pytest.mark.slow)
+            pytest.param(pier, marks=pytest.mark.slow if name == "finite" else pytest.mark.thorough)
             for name, pier in SLOW_PIERS.items()
         ),
     ],
