@@ -177,3 +177,13 @@ def test_components_of_one_station_count_as_one_and_those_without_a_station_each
     (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
     (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
     assert "pulse-like, at 1 of 5 stations" in " ".join(page_of(tmp_path, target).text.split())
+
+
+def test_what_was_done_with_a_record_stands_beside_it_and_nothing_where_nothing_was(tmp_path):
+    write_results(tmp_path)
+    info = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    info["records"][0]["notes"], info["records"][1]["notes"] = [], ["cut at 20 s", "turned by 30°"]
+    (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
+    rows = Page(write_report(tmp_path).read_text(encoding="utf-8")).tables["records"]
+    done = next(i for i, row in enumerate(rows) if row[-1] == "what was done")
+    assert [row[-1] for row in rows[done + 1 : done + 3]] == ["", "cut at 20 sturned by 30°"]

@@ -91,7 +91,7 @@ def _path(source: str | None) -> object:
 
 
 def _processing(record: Record) -> object:
-    return record["notes"] and tag("ul", *(tag("li", note) for note in record["notes"]))
+    return tag("ul", *(tag("li", note) for note in record["notes"])) if record["notes"] else ""
 
 
 def unusable(finished: Finished) -> Markup:
