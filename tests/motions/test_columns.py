@@ -440,3 +440,15 @@ def test_times_that_fall_do_not_grow_evenly():
     assert grows_evenly(T)
     assert not grows_evenly(T[::-1])
     assert not grows_evenly(0.0 * T)
+
+
+@pytest.mark.parametrize("rest", ["", "\n\n", "\n9.5 10.5 11.5", "\n9.5 10.5 11.5\n12.5 13.5 14.5"])
+def test_a_shorter_row_is_refused_with_its_line_and_ends_a_wrapped_table_only_at_its_end(rest):
+    text = "1.5 2.5 3.5\n4.5 5.5 6.5\n7.5 8.5" + rest
+    with pytest.raises(InputError, match="line 3: found 2 numbers; expected 3"):
+        table.read_table(text)
+    if rest.strip():
+        with pytest.raises(InputError, match="line 3: found 2 numbers; expected 3"):
+            table.read_table(text, wrapped=True)
+    else:
+        assert table.read_table(text, wrapped=True)[1].ravel().tolist() == [0.5 + n for n in range(1, 9)]

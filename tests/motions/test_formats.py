@@ -1,6 +1,7 @@
 """MiniSEED and SAC files through ObsPy, and K-NET files: units, orientation, and refusals that say what to add."""
 
 import contextlib
+import io
 import pickle
 import struct
 from pathlib import Path
@@ -399,3 +400,16 @@ def test_a_blockette_beside_that_of_the_record_length_has_none(tmp_path):
     sent.write(str(tmp_path / "e.mseed"), format="MSEED")
     (motion,) = read_motions(tmp_path, options=ReadOptions(sensitivity=1e4)).motions
     assert motion.npts == 300
+
+
+@pytest.mark.parametrize("exponent", [8, 12])
+def test_a_seed_volume_is_read_from_its_first_data_record_on_whose_place_its_header_tells(exponent):
+    record = io.BytesIO()
+    trace("HNE", (1000 * wiggle(300)).astype(np.int32)).write(record, format="MSEED", reclen=512)
+    header = f"000001V 0100094 2.4{exponent:02d}".encode().ljust(2**exponent)
+    volume = header + b"000002A ".ljust(2**exponent) + record.getvalue()
+    assert with_obspy.mseed(volume) == volume
+    with pytest.raises(InputError, match="holds no whole data record"):
+        with_obspy.mseed(header + header)
+    with pytest.raises(InputError, match='records of 2\\^"31" bytes; expected 07 to 20'):
+        with_obspy.mseed(header.replace(b"2.4" + f"{exponent:02d}".encode(), b"2.431"))

@@ -1,9 +1,11 @@
 """What the compiled core is given of a pier on springs."""
 
 import pytest
+from core_samples import FIG5
 
-from rockbatch.pier import ElasticBase, Pier, YieldingBase
-from rockbatch.simulation.models import model
+from rockbatch.pier import ElasticBase, Pier, RigidBase, Tendon, YieldingBase
+from rockbatch.simulation.models import elements, model
+from rockbatch.simulation.restraints import _at_rest
 
 UNITS = {
     "half_width": (1, 0), "height": (1, 0), "inertia": (2, 0), "gravity": (1, -2), "yield_deflection": (1, 0),
@@ -27,3 +29,13 @@ def test_every_number_has_its_unit(base):
         ), name
     others = [name for name in first._fields if name not in UNITS]
     assert [getattr(second, name) for name in others] == [getattr(first, name) for name in others]
+
+
+def test_a_tendon_at_rest_pulls_between_nothing_and_its_strength():
+    (law,) = elements(FIG5, RigidBase(restraints=(Tendon(psi=0.1, lam=2.0, strength=0.13),)))
+    longest = (law.strength - law.prestress) / law.stiffness
+    for elongation, force, stiffness in (
+        (0.0, law.prestress, law.stiffness), (0.5 * longest, 0.5 * (law.prestress + law.strength), law.stiffness),
+        (2.0 * longest, law.strength, 0.0), (-2.0 * law.prestress / law.stiffness, 0.0, 0.0),
+    ):  # fmt: skip
+        assert _at_rest(law, elongation, 0.0, 0.0) == pytest.approx((force, stiffness), abs=0.0)
