@@ -1,6 +1,7 @@
 """Checks of a pier on both axes are what a hand makes of peaks.csv, and count the pier once."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -125,6 +126,12 @@ def test_moments_in_a_section_combine_and_axial_forces_do_not():
     moment, axial = judge(rules, table, [case(), across()], sections=sections)
     assert (moment.value, axial.value) == (pytest.approx(math.hypot(50.0, 10.0)), 9.0)
     assert moment.high == pytest.approx(1.1 * moment.value)
+
+
+def test_of_a_value_of_the_foundation_the_one_nearer_to_its_limit_counts():
+    rules = Rule("most", "eta", at_most=5.0), Rule("least", "eta", at_least=2.0)
+    found = judged(both([0.1], [0.1]), *rules, cases=[case(), across(replace(PADS, eta=4.0))])
+    assert [verdict.value for verdict in found] == [4.0, 2.5]
 
 
 def test_of_what_is_the_whole_pier_s_the_greater_counts():

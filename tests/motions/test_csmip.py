@@ -135,6 +135,7 @@ def test_channels_may_differ_in_length():
         (one_channel(unit="?"), "line 46: found .*expected a count, an interval and a unit of accel"),
         (one_channel().replace("43 points of accel", "43 points of displ"), "line 46: found .*unit of accel"),
         (one_channel().replace("(8f10.6)", "(0f10.6)"), "line 47: found .*expected numbers in equal columns"),
+        (one_channel().replace("(8f10.6)", "(8f1.0)"), "line 47: found .*expected numbers in equal columns"),
         (one_channel().replace("/&", "//"), 'line 67: found "// .*expected "/&" after the declared values'),
         (one_channel() + "1.0\n", 'line 68: found "1.0"; expected "Uncorrected accelerogram data"'),
         (one_channel().replace("Station Id.", "Somewhere"), "line 6: found"),
