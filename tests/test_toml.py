@@ -13,7 +13,7 @@ from rockbatch.common.units import Bounds
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Choice, KindError, Number, boolean, positive, within
 from rockbatch.toml.lines import key_lines
-from rockbatch.toml.meant import similar
+from rockbatch.toml.meant import similar, words_meant
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import Key, Section
 
@@ -275,3 +275,4 @@ def test_an_option_is_accepted_as_its_own_type_only_and_near_ones_are_suggested(
 def test_a_word_of_three_letters_is_found_in_longer_keys_and_one_of_two_is_not():
     assert similar("gap", {"gap_left": "", "gap_right": "", "width": ""}) == ["gap_left", "gap_right"]
     assert similar("ga", {"ga_left": "", "ga_right": "", "width": ""}) == []
+    assert words_meant("of_g", ["levels_of_g", "width"], {}) == []

@@ -61,7 +61,7 @@ def unknown_masses(pier: Pier) -> list[str]:
 def shaft_height(pier: Pier) -> float:
     """Return the height of the shaft's top [m]: of the highest part with a length, or of the highest one if none has."""
     parts = parts_of(pier)
-    return max((part.height_m + 0.5 * (part.length_m or 0.0) for part in parts if part.length_m), default=0.0) or max(
+    return max((part.height_m + 0.5 * part.length_m for part in parts if part.length_m), default=0.0) or max(
         part.height_m for part in parts
     )
 

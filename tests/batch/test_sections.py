@@ -85,8 +85,13 @@ IN_PARTS = {"width_m": 4.0, "part": [{"mass_t": 500.0, "height_m": 7.0, "inertia
 )  # fmt: skip
 def test_a_study_with_sections_that_cannot_be_is_refused(tmp_path, tables, message):
     with pytest.raises(rb.InputError) as refused:
-        rb.load_study(study_of(tmp_path, **tables))
+        rb.load_study(study := study_of(tmp_path, **tables))
     assert message in str(refused.value)
+    if "sections_m = 15" in message:
+        key = next(
+            i for i, line in enumerate(study.read_text("utf-8").splitlines(), 1) if line.startswith("sections_m")
+        )
+        assert f"{study.name}:{key}: [output]" in str(refused.value)
 
 
 def test_parts_with_their_lengths_have_sections(tmp_path):

@@ -12,6 +12,8 @@ from motion_files import at2_text, wiggle
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
+from rockbatch.motions.formats.column_header import Column
+from rockbatch.motions.formats.columns import is_bbp
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 
 T = np.arange(60) * 0.005
@@ -452,3 +454,13 @@ def test_a_shorter_row_is_refused_with_its_line_and_ends_a_wrapped_table_only_at
             table.read_table(text, wrapped=True)
     else:
         assert table.read_table(text, wrapped=True)[1].ravel().tolist() == [0.5 + n for n in range(1, 9)]
+
+
+def test_a_t_may_be_time_unless_it_has_a_unit_of_acceleration():
+    assert [Column(*head).may_be_time for head in (("T",), ("Ts",), ("T", "g"), ("U",))] == [True, True, False, False]
+
+
+def test_a_broadband_platform_file_has_time_and_three_accelerations():
+    head = "# time(s) NS({}) EW({}) UD({})\n".format
+    units = [["cm/s/s"] * 3, ["cm/s", "cm/s/s", "cm/s/s"], ["cm/s/s", "cm/s", "cm/s/s"], ["cm/s/s", "cm/s/s", "cm/s"]]
+    assert [is_bbp(head(*each).encode()) for each in units] == [True, False, False, False]

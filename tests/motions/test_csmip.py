@@ -19,6 +19,7 @@ from fixed_column_files import (
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import read_motions
+from rockbatch.motions.formats import volumes
 from rockbatch.motions.formats.volumes import read_csmip_stream
 from rockbatch.motions.motion import Unusable
 
@@ -175,3 +176,18 @@ def test_obspy_gets_the_files_own_unit_and_the_codes_of_its_record(tmp_path):
     assert stream[0].stats.starttime.timestamp == START
     numbered = one_channel(station="1336", record="01336-C0165-79290.04").encode("latin-1")
     assert read_csmip_stream(io.BytesIO(numbered))[0].id == ".1336..90"
+
+
+def test_a_start_is_known_where_the_recorder_has_a_clock_with_a_year_of_four_digits():
+    trigger = {
+        "year": "1994",
+        "month": "01",
+        "day": "17",
+        "hour": "12",
+        "minute": "31",
+        "second": "2",
+        "began": "Trigger",
+    }
+    assert volumes._start(trigger, 1.0) == datetime(1994, 1, 17, 12, 31, 3, tzinfo=UTC).timestamp()
+    assert volumes._start(trigger | {"year": "94"}, 1.0) is None
+    assert volumes._start(trigger, None) is None

@@ -35,6 +35,7 @@ def test_values_that_touch_become_m_s2_with_step_azimuth_and_time(digits, rtol, 
         (90, -32768, "S62W", (False, False, 242.0)),
         (-32768, -32768, "up", (True, False, None)),
         (-32768, -32768, "down", (True, True, None)),
+        (-32768, 90, "up", (True, False, None)),
     ],
 )
 def test_direction_is_by_the_angles_and_else_by_the_text(vertical, azimuth, label, expected):

@@ -15,7 +15,7 @@ import rockbatch.reporting.sections
 from rockbatch.pier import Damper, Pier, RigidBase
 from rockbatch.reporting import compared, write_analyses
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.finished_analysis import Contents
+from rockbatch.reporting.finished_analysis import Contents, FinishedAnalysis
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.page import PARTS, PARTS_OF_TWO, page, sections
 from rockbatch.reporting.sections import answer, forces
@@ -233,3 +233,11 @@ def table_of(markup):
     """Return the rows of the one table of a section as texts."""
     (rows,) = Page(f'<section id="x">{markup}</section>').tables.values()
     return [[cell.replace("\u00a0", " ").strip() for cell in row] for row in rows]
+
+
+@pytest.mark.parametrize(("text", "whole"), [("a,b,c\n1,2,3\n", True), ("a,c\n1,3\n", False), ("a,b\n", False)])
+def test_a_table_of_an_analysis_that_is_empty_or_lacks_a_column_is_left_out(tmp_path, text, whole):
+    (tmp_path / "x.csv").write_text(text, encoding="utf-8")
+    analysis = FinishedAnalysis(tmp_path, {"files": ["x.csv"]})
+    assert (analysis.table("x.csv", ("a", "b")) is not None) == whole
+    assert analysis.table("y.csv", ()) is None

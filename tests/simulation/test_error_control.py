@@ -108,6 +108,17 @@ def test_an_early_peak_that_agrees_proves_nothing_where_what_follows_it_differs_
     assert len(asked) == 6
 
 
+def test_a_first_flight_that_moves_with_the_step_is_noted_of_a_run_that_went_through(monkeypatch):
+    for flights, said in (
+        ((1.0, 1.0, 1.0), ""), ((1.0, 1.2, 1.1), "first flight not settled: at 1.200 s or at 1.100 s"),
+        ((1.0, 1.1, None), "first flight not settled: at 1.100 s or none"),
+    ):  # fmt: skip
+        scripted(
+            monkeypatch, *(ok(peak, t_flight=t) for peak, t in zip((0.10, 0.110000, 0.110001), flights, strict=True))
+        )
+        assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).note == said
+
+
 def test_what_has_not_settled_far_below_the_peak_takes_one_more_halving_and_is_noted(monkeypatch):
     asked = scripted(monkeypatch, *(ok(0.1, t_max=0.0, windows=[0.1, later]) for later in (0.010, 0.012, 0.011)))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)

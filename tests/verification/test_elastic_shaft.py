@@ -117,11 +117,11 @@ def test_a_pier_rocks_flies_and_lands_as_its_mass_points_do(uncompiled):
 
 
 def test_the_energy_of_a_history_is_that_of_the_balance_of_every_step(uncompiled):
-    motion, base = shaken(5.0, 1.4, upwards=1.3, duration=1.0), rb.RigidBase(shaft="elastic", flexural_damping=0.02)
+    motion, base = shaken(5.0, 1.4, upwards=2.5, duration=1.0), rb.RigidBase(shaft="elastic", flexural_damping=0.02)
     response = uncompiled(rb.simulate, pier_of(*TOWER), base, motion, substeps=4, quiet_s=0.0, wait=False, ledger=True)
     stored = response.ledger.kinetic + response.ledger.potential + response.ledger.elastic
     assert response.row.impacts > 0
-    assert stored.max() > 0.1
+    assert response.row.flight_s < 0.7
     np.testing.assert_allclose(response.energy, stored, rtol=0.0, atol=1e-15)
 
 

@@ -430,3 +430,17 @@ def test_what_several_exceedances_and_tails_mean_is_said(tmp_path):
     said = found.fragility_risk["note"].iloc[0]
     assert "several exceedances in the longest of the periods" in said
     assert "comes from below the lowest intensity that was run, 0.2 g" in said
+
+
+def test_of_a_file_of_doubtful_values_the_first_is_asked_about(tmp_path):
+    (tmp_path / "hazard.csv").write_text("levels_g,rate_per_year\n0.1,50\n20,40\n30,30\n")
+    file = study(tmp_path, {"file": "hazard.csv", "years": [50]}, fragility={"measure": "PGA", "levels_g": [0.2, 0.4]})
+    with pytest.raises(InputError) as caught:
+        read_fragility(load_study(file))
+    (problem,) = caught.value.problems
+    assert "levels_g = 20" in problem
+
+
+def test_a_study_without_a_fragility_table_is_told_what_to_write():
+    with pytest.raises(InputError, match=r"\[fragility\] is missing; write \[fragility\] with measure"):
+        rb.fragility(rb.Study.from_toml(study_text()))

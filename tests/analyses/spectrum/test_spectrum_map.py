@@ -241,7 +241,9 @@ def test_the_command_writes_regions_and_goes_on_after_a_kill_in_the_middle_of_th
     write_study(tmp_path, STUDY)
     command = ["spectrum", str(tmp_path / "study.toml"), "--jobs", "1", "--out"]
     assert main([*command, str(tmp_path / "whole")]) == 0
-    assert "0.1" in capsys.readouterr().out
+    printed = capsys.readouterr()
+    assert "0.1" in printed.out
+    assert "map one: 3 frequencies × 8 amplitudes × 2 cases on 1 thread" in printed.err
 
     outcomes, waves = Threads.outcomes, []
 
