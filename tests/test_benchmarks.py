@@ -66,7 +66,7 @@ def test_loops_of_spring_laws_are_closed_but_for_bouc_wen(benchmark):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", ["bouc-wen", "epp", "hardening"])
 def test_settlements_agree_with_a_solver_that_knows_other_laws_too(benchmark, law):
     """A one-sine and vertical vibration; the other solver is of first order, with steps of 20 µs."""

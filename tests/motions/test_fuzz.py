@@ -109,7 +109,7 @@ def test_a_file_cut_after_any_line_has_whole_components_or_is_refused(name, file
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [250, pytest.param(10_000, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("count", [150, pytest.param(10_000, marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("name", sorted(SAMPLES))
 def test_thousands_of_damaged_files_of_a_format_end_in_components_or_a_reason(name, count):
     """And what a count promises is not allocated."""

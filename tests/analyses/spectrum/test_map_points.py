@@ -102,7 +102,7 @@ def part(shape):
 
 @pytest.mark.parametrize(
     ("shape", "number"),
-    [("sine", 40), *(pytest.param(shape, 80, marks=pytest.mark.slow) for shape in PARTS)],
+    [("sine", 40), *(pytest.param(shape, 50, marks=pytest.mark.slow) for shape in PARTS)],
 )
 def test_a_map_shows_at_random_points_what_their_simulation_says(shape, number):
     shown = part(shape)
