@@ -1,16 +1,16 @@
 """Bounds of demands: of each run of a case at one scale, and of each record."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.runs import Runs, Texts
 from rockbatch.quantities.statistics import Values
 from rockbatch.results.rows import NOT_RUN
 from rockbatch.study.rules import USUAL, Rule
@@ -48,9 +48,9 @@ def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
     return Bounds(combined(*values), combined(*lows), combined(*highs), all(estimated))
 
 
-def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> Bounds:
+def by_record(runs: Bounds, counting: npt.NDArray[np.bool_], counted_as: Texts) -> Bounds:
     """Return the demand of each record: the worst of its runs that are ``counting``. Empty if every run is left out."""
-    names, record = np.unique(counted_as.to_numpy()[counting].astype(str), return_inverse=True)
+    names, record = np.unique(counted_as[counting], return_inverse=True)
 
     def worst(of_runs: Values) -> Values:
         of_records = np.zeros(len(names))  # no demand is negative
@@ -67,7 +67,7 @@ def governing(runs: Bounds, counting: npt.NDArray[np.bool_], *, by_bound: bool) 
     return int(order[0]) if order and first[order[0]] > 0 else None
 
 
-def lacking(counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> dict[str, tuple[int, int]]:
+def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tuple[int, int]]:
     """Return records with fewer runs than the others, or than were planned: their runs that count, and of how many.
 
     Their worst direction may be the one that is missing.
@@ -78,11 +78,11 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: "pd.Series[str]") -> di
     return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}
 
 
-def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
+def of_runs(rule: Rule, runs: Runs, case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
     """Return the bounds of every run, and True for those that count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
-    status = runs["status"].to_numpy()
+    status = runs.texts("status")
     counting = np.ones(len(runs), dtype=bool)
     if demand.event:
         open_ = noted(runs, OVERTURNS) & (rule.demand == "overturned")
@@ -121,32 +121,33 @@ def of_runs(rule: Rule, runs: "pd.DataFrame", case: Case) -> tuple[Bounds, npt.N
     return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
 
 
-def chaotic(rule: Rule, runs: "pd.DataFrame", error: Values) -> npt.NDArray[np.bool_]:
+def chaotic(rule: Rule, runs: Runs, error: Values) -> npt.NDArray[np.bool_]:
     """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
-    of_peak = np.isnan(runs["theta_max_error"].to_numpy(np.float64, na_value=np.nan)) | DEMANDS[rule.demand].residual
+    of_peak = np.isnan(runs.numbers("theta_max_error")) | DEMANDS[rule.demand].residual
     return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
 
 
-def noted(runs: "pd.DataFrame", words: str) -> npt.NDArray[np.bool_]:
+def noted(runs: Runs, words: str) -> npt.NDArray[np.bool_]:
     """Return True for each run whose note has these words, shape (n,)."""
-    if "note" not in runs:
-        return np.zeros(len(runs), dtype=bool)
-    return np.array([words in str(note) for note in runs["note"]], dtype=bool)
+    return np.array([words in note for note in runs.texts("note")], dtype=bool)
 
 
-def by_other_law(rule: Rule, runs: "pd.DataFrame", case: Case) -> Values | None:
+def by_other_law(rule: Rule, runs: Runs, case: Case) -> Values | None:
     """Return values by the other spring law, shape (n,), NaN if it did not go through; None if it was not run."""
     other_law = DEMANDS[rule.demand].other_law
     return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
 
 
-def counted(rule: Rule, runs: "pd.DataFrame") -> str:
+def counted(rule: Rule, suites: Iterable[Runs]) -> str:
     """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
-    not_run = (runs["reason"] == NOT_RUN).to_numpy()
-    status = np.where(not_run, NOT_RUN, runs["status"].to_numpy())
+    numbers = Counter(
+        NOT_RUN if reason == NOT_RUN else status
+        for runs in suites
+        for status, reason in zip(runs.texts("status"), runs.texts("reason"), strict=True)
+    )
     parts = []
     for name in (*USUAL, NOT_RUN):
-        if n := np.count_nonzero(status == name):
+        if n := numbers[name]:
             kind = f" ({rule.counts('failed' if name == NOT_RUN else name)})" if DEMANDS[rule.demand].per_run else ""
             parts.append(f"{n} {name}{kind}")
     return ", ".join(parts)

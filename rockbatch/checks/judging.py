@@ -26,8 +26,9 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
+from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import STATISTICS, Values
-from rockbatch.results.rows import complete, counts_as, simulated, suites, with_case
+from rockbatch.results.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.results.sections import MEANING as OF_SECTIONS
 from rockbatch.study.rule_choices import FAR, chooses, has_section, limit_key, unmet
 from rockbatch.study.rules import Rule
@@ -40,10 +41,10 @@ PLANAR = "each axis of the pier is a planar model of its own"
 
 
 class Axis(NamedTuple):
-    """A case, along the axis of its pier or across it, with its rows of peaks.csv at one scale; the same records on both."""
+    """A case, along the axis of its pier or across it, with its runs at one scale; the same records on both."""
 
     case: Case
-    suite: "pd.DataFrame"
+    suite: Runs
 
 
 def judge(
@@ -80,9 +81,8 @@ def judge(
     runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
-    stations = dict(records or _stations(runs))
-    polarities, scales = list(runs["polarity"].unique()), [float(scale) for scale in runs["scale"].unique()]
-    available: dict[str, Any] = {"scales": scales, "polarities": polarities}
+    scales = [float(scale) for scale in runs["scale"].unique()]
+    available: dict[str, Any] = {"scales": scales, "polarities": [*dict.fromkeys(Runs(runs).texts("polarity"))]}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
     available["output"] = [
@@ -96,37 +96,39 @@ def judge(
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
-    polarities = list(runs["polarity"].unique())
+    table, scale_of = Runs(runs), runs["scale"].to_numpy(np.float64)
+    stations = records or dict(zip(table.texts("record"), table.texts("station"), strict=True))
+    polarities = [*dict.fromkeys(table.texts("polarity"))]
+    tables = dict.fromkeys((rule.at_m for rule in rules), table)
+    if sections is not None:
+        tables |= {rule.at_m: at_section(runs, sections, rule) for rule in rules if rule.at_m is not None}
     verdicts = []
-    for _, of_axes in groupby(suites(runs, cases), lambda suite: of_pier(suite[0])):
+    for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
         for scale in scales:
-            axes = [Axis(case, complete(mine[mine["scale"] == scale], stations, polarities)) for case, mine in pier]
+            axes = [
+                Axis(case, complete(table.at(rows[scale_of[rows] == scale]), stations, polarities))
+                for case, rows in pier
+            ]
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale):
-                    of_rule = [_of_rule(rule, axis, polarities, sections) for axis in axes]
+                    of_rule = [_of_rule(rule, axis, polarities, tables[rule.at_m]) for axis in axes]
                     verdicts.append(_verdict(rule, of_rule, scale, rule.count or count))
     return verdicts
 
 
-def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], sections: "pd.DataFrame | None") -> Axis:
-    """Return the runs that a rule is about; of a mirror image the demands are the same."""
-    suite = axis.suite
-    its = suite[suite["polarity"] == rule.polarity] if rule.polarity in polarities else suite
-    return Axis(axis.case, its if rule.at_m is None or sections is None else at_section(its, sections, rule))
+def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], table: Runs) -> Axis:
+    """Return the runs that a rule is about, with the columns of its ``table``; of a mirror image the demands are the same."""
+    suite = axis.suite.beside(table)
+    of_one = rule.polarity in polarities
+    return Axis(axis.case, suite.where(suite.texts("polarity") == rule.polarity) if of_one else suite)
 
 
-def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> "pd.DataFrame":
-    """Return the rows of a case with those of sections.csv at the height of the rule beside them; NaN if a run has none."""
+def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Runs:
+    """Return runs with their rows of sections.csv at the height of the rule beside them; NaN if one has none."""
     keys = [name for name in sections if name not in OF_SECTIONS]
     its = sections[[has_section(rule, [height]) for height in sections["height_m"]]]
-    return runs.merge(its, how="left", on=keys).set_index(runs.index)
-
-
-def _stations(runs: "pd.DataFrame") -> dict[str, str]:
-    """Return the station of every record in a table; empty if it does not say."""
-    stations = runs["station"].fillna("").astype(str) if "station" in runs else [""] * len(runs)
-    return dict(zip(runs["record"], stations, strict=True))
+    return Runs(runs.merge(its, how="left", on=keys).set_index(runs.index))
 
 
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verdict:
@@ -134,9 +136,9 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verd
     unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
     of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
     if not demand.per_case:
-        suite = axes[0].suite if len(axes) == 1 else pd.concat([axis.suite for axis in axes])
-        statistic, number = rule.statistic or "max", len(suite)
-        of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suite), "count": count}
+        suites = [axis.suite for axis in axes]
+        statistic, number = rule.statistic or "max", sum(map(len, suites))
+        of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suites), "count": count}
     absent = [_absent(rule, axis) for axis in axes]
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = Verdict(
@@ -183,7 +185,11 @@ def _absent(rule: Rule, axis: Axis) -> str:
         return f"the pier has no {demand.device}"
     if demand.weighed and "mass_t" not in case["pier"]:
         return NOT_WEIGHED
-    if rule.at_m is not None and suite["height_m"].isna().all() and (suite["status"] != "failed").any():
+    if (
+        rule.at_m is not None
+        and np.isnan(suite.numbers("height_m")).all()
+        and (suite.texts("status") != "failed").any()
+    ):
         return f"the pier has no section at {rule.at_m:g} m"
     return ""
 
@@ -229,7 +235,7 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
     ]
     run: dict[str, Any] = {}
     if deciding is not None:
-        run = {name: str(suite[name].iloc[deciding]) for name in ("station", "record", "polarity")}
+        run = {name: suite.texts(name)[deciding] for name in ("station", "record", "polarity")}
         run["governing"] = float(runs.value[deciding])
     return replace(
         none,
@@ -257,7 +263,7 @@ def _far(rule: Rule, value: float) -> str:
     return f"{value:.4g} is below {1 / FAR:g} of the limit; check its unit, or write confirm = [{shown(key)}]"
 
 
-def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -> str:
+def _laws(rule: Rule, suite: Runs, case: Case, deciding: int | None) -> str:
     """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
     by_other = by_other_law(rule, suite, case)
     if by_other is None:
@@ -266,11 +272,11 @@ def _laws(rule: Rule, suite: "pd.DataFrame", case: Case, deciding: int | None) -
     if deciding is not None and np.isfinite(by_other[deciding]):
         of_case = float(DEMANDS[rule.demand].evaluate(suite, case).value[deciding])
         remark += f": {of_case:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
-    missing = int((np.isnan(by_other) & (suite["status"] == "ok").to_numpy()).sum())
+    missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
-def _chaotic(rule: Rule, suite: "pd.DataFrame", case: Case) -> str:
+def _chaotic(rule: Rule, suite: Runs, case: Case) -> str:
     """Return the remark on runs that claim no error because their results are chaotic."""
     if DEMANDS[rule.demand].event:
         return ""

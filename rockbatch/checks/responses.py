@@ -10,6 +10,7 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.runs import Runs
 from rockbatch.results.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
@@ -44,12 +45,6 @@ RESPONSES = {
 }
 """By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
 residual rotation follows from the tilt."""
-
-_TAKEN = (
-    "theta_max_over_alpha", "theta_max_error", "theta_res_over_alpha", "theta_res_error", "settlement_m", "base_tilt_rad",
-    "ductility_left", "ductility_right", "top_drift_m", "top_drift_error_m",
-)  # fmt: skip
-"""Columns of peaks.csv that they are made of."""
 
 PERMANENT = ("settlement_m", "base_tilt_rad")
 """Responses that only supports that yield have."""
@@ -88,16 +83,16 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
     """
     worst = []
     stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
-    numbers = pd.DataFrame({name: runs[name].to_numpy(np.float64, na_value=np.nan) for name in _TAKEN if name in runs})
+    table = Runs(runs)
     for case, rows in rows_of_cases(runs, cases):
         rows = rows[stood[rows]]
-        numbers_of_case = numbers.iloc[rows]
+        of_case = table.at(rows)
         for name in RESPONSES if len(rows) else ():
             if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
                 continue
             if name in PERMANENT and case["base"] != "yielding":
                 continue
-            values = DEMANDS[name].evaluate(numbers_of_case, case).value
+            values = DEMANDS[name].evaluate(of_case, case).value
             if np.isfinite(values).any():
                 place = int(np.nanargmax(values))
                 value = float(values[place])

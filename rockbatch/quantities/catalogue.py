@@ -10,8 +10,9 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Any, Literal
 
+import numpy as np
+
 from rockbatch.common.grouping import grouped
-from rockbatch.common.lazy import pd
 from rockbatch.pier import MOST_ETA, Pier
 from rockbatch.quantities.cases import (
     ONE,
@@ -37,7 +38,6 @@ from rockbatch.quantities.demands import (
     in_flight,
     in_section,
     largest,
-    numbers,
     parameter,
     tilt,
     toe,
@@ -56,6 +56,7 @@ from rockbatch.quantities.quantity import (
     Run,
     in_print,
 )
+from rockbatch.quantities.runs import Runs
 
 IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"
 """Columns of the peak until a motion ends, which a run that failed later has reached, and of its error."""
@@ -197,13 +198,13 @@ def _greater(name: str, words: str, *limits: Limit) -> tuple[Limit, ...]:
     )
 
 
-def _settlement(runs: "pd.DataFrame", case: Case) -> Estimated:
+def _settlement(runs: Runs, case: Case) -> Estimated:
     """Return the mean settlement of the supports."""
-    return Estimated(numbers(runs, "settlement_m"), numbers(runs, "settlement_error_m"))
+    return Estimated(runs.numbers("settlement_m"), runs.numbers("settlement_error_m"))
 
 
 _SETTLEMENTS = (
-    Limit(ceiling=_WIDER, evaluate=_settlement, other_law=lambda runs, case: numbers(runs, OTHER_LAW)),
+    Limit(ceiling=_WIDER, evaluate=_settlement, other_law=lambda runs, case: runs.numbers(OTHER_LAW)),
     Limit(
         "toe_settlement_m", ceiling=_WIDER, words="settlement of the support that settles more", evaluate=toe_settlement,
         other_law=toe(OTHER_LAW),
@@ -693,10 +694,11 @@ COUNTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind =
 UNBOUNDED = tuple(quantity.name for quantity in COLUMNS.values() if quantity.unbounded)
 
 _OTHERS = (
-    event("flight", "both pivots off the ground", lambda runs: runs["flight_s"].notna(), "makes the pier fly"),
-    event("overturned", "overturned", lambda runs: runs["status"] == "overturned", "overturns the pier"),
+    event("flight", "both pivots off the ground", lambda runs: ~np.isnan(runs.numbers("flight_s")), "makes the pier fly"),
+    event("overturned", "overturned", lambda runs: runs.texts("status") == "overturned", "overturns the pier"),
     event(
-        "failed", "not run, or not settled", lambda runs: runs["status"] == "failed", "has a run that is missing or not settled"
+        "failed", "not run, or not settled", lambda runs: runs.texts("status") == "failed",
+        "has a run that is missing or not settled",
     ),
     parameter(
         "eta", "bearing capacity index, a support's yield force over its static one", "", YIELDING,

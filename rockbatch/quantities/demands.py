@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from rockbatch.common.lazy import pd
 from rockbatch.pier import tilt_over_residual
 from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
+from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import Values
 
 FORCES = "base_shear_m_s2"
@@ -25,7 +26,7 @@ class Estimated(NamedTuple):
     error: Values
 
 
-Evaluate = Callable[["pd.DataFrame", Case], Estimated]
+Evaluate = Callable[[Runs, Case], Estimated]
 
 
 class Ceiling(NamedTuple):
@@ -79,7 +80,7 @@ class Demand:
     event: bool = False
     per_case: bool = False
     residual: bool = False
-    other_law: Callable[["pd.DataFrame", Case], Values] | None = None
+    other_law: Callable[[Runs, Case], Values] | None = None
     ceiling: Ceiling | None = None
     verb: str = ""
     needs: str = ""
@@ -103,13 +104,6 @@ class Demand:
         return not (self.event or self.per_case)
 
 
-def numbers(runs: "pd.DataFrame", column: str) -> Values:
-    """Return a column, shape (n,); NaN for one that an earlier version did not write."""
-    if column not in runs:
-        return np.full(len(runs), np.nan)
-    return runs[column].to_numpy(dtype=np.float64, na_value=np.nan)
-
-
 def without_error(value: Values) -> Estimated:
     """Return values whose errors are unknown."""
     return Estimated(value, np.full(len(value), np.nan))
@@ -121,15 +115,15 @@ def largest(columns: tuple[str, ...], times: Lever = ONE, error: str = "", share
     ``error`` is the column of its error, times the factor too, or ``share`` that of its error as a share of itself.
     """
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def evaluate(runs: Runs, case: Case) -> Estimated:
         value = times(case) * _magnitude(runs, columns)
-        return Estimated(value, value * numbers(runs, share) if share else times(case) * numbers(runs, error))
+        return Estimated(value, value * runs.numbers(share) if share else times(case) * runs.numbers(error))
 
     return evaluate
 
 
-def _magnitude(runs: "pd.DataFrame", columns: tuple[str, ...]) -> Values:
-    return np.maximum.reduce([np.abs(numbers(runs, name)) for name in columns])
+def _magnitude(runs: Runs, columns: tuple[str, ...]) -> Values:
+    return np.maximum.reduce([np.abs(runs.numbers(name)) for name in columns])
 
 
 def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluate:
@@ -138,12 +132,12 @@ def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluat
     0 for a run with forces that has none of this, such as no impact; unknown if an earlier version wrote no such column.
     """
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def evaluate(runs: Runs, case: Case) -> Estimated:
         value = _magnitude(runs, columns)
-        if set(columns) <= set(runs):
-            value = np.where(np.isnan(value) & ~np.isnan(numbers(runs, FORCES)), 0.0, value)
+        if all(name in runs for name in columns):
+            value = np.where(np.isnan(value) & ~np.isnan(runs.numbers(FORCES)), 0.0, value)
         value = times(case) * value
-        return Estimated(value, value * numbers(runs, share))
+        return Estimated(value, value * runs.numbers(share))
 
     return evaluate
 
@@ -152,9 +146,9 @@ def axial(sign: float) -> Evaluate:
     """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
     columns = ("section_axial_least_kN", "section_axial_greatest_kN")
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
-        least, greatest = (sign * numbers(runs, name) for name in columns)
-        error = _magnitude(runs, columns) * numbers(runs, "sections_error")
+    def evaluate(runs: Runs, case: Case) -> Estimated:
+        least, greatest = (sign * runs.numbers(name) for name in columns)
+        error = _magnitude(runs, columns) * runs.numbers("sections_error")
         return Estimated(np.maximum(np.maximum(least, greatest), 0.0), error)
 
     return evaluate
@@ -171,9 +165,10 @@ def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Dem
 def in_flight(column: str) -> Evaluate:
     """Return a column of flights; 0 for a run that went through and has none."""
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
-        value, went_through = numbers(runs, column), runs["status"].isin(["ok", "overturned"])
-        absent = np.isnan(value) & (went_through & runs["flight_s"].isna()).to_numpy()
+    def evaluate(runs: Runs, case: Case) -> Estimated:
+        value, status = runs.numbers(column), runs.texts("status")
+        went_through = (status == "ok") | (status == "overturned")
+        absent = np.isnan(value) & np.isnan(runs.numbers("flight_s")) & went_through
         return without_error(np.where(absent, 0.0, value))
 
     return evaluate
@@ -182,34 +177,34 @@ def in_flight(column: str) -> Evaluate:
 def tilt(times: Lever) -> Evaluate:
     """Return the tilt of the base times a factor; its error is that of the residual rotation, to which it is proportional."""
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def evaluate(runs: Runs, case: Case) -> Estimated:
         pier = case["pier"]
         ratio = tilt_over_residual(
             pier["gravity"], pier["height_m"], pier["half_width_m"], case["parameters"]["omega_v"]
         )
-        error = alpha(case) * float(ratio) * numbers(runs, "theta_res_error")
-        return Estimated(times(case) * np.abs(numbers(runs, "base_tilt_rad")), times(case) * error)
+        error = alpha(case) * float(ratio) * runs.numbers("theta_res_error")
+        return Estimated(times(case) * np.abs(runs.numbers("base_tilt_rad")), times(case) * error)
 
     return evaluate
 
 
-def toe_settlement(runs: "pd.DataFrame", case: Case) -> Estimated:
+def toe_settlement(runs: Runs, case: Case) -> Estimated:
     """Return the settlement of the support that has settled more; its error is that of the mean and half of the difference."""
     of_difference = tilt(width)(runs, case).error
-    return Estimated(toe("settlement_m")(runs, case), numbers(runs, "settlement_error_m") + 0.5 * of_difference)
+    return Estimated(toe("settlement_m")(runs, case), runs.numbers("settlement_error_m") + 0.5 * of_difference)
 
 
-def toe(settlement: str) -> Callable[["pd.DataFrame", Case], Values]:
+def toe(settlement: str) -> Callable[[Runs, Case], Values]:
     """Return the settlement of the support that has settled more: the mean and half of the difference."""
-    return lambda runs, case: numbers(runs, settlement) + 0.5 * width(case) * np.abs(numbers(runs, "base_tilt_rad"))
+    return lambda runs, case: runs.numbers(settlement) + 0.5 * width(case) * np.abs(runs.numbers("base_tilt_rad"))
 
 
-def event(name: str, meaning: str, happened: Callable[["pd.DataFrame"], "pd.Series[bool]"], verb: str) -> Demand:
+def event(name: str, meaning: str, happened: Callable[[Runs], npt.NDArray[np.bool_]], verb: str) -> Demand:
     """Return a demand that is 1 for a run in which something happened."""
     return Demand(
         name,
         meaning,
-        lambda runs, case: without_error(happened(runs).to_numpy().astype(np.float64)),
+        lambda runs, case: without_error(happened(runs).astype(np.float64)),
         event=True,
         verb=verb,
     )
@@ -220,7 +215,7 @@ def parameter(
 ) -> Demand:
     """Return a parameter of the case, ``of`` this name if not the same; NaN if it is missing, as a force if no mass is known."""
 
-    def evaluate(runs: "pd.DataFrame", case: Case) -> Estimated:
+    def evaluate(runs: Runs, case: Case) -> Estimated:
         return without_error(np.array([float(case["parameters"].get(of or name, np.nan))]))
 
     return Demand(name, meaning, evaluate, unit, bases, per_case=True, ceiling=ceiling)

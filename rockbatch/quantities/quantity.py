@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
-from rockbatch.common.lazy import pd
 from rockbatch.pier import Pier
 from rockbatch.quantities.cases import ONE, Case, Lever
 from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
+from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import Values
 
 ALL = ("rigid", "elastic", "yielding")
@@ -85,7 +85,7 @@ class Limit(NamedTuple):
     columns: tuple[str, ...] = ()
     evaluate: Evaluate | None = None
     reached: Evaluate | None = None
-    other_law: Callable[["pd.DataFrame", Case], Values] | None = None
+    other_law: Callable[[Runs, Case], Values] | None = None
 
 
 @dataclass(frozen=True)

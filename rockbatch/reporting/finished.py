@@ -12,6 +12,7 @@ from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.runs import Runs
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -66,7 +67,7 @@ class Finished(Contents, Labelled):
     def count(self) -> str:
         """Return what counts as one record: "station", or "component"; the latter too if the stations are not known."""
         count = str(self.info.get("count", "station"))
-        return "component" if counts_as(self.runs, count)[1] else count
+        return "component" if counts_as(Runs(self.runs), count)[1] else count
 
     @cached_property
     def worst(self) -> list[Worst]:

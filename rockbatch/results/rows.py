@@ -1,6 +1,7 @@
 """Rows of peaks.csv: those of runs, those of each case at one scale, and the record as which each counts."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,7 @@ import numpy.typing as npt
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.catalogue import MIRROR_OF
+from rockbatch.quantities.runs import MISSING, Runs, Texts
 
 NOT_RUN = "not run"
 
@@ -28,11 +30,6 @@ def as_in_peaks(value: object) -> object:
     if value is None or value != value:
         return ""
     return float(f"{value:.10g}") if isinstance(value, float | int) else value
-
-
-def suites(runs: "pd.DataFrame", cases: Iterable[Case]) -> "Iterator[tuple[Case, pd.DataFrame]]":
-    """Yield every case with its rows of peaks.csv."""
-    return ((case, runs.iloc[rows]) for case, rows in rows_of_cases(runs, list(cases)))
 
 
 def rows_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> Iterator[tuple[Case, npt.NDArray[np.intp]]]:
@@ -61,28 +58,33 @@ def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArr
     return fits
 
 
-def complete(runs: "pd.DataFrame", stations: Mapping[str, str], polarities: Sequence[str]) -> "pd.DataFrame":
-    """Return ``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
+def complete(runs: Runs, stations: Mapping[str, str], polarities: Sequence[str]) -> Runs:
+    """Return ``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt; by their names.
 
     ``stations`` has all records, each with its station, empty if it is not known.
     """
-    planned = pd.MultiIndex.from_product([list(stations), polarities], names=["record", "polarity"]).to_frame(
-        index=False
+    names = [*zip(runs.texts("record"), runs.texts("polarity"), strict=True)]
+    missing = {*product(stations, polarities)}.difference(names)
+    every = sorted([*zip(names, runs.rows, strict=True), *((absent, MISSING) for absent in missing)])
+    rows = np.array([row for _, row in every])
+    found, absent = runs.at(rows), rows == MISSING
+    return runs.at(
+        rows,
+        record=np.array([record for (record, _), _ in every], dtype=object),
+        polarity=np.array([polarity for (_, polarity), _ in every], dtype=object),
+        station=np.array([stations.get(record, "") for (record, _), _ in every], dtype=object),
+        status=np.where(absent, "failed", found.texts("status")),
+        reason=np.where(absent, NOT_RUN, found.texts("reason")),
     )
-    all_of_them = planned.merge(runs, how="outer", on=["record", "polarity"])
-    missing = all_of_them["status"].isna()
-    all_of_them.loc[missing, ["status", "reason"]] = ["failed", NOT_RUN]
-    all_of_them["station"] = all_of_them["record"].map(stations)
-    return all_of_them
 
 
-def counts_as(runs: "pd.DataFrame", count: str) -> "tuple[pd.Series[str], str]":
+def counts_as(runs: Runs, count: str) -> tuple[Texts, str]:
     """Return the record as which each run counts, by ``count`` of ``COUNTS``; and why that is not its station if it should be."""
     if count == "component":
-        return runs["record"], ""
-    stations_of_runs = runs["station"].fillna("").astype(str)
+        return runs.texts("record"), ""
+    stations_of_runs = runs.texts("station")
     if (stations_of_runs == "").any():
-        return runs["record"], (
+        return runs.texts("record"), (
             "these results do not say which components are of one station, so that each counts as a record; start "
             "`rockbatch run` again"
         )

@@ -9,6 +9,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.runs import Runs
 from rockbatch.study.rules import Rule
 from rockbatch.toml.meant import in_another_unit
 
@@ -129,7 +130,11 @@ def _far_from(name: str, key: str, value: float, cases: Sequence[Case]) -> str:
     """Return that a limit is far from the parameter of every case, or as a force from the weight; empty if it is not."""
     demand = DEMANDS[name]
     if demand.per_case:
-        sizes, least, most = [float(demand.evaluate(pd.DataFrame(), case).value[0]) for case in cases], 1 / FAR, FAR
+        sizes, least, most = (
+            [float(demand.evaluate(Runs(pd.DataFrame()), case).value[0]) for case in cases],
+            1 / FAR,
+            FAR,
+        )
         words = "is {:.4g} here, {:.2g} times the limit, so that it decides nothing"
     elif demand.unit == "kN":
         sizes, least, most = [weight(case) for case in cases if "mass_t" in case["pier"]], LEAST_SHARE, FAR

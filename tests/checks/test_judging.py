@@ -15,8 +15,9 @@ from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import STATISTICS, quantile
-from rockbatch.results.rows import suites
+from rockbatch.results.rows import rows_of_cases
 
 INF = math.inf
 
@@ -59,7 +60,7 @@ def test_each_case_has_the_rows_with_its_values_in_their_order():
         ("c", {"beta": 1.0}),
     ]
     cases = [case(name=name) | {"columns": columns} for name, columns in asked]
-    chosen = [own.index.tolist() for _, own in suites(table, cases)]
+    chosen = [rows.tolist() for _, rows in rows_of_cases(table, cases)]
     assert chosen == [[0, 2, 5], [0, 2, 3, 5], [1], [1, 4], []]
 
 
@@ -739,11 +740,11 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
     cells["status"] = rng.choice(["ok", "ok", "overturned", "flight", "failed"], n)
     cells["note"] = rng.choice(["", CHAOTIC, FALLS, "the residuals are chaotic"], n)
     plain = runs(rng.uniform(0.0, 1.2, n)).drop(columns=cells, errors="ignore")
-    table = pd.concat([plain, pd.DataFrame(cells)], axis=1)
+    suite = Runs(pd.concat([plain, pd.DataFrame(cells)], axis=1))
     for name, demand in DEMANDS.items():
         if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
             continue
-        bounds, counting = of_runs(Rule("check", name, 0.5), table, case(base=base))
+        bounds, counting = of_runs(Rule("check", name, 0.5), suite, case(base=base))
         value, low, high = (part[counting] for part in bounds[:3])
         assert (low <= value).all(), name
         assert (value <= high).all(), name

@@ -30,6 +30,7 @@ from rockbatch.quantities.catalogue import (
     report_columns,
 )
 from rockbatch.quantities.quantity import BENDING, Limit, Quantity
+from rockbatch.quantities.runs import Runs
 from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
@@ -168,7 +169,9 @@ def test_a_row_of_the_catalogue_gives_column_heading_and_demands_in_two_units():
         ("slip_m", "slip [m]"),
         ("slip_mm", "slip [mm]"),
     ]
-    np.testing.assert_allclose(demands["slip_mm"].evaluate(runs, case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]])
+    np.testing.assert_allclose(
+        demands["slip_mm"].evaluate(Runs(runs), case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]]
+    )
 
 
 def test_columns_of_devices_that_are_for_runs_that_stood_are_empty_in_others(tmp_path):
@@ -218,7 +221,7 @@ def test_a_target_that_is_no_spectrum_is_none_that_the_suite_is_compared_with(st
 
 def test_demands_read_columns_of_the_table_only():
     pads = case("pads", PADS)
-    runs = pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()})
+    runs = Runs(pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()}))
     for demand in DEMANDS.values():
         assert len(demand.evaluate(runs, pads).value) == 1
         assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1

@@ -19,6 +19,7 @@ from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.runs import Runs
 from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.rules import Rule
@@ -156,7 +157,7 @@ class RecordRuns:
         self.draws = Draws(spec.uncertain, study.cases, len(motions))
         self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
         self.status: dict[Point, str] = {}
-        self._last: tuple[dict[Point, int], pd.DataFrame]
+        self._last: tuple[dict[Point, int], Runs]
 
     def execute(self, requested: Iterable[Point]) -> None:
         """Carry out one wave of runs."""
@@ -165,7 +166,7 @@ class RecordRuns:
         runs = ScaledRuns(points, self.motions, self.plan.unscaled, lambda point: self.drawn(point).case, polarity)
         table = self.simulate(runs)
         self.status |= dict(zip(points, table["status"], strict=True))
-        self._last = {point: i for i, point in enumerate(points)}, table
+        self._last = {point: i for i, point in enumerate(points)}, Runs(table)
 
     def drawn(self, point: Point) -> Drawn:
         """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
@@ -179,20 +180,20 @@ class RecordRuns:
     def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
         """Return the demands of runs of the last wave of one case, shape (n,)."""
         values = np.empty(len(points))
-        for drawn, numbers, rows in self._together(points):
-            values[numbers] = demands(rule, rows, drawn.described)
+        for drawn, numbers, runs in self._together(points):
+            values[numbers] = demands(rule, runs, drawn.described)
         return values
 
     def states(self, requested: Sequence[tuple[Rule, Point]]) -> list[int]:
         """Return the states of runs of the last wave with respect to limits."""
         result = np.full(len(requested), LEFT_OUT)
         for rule, numbers in grouped(range(len(requested)), lambda number: requested[number][0]).items():
-            for drawn, places, rows in self._together([requested[number][1] for number in numbers]):
-                result[np.array(numbers)[places]] = states(rule, rows, drawn.described)
+            for drawn, places, runs in self._together([requested[number][1] for number in numbers]):
+                result[np.array(numbers)[places]] = states(rule, runs, drawn.described)
         return result.tolist()
 
-    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], "pd.DataFrame"]]:
-        """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and their rows."""
-        of_row, table = self._last
+    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], Runs]]:
+        """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and these."""
+        of_row, runs = self._last
         for drawn, places in grouped(range(len(points)), lambda place: self.drawn(points[place])).items():
-            yield drawn, places, table.iloc[[of_row[points[place]] for place in places]]
+            yield drawn, places, runs.at(np.array([of_row[points[place]] for place in places]))
