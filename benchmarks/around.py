@@ -2,11 +2,11 @@
 
     python benchmarks/around.py [--times 3] [ROW ...]
 
-"fixed" and "tolerance" run whole studies with `--jobs 1`, and the kernels of the same groups of runs alone, in turn.
-"fig7" is `rockbatch run` of the study of that name, then `check` and `report` of its folder; "dry" is `--dry-run` of a
-study with dampers. "million", on request only, is a million short runs of rigid piers on rigid ground, once. The others are
-medians; what is compiled is compiled before, Python's modules too (PYTHONDONTWRITEBYTECODE, which would have each command
-compile them anew, is left out).
+"fixed" and "tolerance" run whole studies with `--jobs 1`, the kernels of the same groups of runs alone, and their report and
+checks, in turn. "fig7" is `rockbatch run` of the study of that name, then `check` and `report` of its folder; "dry" is
+`--dry-run` of a study with dampers. "million", on request only, is a million short runs of rigid piers on rigid ground, once.
+The others are medians; what is compiled is compiled before, Python's modules too (PYTHONDONTWRITEBYTECODE, which would have
+each command compile them anew, is left out).
 """
 
 import argparse
@@ -28,6 +28,7 @@ from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
 CONFIGS = Path(__file__).parents[1] / "configs"
+CHECKS = CONFIGS / "checks" / "stepping_pier.toml"
 
 STUDY = """
 title = "{title}"
@@ -159,24 +160,28 @@ def alone(file: Path) -> float:
 
 
 def whole(name: str, folder: Path, times: int) -> None:
-    """Print what a study of many runs takes over its kernels, and what its report takes again."""
-    file = folder / f"{name}.toml"
+    """Print what a study of many runs takes over its kernels, what its report takes again, and what judging it does."""
+    file, rules = folder / f"{name}.toml", folder / "rules.toml"
     file.write_text(STUDIES[name], encoding="utf-8")
+    rules.write_text(CHECKS.read_text(encoding="utf-8").replace("other_law = true", ""), encoding="utf-8")
     runs = len(Plan(load_study(file), ground_motions(load_study(file))))
-    command, kernels, report = [], [], []
+    command, kernels, report, check = [], [], [], []
     for _ in range(times):
         kernels.append(alone(file))
         command.append(rockbatch("run", file, "--out", folder / name, "--jobs", 1, "--fresh"))
         report.append(rockbatch("report", folder / name))
-    a, b, c = median(command), median(kernels), median(report)
-    print(f"{name}: {runs} runs: whole command {a:.2f} s, kernels alone {b:.2f} s; report again {c:.2f} s", flush=True)
+        check.append(rockbatch("check", folder / name, "--rules", rules))
+    verdicts = len((folder / name / "checks.csv").read_text(encoding="utf-8").splitlines()) - 1
+    a, b, c, d = map(median, (command, kernels, report, check))
+    print(f"{name}: {runs} runs: whole command {a:.2f} s, kernels alone {b:.2f} s; report again {c:.2f} s, ", end="")
+    print(f"check and its report, {verdicts} verdicts, {d:.2f} s", flush=True)
 
 
 def fig7(folder: Path, times: int) -> None:
     """Print what a small study takes, its checks and its report."""
     out = folder / "fig7"
     run = "run", CONFIGS / "fig7.toml", "--out", out, "--fresh"
-    words = (run, ("check", out, "--rules", CONFIGS / "checks" / "stepping_pier.toml"), ("report", out), ("run", "-h"))
+    words = (run, ("check", out, "--rules", CHECKS), ("report", out), ("run", "-h"))
     rockbatch(*run)
     taken = [[rockbatch(*each) for each in words] for _ in range(times)]
     for each, seconds in zip(words, zip(*taken, strict=True), strict=True):

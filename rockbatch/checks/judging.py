@@ -17,12 +17,14 @@ from rockbatch.checks.bounds import (
     counted,
     governing,
     lacking,
+    noted,
     of_runs,
     on_both_axes,
 )
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.common.notes import CHAOTIC
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
@@ -278,7 +280,7 @@ def _laws(rule: Rule, suite: Runs, case: Case, deciding: int | None) -> str:
 
 def _chaotic(rule: Rule, suite: Runs, case: Case) -> str:
     """Return the remark on runs that claim no error because their results are chaotic."""
-    if DEMANDS[rule.demand].event:
+    if DEMANDS[rule.demand].event or not noted(suite, CHAOTIC).any():
         return ""
     wild = int(chaotic(rule, suite, DEMANDS[rule.demand].evaluate(suite, case).error).sum())
     if not wild:

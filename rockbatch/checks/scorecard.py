@@ -11,7 +11,7 @@ from rockbatch.checks.responses import RESPONSES, Worst
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 
-MOST_ROWS, OPEN_ROWS = 12, 6
+MOST_CASES, OPEN_CASES = 12, 6
 """Cases that are all shown, and of more those that are shown first."""
 SMALL = {"m": ("mm", 1e3), "rad": ("mrad", 1e3), "m/s": ("mm/s", 1e3)}
 """Units in which limits below one are written, and factors to them."""

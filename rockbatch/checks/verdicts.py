@@ -1,6 +1,7 @@
 """Verdicts, and their rows in checks.csv."""
 
 import csv
+import functools
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields
@@ -130,12 +131,10 @@ def write_verdicts(directory: Path, verdicts: Iterable[Verdict]) -> Path:
 def read_verdicts(directory: Path) -> list[Verdict]:
     """Read checks.csv in ``directory``; empty without one, ``InputError`` if it is damaged."""
     path = Path(directory) / CHECKS
+    plain = functools.cache(lambda cell: legible(csv_plain(cell)))  # most cells stand there many times
     try:
         with opened_text(path) as file:
-            return [
-                _from_row({name: legible(csv_plain(cell)) for name, cell in row.items()})
-                for row in csv.DictReader(file)
-            ]
+            return [_from_row({name: plain(cell) for name, cell in row.items()}) for row in csv.DictReader(file)]
     except FileNotFoundError:
         return []
     except InputError:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from rockbatch.checks import Verdict
 from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import RESPONSES, Worst
-from rockbatch.checks.scorecard import MOST_ROWS, OPEN_ROWS, Cell, scorecard
+from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS
 from rockbatch.commands.streams import in_width, shown
@@ -66,7 +66,7 @@ def _table(heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]]) -> str
     """Return lines of cells below heads of several lines, the best cases first, within the terminal's width."""
     depth = max(map(len, heads), default=0)
     top = [["", *line] for line in zip(*([""] * (depth - len(head)) + list(head) for head in heads), strict=True)]
-    kept = rows if len(rows) <= MOST_ROWS else rows[:OPEN_ROWS]
+    kept = rows if len(rows) <= MOST_CASES else rows[:OPEN_CASES]
     lines = [list(map(_showable, line)) for line in (*top, *kept)]
     text = in_width(lines[0], lines[1:]) if top else ""
     return text if len(kept) == len(rows) else f"{text}\n{len(kept)} of {len(rows)} cases, the best first"

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rockbatch.checks import as_table, read_verdicts
+from rockbatch.checks import as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import made_folder, write_output, write_whole
 from rockbatch.common.lazy import pd
-from rockbatch.reporting.finished import read
+from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import pair
-from rockbatch.results.opened import Results, open_results
+from rockbatch.results.opened import Results
 from rockbatch.results.run_json import describe_study, is_of
 from rockbatch.simulation.response import Response
 from rockbatch.study import Study
@@ -39,10 +39,7 @@ def write_report(
 
     Raises ``InputError`` if the results are missing, damaged or do not belong together.
     """
-    directory = Path(directory)
-    target = out or directory / REPORT
-    (write_output if out else write_whole)(target, page(read(directory, responses, saved), whole))
-    return target
+    return _write([read(Path(directory), responses, saved)], out, whole)
 
 
 def write_comparison(first: Path, second: Path, *, out: Path | None = None, whole: bool = False) -> Path:
@@ -51,10 +48,7 @@ def write_comparison(first: Path, second: Path, *, out: Path | None = None, whol
     ``out`` is ``compare-NAME.html`` in the first folder by default, with the name of the second. Raises ``InputError``
     if results are missing or damaged.
     """
-    first, second = Path(first), Path(second)
-    target = out or first / f"compare-{second.resolve().name}.html"
-    (write_output if out else write_whole)(target, comparison(pair(read(first, ()), read(second, ())), whole))
-    return target
+    return _write([read(Path(first), ()), read(Path(second), ())], out, whole)
 
 
 def write_analyses(directory: Path, study: Study) -> Path:
@@ -95,7 +89,7 @@ class Report:
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write the page into ``folder``, under its name; return its path."""
         directory = made_folder(Path(folder))
-        return _write([open_results(folder) for folder in self.folders], directory / self.path.name)
+        return _write(_finished(self.folders), directory / self.path.name)
 
 
 @checked
@@ -142,17 +136,27 @@ def report(
     Name: count, dtype: int64
     """
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
-    saved = [open_results(folder) for folder in folders]
-    path = _write(saved, None if out is None else Path(out), whole)
-    tables = [(results.peaks, as_table(read_verdicts(results.directory))) for results in saved]
+    finished = _finished(folders)
+    path = _write(finished, None if out is None else Path(out), whole)
+    tables = [(each.saved.peaks, as_table(each.verdicts)) for each in finished]
     peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
-def _write(saved: Sequence[Results], out: Path | None, whole: bool = False) -> Path:
-    if len(saved) > 1:
-        return write_comparison(*(results.directory for results in saved), out=out, whole=whole)
-    return write_report(saved[0].directory, out=out, saved=saved[0], whole=whole)
+def _finished(folders: Sequence[Path]) -> list[Finished]:
+    """Return the results in a folder, or in two to compare, whose histories are not shown."""
+    return [read(folder, () if len(folders) > 1 else None) for folder in folders]
+
+
+def _write(finished: Sequence[Finished], out: Path | None, whole: bool = False) -> Path:
+    """Write the page of one folder, or that which compares two, to ``out`` or beside the first; return its path."""
+    if len(finished) > 1:
+        content = comparison(pair(*finished), whole)
+        target = finished[0].directory / f"compare-{finished[1].directory.resolve().name}.html"
+    else:
+        content, target = page(finished[0], whole), finished[0].directory / REPORT
+    (write_output if out else write_whole)(out or target, content)
+    return out or target
 
 
 def _stacked(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":

@@ -15,7 +15,7 @@ from rockbatch.reporting.pair import SIDES, Pair
 from rockbatch.reporting.sections import statics, statistics, studied, verdicts
 from rockbatch.reporting.sections.answer import responses
 from rockbatch.reporting.sections.peaks import on_scale, outcome
-from rockbatch.reporting.table import MOST_ROWS, THETA, THETA_FORMAT, Head, shown_of, table
+from rockbatch.reporting.table import MOST_ROWS, THETA, THETA_FORMAT, Head, table
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import digits_that_tell
 from rockbatch.results.suite_statistics import NO_PEAK
@@ -215,7 +215,7 @@ def pairs(pair: Pair) -> Markup:
             pair.named.shown(run[name]) if name == "record" else run[name] for run in pair_of_runs[:1] for name in names
         )
         rows.append([*own, *map(outcome, pair_of_runs), ratio, *other_values])
-    return join(shown_of(len(order), len(a), "worst"), table(heads, rows, sortable=True, name="Pairs of runs"))
+    return table(heads, rows, sortable=True, name="Pairs of runs", worst_of=len(a))
 
 
 def suites(pair: Pair) -> Markup:

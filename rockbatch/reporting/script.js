@@ -102,7 +102,7 @@ for (const words of document.querySelectorAll(".legend.rest")) {
   const button = document.createElement("button");
   button.type = "button";
   button.className = "copy";
-  button.textContent = `All ${card.tBodies[0].rows.length} cases`;
+  button.textContent = words.dataset.button;
   button.addEventListener("click", () => { card.classList.add("every"); words.remove(); });
   words.append(" ", button);
 }

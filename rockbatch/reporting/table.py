@@ -41,16 +41,17 @@ def table(
     sortable: bool = False,
     prose: bool = False,
     name: str | None = None,
+    worst_of: int | None = None,
 ) -> Markup:
     """Return a table in a container that scrolls if it is too wide. Columns without a value are left out.
 
     Of a ``sortable`` one, which has many rows, columns that say the same in all of them stand in a line above it.
-    ``prose``: its cells hold text of several lines.
+    ``prose``: its cells hold text of several lines. ``worst_of`` is the number of rows of which these are the worst.
 
     Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded.
     """
     whole = list(rows)
-    rows = whole[:MOST_ROWS]
+    rows, total = whole[:MOST_ROWS], worst_of or len(whole)
     used = [i for i in range(len(heads)) if i == 0 or any(number(row[i]) for row in rows)]
     same = [i for i in used[1:] if sortable and len(whole) > LEAST_COMMON and len({str(row[i]) for row in whole}) == 1]
     used = [i for i in used if i not in same]
@@ -87,8 +88,8 @@ def table(
     if len(rows) > MOST_OPEN:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
     return join(
-        _common([heads[i] for i in same], [whole[0][i] for i in same]) if same else "",
-        shown_of(len(rows), len(whole)),
+        shown_of(len(rows), total, "worst" if worst_of else "first"),
+        _common([heads[i] for i in same], [whole[0][i] for i in same], len(whole) == total) if same else "",
         wide,
     )
 
@@ -99,11 +100,12 @@ def _with_unit(text: str) -> Markup:
     return Markup(f'{name} <span class="unit">[{unit}</span>') if bracket else Markup(unit)
 
 
-def _common(heads: Sequence[Head], values: Sequence[object]) -> Markup:
-    """Return the line on columns that say the same in every row."""
+def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> Markup:
+    """Return the line on columns that say the same in every row, of all if the table is ``complete``."""
     words = [join(head.text, " ", value if isinstance(value, Markup) else number(value, head.form))
              for head, value in zip(heads, values, strict=True)]  # fmt: skip
-    return tag("p", "In every row: ", join(*words, between="; "), ".", class_="legend")
+    rows = "In every row: " if complete else "In each of these rows: "
+    return tag("p", rows, join(*words, between="; "), ".", class_="legend")
 
 
 def listed(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], **options: Any) -> Markup:

@@ -166,6 +166,17 @@ def test_of_many_cases_the_six_nearest_to_passing_stand_open_and_the_others_foll
     assert "Every verdict with its numbers, the worst first (45)" in text
 
 
+def test_of_very_many_cases_a_page_has_the_best_and_the_worst_verdicts_and_says_so(tmp_path):
+    fates = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10) for i in range(1, 1101)]
+    shown = page(tmp_path, *fates)
+    assert [row[0].removesuffix("fails 1 check") for row in card(shown)[1:]] == [f"c{i}" for i in range(1, 201)]
+    assert "6 of 1,100 cases, the best first. All are in checks.csv." in shown.text
+    assert ("data-button", "The best 200 cases") in shown.attributes
+    assert "Verdicts with their numbers, the worst first (1100)" in shown.text
+    assert "The worst 1,000 of 1,100 rows are shown.In each of these rows: verdict ✗ fail;" in shown.text
+    assert [row[1] for row in shown.tables["checks"][-1000:]] == [f"c{i}" for i in range(1100, 100, -1)]
+
+
 def test_checks_that_pass_everywhere_are_counted_beyond_the_seventh_and_what_fails_comes_first(tmp_path):
     passing = [verdict("1", "pass", check=f"c{i}", ratio=i / 20) for i in range(10)]
     failing = [verdict("1", "fail", check=f"f{i}", ratio=1.5 + i) for i in range(2)]

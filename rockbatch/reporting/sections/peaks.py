@@ -9,7 +9,7 @@ from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, 
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
 from rockbatch.reporting.markup import Markup, join, number, tag
-from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, shown_of, table
+from rockbatch.reporting.table import MOST_ROWS, THETA_FORMAT, Head, alarm, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.columns import PEAKS
 from rockbatch.results.labelled import as_dicts
@@ -124,8 +124,7 @@ def every_run(
     """Return a table with a row for each run, the worst first; ``cells`` returns those behind the record."""
     runs = worst_first(finished.runs, MOST_ROWS)
     rows = ([finished.shown(run["record"]), *cells(run)] for run in as_dicts(runs))
-    drawn = table(heads, rows, sortable=True, name=name)
-    return join(shown_of(len(runs), len(finished.runs), "worst"), drawn)
+    return table(heads, rows, sortable=True, name=name, worst_of=len(finished.runs))
 
 
 def _cell(name: str, value: Any) -> object:

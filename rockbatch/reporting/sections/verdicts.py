@@ -7,20 +7,22 @@ from rockbatch.checks import Verdict, wording
 from rockbatch.checks.answer import Line
 from rockbatch.checks.answer import answer as answered
 from rockbatch.checks.coverage import CaseRuns, stations_of
-from rockbatch.checks.scorecard import MOST_ROWS, OPEN_ROWS, Cell, Column, Row
+from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, Column, Row
 from rockbatch.checks.scorecard import Scorecard as Card
 from rockbatch.checks.scorecard import scorecard as of_verdicts
-from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
+from rockbatch.checks.verdicts import CHECKS, DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join, number, tag
-from rockbatch.reporting.table import Head, table
+from rockbatch.reporting.table import MOST_ROWS, Head, table
 
 BASIS = {"code": "code clause", "literature": "literature", "judgement": "engineering judgement"}
 SAID = {PASS: "passes:", FAIL: "fails:", NOT_DECIDED: "not decided:", DOES_NOT_APPLY: "does not apply"}
 MOST_COLUMNS = 7
 """Checks that the scorecard shows though they pass in every case."""
+MOST_DRAWN = 200
+"""Cases of a scorecard that a reader can unfold."""
 CLASSES = {PASS: "pass", FAIL: "fail", NOT_DECIDED: "undecided", DOES_NOT_APPLY: "muted"}
 
 
@@ -31,7 +33,8 @@ def section(finished: Finished) -> Markup:
         return Markup("")
     rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
     every = _every(finished, [*wording.worst_first(verdicts), *rest], wording.Notes(verdicts))
-    summary = tag("summary", f"Every verdict with its numbers, the worst first ({len(verdicts)})")
+    words = "Every verdict with its numbers" if len(verdicts) <= MOST_ROWS else "Verdicts with their numbers"
+    summary = tag("summary", f"{words}, the worst first ({len(verdicts)})")
     return join(_requirements(verdicts), tag("details", summary, every))
 
 
@@ -70,7 +73,7 @@ def scorecard(finished: Finished) -> Markup:
     """Return a row for each case and a column for each check: demand, its share of the limit, and a bar up to twice that."""
     card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst)
     columns = card.open_columns(MOST_COLUMNS)
-    open_rows = MOST_ROWS if len(card.rows) <= MOST_ROWS else OPEN_ROWS
+    shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     folded = len(card.columns) - len(columns)
     asked = {verdict.check: wording.requirement(verdict) for verdict in finished.verdicts}
     heads = [
@@ -78,14 +81,16 @@ def scorecard(finished: Finished) -> Markup:
         for name, limit, _ in (card.columns[i] for i in columns)
     ]
     more = [tag("th", scope="col")] if folded else []
-    rows = [
-        _row(finished, card, row, columns, "folded" if place >= open_rows else None)
-        for place, row in enumerate(card.rows)
-    ]
+    best = card.rows[:MOST_DRAWN]
+    rows = [_row(finished, card, row, columns, "folded" if place >= shown else None) for place, row in enumerate(best)]
     head = tag("thead", tag("tr", tag("th", "Case", scope="col"), *heads, *more))
     drawn = tag("table", head, tag("tbody", *rows), class_="card")
-    rest = tag("p", f"{open_rows} of {len(card.rows)} cases, the best first.", class_="legend rest")
-    return join(tag("div", drawn, class_="wide"), rest if open_rows < len(card.rows) else "")
+    if shown >= len(card.rows):
+        return join(tag("div", drawn, class_="wide"))
+    words, button = f"{shown} of {len(card.rows):,} cases, the best first.", f"All {len(card.rows)} cases"
+    if len(best) < len(card.rows):
+        words, button = f"{words} All are in {CHECKS}.", f"The best {len(best)} cases"
+    return join(tag("div", drawn, class_="wide"), tag("p", words, class_="legend rest", data_button=button))
 
 
 def statistics_in_words(finished: Finished) -> str:
@@ -171,9 +176,9 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
             "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
             wording.governing(row), "; ".join(filter(None, (row.counted, notes.about(row)))),
         ]
-        for row in verdicts
+        for row in verdicts[:MOST_ROWS]
     ]  # fmt: skip
-    return table(heads, rows, sortable=True, prose=True, name="Verdicts")
+    return table(heads, rows, sortable=True, prose=True, name="Verdicts", worst_of=len(verdicts))
 
 
 def _between(verdict: Verdict) -> str:
