@@ -41,7 +41,7 @@ def test_a_ratio_is_of_the_best_times_and_the_median_of_each_repeat(benchmark):
     assert benchmark("interleaved").ratio([2.0, 8.0, 9.0], [1.0, 2.0, 3.0], scale=0.5) == "1 | 1.5"
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_every_solver_is_as_accurate_as_asked(benchmark):
     module = benchmark("solvers")
     rows = cells(module.main(repeats=1, side_by_side=4, seconds=3.0))
@@ -116,7 +116,7 @@ def test_another_solver_finds_the_same_peak(benchmark, package, solver, toleranc
     assert theta_max == pytest.approx(outcome.theta_max, rel=0, abs=(tolerance + error) * pier.alpha)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_bare_step_is_compared_for_every_law_the_rigid_base_every_step_and_component(benchmark):
     lines = benchmark("bare_step").main(repeats=1, runs=2, seconds=3.0)
     assert lines[0].startswith("vector instructions of ")

@@ -99,7 +99,7 @@ def test_yield_points_go_on_through_flights_and_landings():
     assert found["bouc-wen", "twice"].settlement > 1.02 * found["bouc-wen", "once"].settlement
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_real_record_agrees_with_a_solver_of_first_order(monkeypatch):
     """Rinaldi with its vertical, pads of 30 MN: benchmarks/spring_laws.py, whose steps of 20 µs are good to 1e-3."""
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))

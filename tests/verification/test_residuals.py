@@ -56,7 +56,7 @@ def test_residuals_of_many_bursts_do_not_depend_on_the_end_of_the_record():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["epp", "hardening"])
+@pytest.mark.parametrize("law", ["epp", pytest.param("hardening", marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("period", [0.5, pytest.param(0.8, marks=pytest.mark.thorough)])
 def test_residuals_are_where_the_reference_comes_to_rest(law, period):
     base = YieldingBase(50.0, zeta=0.1, eta=2.0, spring=law)
