@@ -24,6 +24,17 @@ def test_a_motion_of_an_array_is_in_its_unit():
         rb.Motion.from_array(VALUES, 0.01, "ft/s2")
 
 
+def test_a_name_that_is_no_unicode_is_in_tables_as_in_the_motion_itself(tmp_path):
+    """As of a file whose name has another encoding; where pandas keeps texts as Arrow does, they have to be Unicode."""
+    motion = rb.Motion("b\udcffc", 0.02, np.sin(np.arange(50.0)), station="D\udcfczce")
+    assert (motion.name, motion.station) == (r"b\xffc", r"D\xfczce")
+    table = rb.run(rb.load_study(write_study(tmp_path, study_text())), motions=[motion])
+    response = rb.simulate(rb.Pier(0.2, 1.0), rb.RigidBase(), motion)
+    for row in (table.iloc[0], response.row):
+        assert (row["record"], row["station"]) == (motion.name, motion.station)
+    assert response.record == motion.name
+
+
 def stream(*channels: str, **header: object) -> Stream:
     return Stream([
         Trace(VALUES * (n + 1), {"delta": 0.01, "station": "ABC", "channel": channel} | header)

@@ -11,6 +11,7 @@ import numpy as np
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
+from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
@@ -182,6 +183,8 @@ class Motion(Shown):
     vertical_factor: float | None = None
 
     def __post_init__(self) -> None:
+        for text in ("name", "station"):  # which stand in tables, where a file's name that is no Unicode cannot
+            object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
         wrong = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')

@@ -7,7 +7,6 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Pier
@@ -122,8 +121,6 @@ def _number(text: str) -> float | str:
 
 def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     """Return a row on its own, as it stands in a table, with those columns on request that it has."""
-    # Strings of pandas may be Arrow's, which are Unicode
-    cells = {name: legible(cell) if isinstance(cell, str) else cell for name, cell in cells.items()}
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     table = pd.DataFrame([cells], columns=names((*FIXED, *TRAILING, *present)))
     return _typed(table, ()).iloc[0].rename(cells["record"])
