@@ -83,8 +83,9 @@ def judge(
     runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
-    scales = [float(scale) for scale in runs["scale"].unique()]
-    available: dict[str, Any] = {"scales": scales, "polarities": [*dict.fromkeys(Runs(runs).texts("polarity"))]}
+    every, scales = Runs(runs), [float(scale) for scale in runs["scale"].unique()]
+    stations = records or dict(zip(every.texts("record"), every.texts("station"), strict=True))
+    available: dict[str, Any] = {"scales": scales, "polarities": {*every.texts("polarity")}}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
     available["output"] = [
@@ -99,7 +100,6 @@ def judge(
         raise InputError(*wrong)
     runs = simulated(runs)
     table, scale_of = Runs(runs), runs["scale"].to_numpy(np.float64)
-    stations = records or dict(zip(table.texts("record"), table.texts("station"), strict=True))
     polarities = [*dict.fromkeys(table.texts("polarity"))]
     tables = dict.fromkeys((rule.at_m for rule in rules), table)
     if sections is not None:

@@ -64,6 +64,13 @@ def test_each_case_has_the_rows_with_its_values_in_their_order():
     assert chosen == [[0, 2, 5], [0, 2, 3, 5], [1], [1, 4], []]
 
 
+def test_a_record_of_which_only_the_mirror_image_is_there_is_one_whose_run_is_missing():
+    table = runs([0.1, 0.2, 0.3], mirror_of=["", "", "+"])
+    table["polarity"] = ["+", "+", "-"]
+    found = judged(table)
+    assert (found.runs, found.counted, found.verdict) == (3, "1 not run (unknown)", "not decided")
+
+
 @pytest.mark.parametrize(
     ("limit", "confirm", "noted"), [(20.0, (), False), (21.0, (), True), (21.0, ("at_most",), False)]
 )
