@@ -7,9 +7,9 @@ from typing import Any
 
 import pandas as pd
 
-from rockbatch.checks import Verdict
+from rockbatch.checks import Rule, Verdict, judge
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.quantities.catalogue import FIXED, TRAILING, names
+from rockbatch.quantities.catalogue import DEMANDS, FIXED, TRAILING, names
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 
@@ -44,6 +44,35 @@ def runs(theta: Any = (0.1, 0.2, 0.6, 0.3), name: str = "pads", **cells: Any) ->
     for column, value in cells.items():
         table[column] = value
     return table
+
+
+SECTION = {
+    "section_shear_kN": 3000.0, "section_moment_kNm": 40000.0, "section_axial_least_kN": -200.0,
+    "section_axial_greatest_kN": 30000.0,
+}  # fmt: skip
+
+
+def judged(table, *, one=None, records=(), demand="theta_max_over_alpha", at_most=0.5, **asked):
+    """Return the verdict on one case by one rule."""
+    if "at_least" in asked:
+        at_most = None
+    place, sections = in_sections(table, demand)
+    (verdict,) = judge(
+        [Rule("check", demand, at_most, **place | asked)],
+        table,
+        [one or case()],
+        dict.fromkeys(records, "") or None,
+        sections=sections,
+    )
+    return verdict
+
+
+def in_sections(table, demand, **cells):
+    """What a check of a section says too, and rows of sections.csv for those of ``table``; nothing for other demands."""
+    if DEMANDS[demand].needs != "sections":
+        return {}, None
+    values = SECTION | {"sections_error": math.nan} | cells
+    return {"at_m": 7.5}, table[["record", "case", "polarity", "scale"]].assign(height_m=7.5, **values)
 
 
 def folder(path: Path, peaks: pd.DataFrame, cases: list[dict[str, Any]], checks: str = "", **info: Any) -> Path:
