@@ -46,7 +46,7 @@ def answer(
     ----------
     verdicts : sequence of Verdict
     worst : sequence of Worst
-        The worst response of every case.
+        The worst responses of every case at each scale.
     case_of, record_of : function
         Of a verdict: the name of its case, and of the record that governs it.
     runs : sequence of CaseRuns
@@ -126,10 +126,15 @@ def _wholly_or_in_part(stations: Mapping[str, Sequence[Any]], used: Collection[s
 
 
 def without_limits(cases: Mapping[str, Sequence[Verdict]], worst: Sequence[Worst]) -> dict[str, list[Worst]]:
-    """Return the responses that govern a case and that none of its checks bounds, by the names of cases that have any."""
-    by_case = grouped(worst, lambda response: _key(of_pier(response.case)[0], response.case["columns"]))
+    """Return the responses that govern a case and that none of its checks bounds, by the names of cases that have any.
+
+    ``worst`` are those of every case at each scale, as a case of verdicts is of one.
+    """
+    by_case = grouped(
+        worst, lambda response: (*_key(of_pier(response.case)[0], response.case["columns"]), response.scale)
+    )
     of_cases = {
-        name: unlimited(by_case.get(_key(of_case[0].case, of_case[0].columns), []), of_case)
+        name: unlimited(by_case.get((*_key(of_case[0].case, of_case[0].columns), of_case[0].scale), []), of_case)
         for name, of_case in cases.items()
     }
     return {name: responses for name, responses in of_cases.items() if responses}

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.notes import CHAOTIC, OVERTURNS
+from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
-from rockbatch.quantities.runs import Runs, Texts
 from rockbatch.quantities.statistics import Values
 from rockbatch.results.rows import NOT_RUN
 from rockbatch.study.rules import USUAL, Rule
@@ -78,7 +78,7 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
     return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}
 
 
-def of_runs(rule: Rule, runs: Runs, case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
+def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
     """Return the bounds of every run, and True for those that count at all."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
@@ -121,24 +121,24 @@ def of_runs(rule: Rule, runs: Runs, case: Case) -> tuple[Bounds, npt.NDArray[np.
     return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
 
 
-def chaotic(rule: Rule, runs: Runs, error: Values) -> npt.NDArray[np.bool_]:
+def chaotic(rule: Rule, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
     """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
     of_peak = np.isnan(runs.numbers("theta_max_error")) | DEMANDS[rule.demand].residual
     return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
 
 
-def noted(runs: Runs, words: str) -> npt.NDArray[np.bool_]:
+def noted(runs: Rows, words: str) -> npt.NDArray[np.bool_]:
     """Return True for each run whose note has these words, shape (n,)."""
     return np.array([words in note for note in runs.texts("note")], dtype=bool)
 
 
-def by_other_law(rule: Rule, runs: Runs, case: Case) -> Values | None:
+def by_other_law(rule: Rule, runs: Rows, case: Case) -> Values | None:
     """Return values by the other spring law, shape (n,), NaN if it did not go through; None if it was not run."""
     other_law = DEMANDS[rule.demand].other_law
     return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
 
 
-def counted(rule: Rule, suites: Iterable[Runs]) -> str:
+def counted(rule: Rule, suites: Iterable[Rows]) -> str:
     """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
     numbers = Counter(
         NOT_RUN if reason == NOT_RUN else status

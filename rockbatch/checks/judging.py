@@ -26,9 +26,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC
 from rockbatch.common.showing import shown
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
-from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.results.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.results.sections import MEANING as OF_SECTIONS
@@ -46,7 +46,7 @@ class Axis(NamedTuple):
     """A case, along the axis of its pier or across it, with its runs at one scale; the same records on both."""
 
     case: Case
-    suite: Runs
+    suite: Rows
 
 
 def judge(
@@ -83,9 +83,9 @@ def judge(
     runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
-    every, scales = Runs(runs), [float(scale) for scale in runs["scale"].unique()]
-    stations = records or dict(zip(every.texts("record"), every.texts("station"), strict=True))
-    available: dict[str, Any] = {"scales": scales, "polarities": {*every.texts("polarity")}}
+    with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
+    stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
+    available: dict[str, Any] = {"scales": scales, "polarities": {*with_mirrors.texts("polarity")}}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
     available["output"] = [
@@ -99,11 +99,14 @@ def judge(
     if wrong:
         raise InputError(*wrong)
     runs = simulated(runs)
-    table, scale_of = Runs(runs), runs["scale"].to_numpy(np.float64)
+    if runs.empty:
+        raise InputError("the table has mirror images only, and not the runs that they mirror")
+    table, scale_of = Rows(runs), runs["scale"].to_numpy(np.float64)
     polarities = [*dict.fromkeys(table.texts("polarity"))]
     tables = dict.fromkeys((rule.at_m for rule in rules), table)
     if sections is not None:
-        tables |= {rule.at_m: at_section(runs, sections, rule) for rule in rules if rule.at_m is not None}
+        at_heights = {rule.at_m: rule for rule in rules if rule.at_m is not None}
+        tables |= {height: at_section(runs, sections, rule) for height, rule in at_heights.items()}
     verdicts = []
     for _, of_axes in groupby(rows_of_cases(runs, cases), lambda pair: of_pier(pair[0])):
         pier = list(of_axes)
@@ -119,18 +122,21 @@ def judge(
     return verdicts
 
 
-def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], table: Runs) -> Axis:
+def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], table: Rows) -> Axis:
     """Return the runs that a rule is about, with the columns of its ``table``; of a mirror image the demands are the same."""
     suite = axis.suite.beside(table)
-    of_one = rule.polarity in polarities
-    return Axis(axis.case, suite.where(suite.texts("polarity") == rule.polarity) if of_one else suite)
+    if rule.polarity in polarities:
+        suite = suite.where(suite.texts("polarity") == rule.polarity)
+    return Axis(axis.case, suite)
 
 
-def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Runs:
+def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Rows:
     """Return runs with their rows of sections.csv at the height of the rule beside them; NaN if one has none."""
     keys = [name for name in sections if name not in OF_SECTIONS]
     its = sections[[has_section(rule, [height]) for height in sections["height_m"]]]
-    return Runs(runs.merge(its, how="left", on=keys).set_index(runs.index))
+    if its.duplicated(keys).any():
+        raise InputError(f"a run has several sections at {rule.at_m:g} m; start `rockbatch run` again")
+    return Rows(runs.merge(its, how="left", on=keys))
 
 
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verdict:
@@ -265,7 +271,7 @@ def _far(rule: Rule, value: float) -> str:
     return f"{value:.4g} is below {1 / FAR:g} of the limit; check its unit, or write confirm = [{shown(key)}]"
 
 
-def _laws(rule: Rule, suite: Runs, case: Case, deciding: int | None) -> str:
+def _laws(rule: Rule, suite: Rows, case: Case, deciding: int | None) -> str:
     """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
     by_other = by_other_law(rule, suite, case)
     if by_other is None:
@@ -278,7 +284,7 @@ def _laws(rule: Rule, suite: Runs, case: Case, deciding: int | None) -> str:
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
-def _chaotic(rule: Rule, suite: Runs, case: Case) -> str:
+def _chaotic(rule: Rule, suite: Rows, case: Case) -> str:
     """Return the remark on runs that claim no error because their results are chaotic."""
     if DEMANDS[rule.demand].event or not noted(suite, CHAOTIC).any():
         return ""

@@ -5,12 +5,13 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
-from rockbatch.quantities.runs import Runs
 from rockbatch.results.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
@@ -46,6 +47,9 @@ RESPONSES = {
 """By their demands, in the order of the answer. The settlement of the toe is that of the pier and its tilt, and on springs the
 residual rotation follows from the tilt."""
 
+LOST = "runs that do not end standing"
+"""Head of their number beside the responses, which are of the others."""
+
 PERMANENT = ("settlement_m", "base_tilt_rad")
 """Responses that only supports that yield have."""
 
@@ -57,13 +61,14 @@ _HELD = 1e-4
 
 
 class Worst(NamedTuple):
-    """The greatest value of a demand among the runs of a case that end standing."""
+    """The greatest value of a demand among the runs of a case that end standing, at all scales or at one."""
 
     demand: str
     value: float
     case: Case
     runs: "pd.DataFrame"
     place: int
+    scale: float = math.nan
 
     @property
     def run(self) -> "pd.Series[Any]":
@@ -71,8 +76,13 @@ class Worst(NamedTuple):
         return self.runs.iloc[self.place]
 
 
-def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
-    """Return the worst response of every case for each of :data:`RESPONSES` that it has.
+def standing(runs: "pd.DataFrame") -> npt.NDArray[np.bool_]:
+    """Return True for each run that ends standing, with a peak, shape (n,)."""
+    return ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy(bool)
+
+
+def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale: bool = False) -> list[Worst]:
+    """Return the worst response of every case, at all scales or at each, for each of :data:`RESPONSES` that it has.
 
     Parameters
     ----------
@@ -82,9 +92,14 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
         Cases as run.json has them.
     """
     worst = []
-    stood = ((runs["status"] == "ok") & runs["theta_max_over_alpha"].notna()).to_numpy()
-    table = Runs(runs)
-    for case, rows in rows_of_cases(runs, cases):
+    stood, table = standing(runs), Rows(runs)
+    scale_of = table.numbers("scale") if at_each_scale else np.full(len(runs), math.nan)
+    suites = (
+        (case, scale, rows[np.isclose(scale_of[rows], scale, rtol=0.0, atol=0.0, equal_nan=True)])
+        for case, rows in rows_of_cases(runs, cases)
+        for scale in np.unique(scale_of[rows]).tolist()
+    )
+    for case, scale, rows in suites:
         rows = rows[stood[rows]]
         of_case = table.at(rows)
         for name in RESPONSES if len(rows) else ():
@@ -97,7 +112,7 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case]) -> list[Worst]:
                 place = int(np.nanargmax(values))
                 value = float(values[place])
                 value = 0.0 if name in PERMANENT and value < ROUNDING else value
-                worst.append(Worst(name, value, case, runs, int(rows[place])))
+                worst.append(Worst(name, value, case, runs, int(rows[place]), scale))
     return worst
 
 

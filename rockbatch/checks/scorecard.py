@@ -91,7 +91,7 @@ def scorecard(
 ) -> Scorecard:
     """Return the scorecard of verdicts on cases, and of cases with ``runs`` but without any.
 
-    ``case_of`` names a case, and ``worst`` are the worst responses of all cases, checked or not.
+    ``case_of`` names a case, and ``worst`` are the worst responses of all cases at each scale, checked or not.
     """
     of_cases = [verdict for verdict in verdicts if verdict.case]
     by_check = grouped(of_cases, lambda verdict: verdict.check)

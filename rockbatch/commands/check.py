@@ -88,18 +88,19 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
     def case_of(row: Verdict | CaseRuns) -> str:
         return results.named_case(row.case, row.columns, varied, row.scale)
 
-    worst = worst_of_cases(results.runs, saved.info["cases"])
+    cases = saved.info["cases"]
+    worst, at_scales = (worst_of_cases(results.runs, cases, at_each_scale=each) for each in (False, True))
     if checked:
-        table = scorecard.of_checks(verdicts, case_of, suites, worst)
+        table = scorecard.of_checks(verdicts, case_of, suites, at_scales)
     else:
         table = scorecard.of_responses(
-            worst, lambda response: results.named_case(response.case["case"], response.case["columns"], varied)
+            worst, results.runs, cases, lambda case: results.named_case(case["case"], case["columns"], varied)
         )
     lines = [table, ""] if table else []
     lines += [filled(words) for words in (weak_supports(saved.info["cases"]),) if words]
     stations = stations_of(saved.info)
     for line in answer(
-        verdicts, worst, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
+        verdicts, at_scales, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations
     ):
         words = " ".join((f"{line.text}: {line.cases}." if line.cases else f"{line.text}.", *line.details))
         lines.append(_coloured(filled(f"{mark(line.verdict).split()[0]} {_plain(words)}"), line.verdict))

@@ -5,13 +5,16 @@ from collections.abc import Callable, Sequence
 
 from rockbatch.checks import Verdict
 from rockbatch.checks.coverage import CaseRuns
-from rockbatch.checks.responses import RESPONSES, Worst
+from rockbatch.checks.responses import LOST, RESPONSES, Worst, standing
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS
 from rockbatch.commands.streams import in_width, shown
 from rockbatch.common.grouping import grouped
+from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import Case
 from rockbatch.reporting.markup import number
+from rockbatch.results.rows import rows_of_cases
 
 MOST_COLUMNS = 5
 """Checks that stand though they pass in every case."""
@@ -39,16 +42,30 @@ def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRu
     return _table([*heads, *more_heads], rows)
 
 
-def of_responses(worst: Sequence[Worst], case_of: Callable[[Worst], str]) -> str:
-    """Return the greatest responses of each case as text, the case with the least rotation first."""
+def of_responses(
+    worst: Sequence[Worst], runs: "pd.DataFrame", cases: Sequence[Case], name_of: Callable[[Case], str]
+) -> str:
+    """Return the greatest responses of each case as text, the best first: of those that end standing in the most runs the one
+    with the least rotation.
+    """
     names = [name for name in RESPONSES if any(response.demand == name for response in worst)]
-    rows = []
-    for case, of_case in grouped(worst, case_of).items():
-        values = {response.demand: response.value * RESPONSES[response.demand].factor for response in of_case}
+    of_cases = grouped(worst, lambda response: name_of(response.case))
+    stood, rows = standing(runs), []
+    for case, places in rows_of_cases(runs, cases):
+        if not len(places):
+            continue
+        values = {
+            response.demand: response.value * RESPONSES[response.demand].factor
+            for response in of_cases.get(name_of(case), ())
+        }
         cells = [number(values[name], ".3g") if name in values else "-" for name in names]
-        rows.append((values.get("theta_max_over_alpha", 0.0), [case, *cells]))
-    rows.sort(key=lambda row: row[0])
-    return _table([_head(RESPONSES[name].head, "") for name in names], [row for _, row in rows])
+        lost = int((~stood[places]).sum())
+        ended = f"{lost} of {len(places)}" if lost else "none"
+        rows.append((lost, values.get("theta_max_over_alpha", 0.0), [name_of(case), *cells, ended]))
+    rows.sort(key=lambda row: row[:2])
+    any_lost = any(lost for lost, *_ in rows)
+    heads = [*(_head(RESPONSES[name].head, "") for name in names), *([_head(LOST, "")] if any_lost else [])]
+    return _table(heads, [row if any_lost else row[:-1] for *_, row in rows])
 
 
 def _head(words: str, limit: str) -> list[str]:

@@ -102,7 +102,8 @@ class Motion(Shown):
     Attributes
     ----------
     name : str
-        Name in tables: the stem of the horizontal component's file, its channel id, or the pulse's name.
+        Name in tables: the stem of the horizontal component's file, its channel id, or the pulse's name; control characters,
+        invisible ones, and bytes that are no text are written as ``\\x1b`` in it.
     dt : float
         Sampling interval [s].
     horizontal : ndarray, shape (npts,)
@@ -183,7 +184,7 @@ class Motion(Shown):
     vertical_factor: float | None = None
 
     def __post_init__(self) -> None:
-        for text in ("name", "station"):  # which stand in tables, where a file's name that is no Unicode cannot
+        for text in ("name", "station"):  # as they stand in tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
         wrong = []
         if not (math.isfinite(self.dt) and self.dt > 0):

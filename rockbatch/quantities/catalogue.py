@@ -14,6 +14,7 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.pier import MOST_ETA, Pier
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import (
     ONE,
     THOUSAND,
@@ -56,7 +57,6 @@ from rockbatch.quantities.quantity import (
     Run,
     in_print,
 )
-from rockbatch.quantities.runs import Runs
 
 IN_MOTION, IN_MOTION_ERROR = "theta_max_in_motion_over_alpha", "theta_max_in_motion_error"
 """Columns of the peak until a motion ends, which a run that failed later has reached, and of its error."""
@@ -198,7 +198,7 @@ def _greater(name: str, words: str, *limits: Limit) -> tuple[Limit, ...]:
     )
 
 
-def _settlement(runs: Runs, case: Case) -> Estimated:
+def _settlement(runs: Rows, case: Case) -> Estimated:
     """Return the mean settlement of the supports."""
     return Estimated(runs.numbers("settlement_m"), runs.numbers("settlement_error_m"))
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.pier import tilt_over_residual
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import ONE, Case, Lever, alpha, bends, holds_a_tilt, width
-from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import Values
 
 FORCES = "base_shear_m_s2"
@@ -26,7 +26,7 @@ class Estimated(NamedTuple):
     error: Values
 
 
-Evaluate = Callable[[Runs, Case], Estimated]
+Evaluate = Callable[[Rows, Case], Estimated]
 
 
 class Ceiling(NamedTuple):
@@ -80,7 +80,7 @@ class Demand:
     event: bool = False
     per_case: bool = False
     residual: bool = False
-    other_law: Callable[[Runs, Case], Values] | None = None
+    other_law: Callable[[Rows, Case], Values] | None = None
     ceiling: Ceiling | None = None
     verb: str = ""
     needs: str = ""
@@ -115,14 +115,14 @@ def largest(columns: tuple[str, ...], times: Lever = ONE, error: str = "", share
     ``error`` is the column of its error, times the factor too, or ``share`` that of its error as a share of itself.
     """
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         value = times(case) * _magnitude(runs, columns)
         return Estimated(value, value * runs.numbers(share) if share else times(case) * runs.numbers(error))
 
     return evaluate
 
 
-def _magnitude(runs: Runs, columns: tuple[str, ...]) -> Values:
+def _magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
     return np.maximum.reduce([np.abs(runs.numbers(name)) for name in columns])
 
 
@@ -132,7 +132,7 @@ def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluat
     0 for a run with forces that has none of this, such as no impact; unknown if an earlier version wrote no such column.
     """
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         value = _magnitude(runs, columns)
         if all(name in runs for name in columns):
             value = np.where(np.isnan(value) & ~np.isnan(runs.numbers(FORCES)), 0.0, value)
@@ -146,7 +146,7 @@ def axial(sign: float) -> Evaluate:
     """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
     columns = ("section_axial_least_kN", "section_axial_greatest_kN")
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         least, greatest = (sign * runs.numbers(name) for name in columns)
         error = _magnitude(runs, columns) * runs.numbers("sections_error")
         return Estimated(np.maximum(np.maximum(least, greatest), 0.0), error)
@@ -165,7 +165,7 @@ def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Dem
 def in_flight(column: str) -> Evaluate:
     """Return a column of flights; 0 for a run that went through and has none."""
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         value, status = runs.numbers(column), runs.texts("status")
         went_through = (status == "ok") | (status == "overturned")
         absent = np.isnan(value) & np.isnan(runs.numbers("flight_s")) & went_through
@@ -177,7 +177,7 @@ def in_flight(column: str) -> Evaluate:
 def tilt(times: Lever) -> Evaluate:
     """Return the tilt of the base times a factor; its error is that of the residual rotation, to which it is proportional."""
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         pier = case["pier"]
         ratio = tilt_over_residual(
             pier["gravity"], pier["height_m"], pier["half_width_m"], case["parameters"]["omega_v"]
@@ -188,18 +188,18 @@ def tilt(times: Lever) -> Evaluate:
     return evaluate
 
 
-def toe_settlement(runs: Runs, case: Case) -> Estimated:
+def toe_settlement(runs: Rows, case: Case) -> Estimated:
     """Return the settlement of the support that has settled more; its error is that of the mean and half of the difference."""
     of_difference = tilt(width)(runs, case).error
     return Estimated(toe("settlement_m")(runs, case), runs.numbers("settlement_error_m") + 0.5 * of_difference)
 
 
-def toe(settlement: str) -> Callable[[Runs, Case], Values]:
+def toe(settlement: str) -> Callable[[Rows, Case], Values]:
     """Return the settlement of the support that has settled more: the mean and half of the difference."""
     return lambda runs, case: runs.numbers(settlement) + 0.5 * width(case) * np.abs(runs.numbers("base_tilt_rad"))
 
 
-def event(name: str, meaning: str, happened: Callable[[Runs], npt.NDArray[np.bool_]], verb: str) -> Demand:
+def event(name: str, meaning: str, happened: Callable[[Rows], npt.NDArray[np.bool_]], verb: str) -> Demand:
     """Return a demand that is 1 for a run in which something happened."""
     return Demand(
         name,
@@ -215,7 +215,7 @@ def parameter(
 ) -> Demand:
     """Return a parameter of the case, ``of`` this name if not the same; NaN if it is missing, as a force if no mass is known."""
 
-    def evaluate(runs: Runs, case: Case) -> Estimated:
+    def evaluate(runs: Rows, case: Case) -> Estimated:
         return without_error(np.array([float(case["parameters"].get(of or name, np.nan))]))
 
     return Demand(name, meaning, evaluate, unit, bases, per_case=True, ceiling=ceiling)

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
 from rockbatch.pier import Pier
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import ONE, Case, Lever
 from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
-from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import Values
 
 ALL = ("rigid", "elastic", "yielding")
@@ -85,7 +85,7 @@ class Limit(NamedTuple):
     columns: tuple[str, ...] = ()
     evaluate: Evaluate | None = None
     reached: Evaluate | None = None
-    other_law: Callable[[Runs, Case], Values] | None = None
+    other_law: Callable[[Rows, Case], Values] | None = None
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ class Quantity:
 
     @property
     def applies(self) -> str:
-        """Runs to which it applies, in words; empty for all."""
+        """Rows to which it applies, in words; empty for all."""
         base = BASES_IN_WORDS[self.bases]
         run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))

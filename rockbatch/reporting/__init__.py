@@ -138,13 +138,13 @@ def report(
     folders = (Path(directory),) if other is None else (Path(directory), Path(other))
     finished = _finished(folders)
     path = _write(finished, None if out is None else Path(out), whole)
-    tables = [(each.saved.peaks, as_table(each.verdicts)) for each in finished]
+    tables = [(results.saved.peaks, as_table(results.verdicts)) for results in finished]
     peaks, checks = (_stacked(own) for own in zip(*tables, strict=True))
     return Report(path, folders, peaks, checks)
 
 
 def _finished(folders: Sequence[Path]) -> list[Finished]:
-    """Return the results in a folder, or in two to compare, whose histories are not shown."""
+    """Return the results in a folder, or in two, of which a comparison shows no histories."""
     return [read(folder, () if len(folders) > 1 else None) for folder in folders]
 
 

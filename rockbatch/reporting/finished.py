@@ -12,7 +12,7 @@ from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.runs import Runs
+from rockbatch.quantities.arrays import Rows
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, tag
@@ -35,7 +35,7 @@ class Finished(Contents, Labelled):
     saved : Saved
         Contents of ``peaks.csv`` and ``run.json``.
     responses : sequence of Response
-        Runs whose histories are shown.
+        Rows whose histories are shown.
     verdicts : sequence of Verdict
         Results of ``rockbatch check``.
     """
@@ -67,12 +67,17 @@ class Finished(Contents, Labelled):
     def count(self) -> str:
         """Return what counts as one record: "station", or "component"; the latter too if the stations are not known."""
         count = str(self.info.get("count", "station"))
-        return "component" if counts_as(Runs(self.runs), count)[1] else count
+        return "component" if counts_as(Rows(self.runs), count)[1] else count
 
     @cached_property
     def worst(self) -> list[Worst]:
         """Return the worst responses of every case."""
         return worst_of_cases(self.runs, [self.cases[places] for places in sorted(self.cases)])
+
+    @cached_property
+    def worst_at_scales(self) -> list[Worst]:
+        """Return the worst responses of every case at each scale."""
+        return worst_of_cases(self.runs, [self.cases[places] for places in sorted(self.cases)], at_each_scale=True)
 
     @cached_property
     def suites(self) -> list[CaseRuns]:
@@ -163,7 +168,7 @@ def read(directory: Path, responses: Sequence[Response] | None = None, saved: Re
 
 
 def worst_first(runs: "pd.DataFrame", most: int) -> "pd.DataFrame":
-    """Return at most ``most`` runs: overturned, ended by flight, then by rotation; failed ones last."""
-    place = runs["status"].map({"overturned": 0, "flight": 1, "failed": 3}).fillna(2)
+    """Return at most ``most`` runs: overturned, ended by flight, failed, then by rotation."""
+    place = runs["status"].map({"overturned": 0, "flight": 1, "failed": 2}).fillna(3)
     keys = place.to_frame("place").assign(theta=-runs["theta_max_over_alpha"])
     return runs.loc[keys.sort_values(["place", "theta"], kind="stable").index[:most]]

@@ -28,7 +28,7 @@ from rockbatch.common.figures.description import (
 )
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.runs import Runs
+from rockbatch.quantities.arrays import Rows
 from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
 from rockbatch.results.rows import counts_as
@@ -151,7 +151,7 @@ def distributions_of_all(results: Labelled, count: str) -> Figure:
 
 def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
     values, status = runs["theta_max_over_alpha"].to_numpy(np.float64), runs["status"].to_numpy(object)
-    counted_as = counts_as(Runs(runs), count)[0]
+    counted_as = counts_as(Rows(runs), count)[0]
     top = 1.04 * float(np.nanmax(values[status == "ok"], initial=0.0)) or 1.0
     right = 1.08 * top if eventful else top
     marks: list[Mark] = [Span("x", top, right, look=Look("band"))] if eventful else []

@@ -49,8 +49,10 @@ class Labelled:
         """Return whether motions of several scales were run."""
         return bool(self.runs["scale"].nunique() > 1)
 
-    def named_case(self, case: str, columns: Mapping[str, Any], varied: Sequence[str], scale: float = 1.0) -> str:
-        """Return the short name of a case on its pier, and the scale of its motions if there are several.
+    def named_case(
+        self, case: str, columns: Mapping[str, Any], varied: Sequence[str], scale: float | None = None
+    ) -> str:
+        """Return the short name of a case on its pier, and the ``scale`` of its motions, if it is given and there are several.
 
         ``columns`` maps the ``varied`` keys to values.
         """
@@ -59,7 +61,7 @@ class Labelled:
             words = [self.series[self.places[key]].label, self.piers[self.pier_places[pier]]]
         else:  # without a run
             words = [case, *(quantity(name, value) for name, value in columns.items())]
-        scaled = f"motions scaled by {scale:g}" if self.many_scales else ""
+        scaled = f"motions scaled by {scale:g}" if self.many_scales and scale is not None else ""
         return ", ".join(filter(None, (*words, scaled)))
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.arrays import MISSING, Rows, Texts
 from rockbatch.quantities.cases import Case
 from rockbatch.quantities.catalogue import MIRROR_OF
-from rockbatch.quantities.runs import MISSING, Runs, Texts
 
 NOT_RUN = "not run"
 
@@ -58,33 +58,33 @@ def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArr
     return fits
 
 
-def complete(runs: Runs, stations: Mapping[str, str], polarities: Sequence[str]) -> Runs:
-    """Return ``runs`` of a case at one scale, and a failed one for each that is missing, as after an interrupt; by their names.
+def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str]) -> Rows:
+    """Return ``rows`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
 
-    ``stations`` has all records, each with its station, empty if it is not known.
+    They are in the order of record and polarity. ``stations`` has all records, each with its station, empty if it is not known.
     """
-    names = [*zip(runs.texts("record"), runs.texts("polarity"), strict=True)]
+    names = [*zip(rows.texts("record"), rows.texts("polarity"), strict=True)]
     missing = {*product(stations, polarities)}.difference(names)
-    every = sorted([*zip(names, runs.rows, strict=True), *((absent, MISSING) for absent in missing)])
-    rows = np.array([row for _, row in every])
-    found, absent = runs.at(rows), rows == MISSING
-    return runs.at(
-        rows,
-        record=np.array([record for (record, _), _ in every], dtype=object),
-        polarity=np.array([polarity for (_, polarity), _ in every], dtype=object),
-        station=np.array([stations.get(record, "") for (record, _), _ in every], dtype=object),
-        status=np.where(absent, "failed", found.texts("status")),
-        reason=np.where(absent, NOT_RUN, found.texts("reason")),
+    named = sorted([*zip(names, rows.places, strict=True), *((absent, MISSING) for absent in missing)])
+    places = np.array([place for _, place in named], dtype=np.intp)
+    status, reason = rows.at(places).texts("status"), rows.at(places).texts("reason")
+    return rows.at(
+        places,
+        record=np.array([record for (record, _), _ in named], dtype=object),
+        polarity=np.array([polarity for (_, polarity), _ in named], dtype=object),
+        station=np.array([stations.get(record) or "" for (record, _), _ in named], dtype=object),
+        status=np.where(status == "", "failed", status),
+        reason=np.where(status == "", NOT_RUN, reason),
     )
 
 
-def counts_as(runs: Runs, count: str) -> tuple[Texts, str]:
+def counts_as(rows: Rows, count: str) -> tuple[Texts, str]:
     """Return the record as which each run counts, by ``count`` of ``COUNTS``; and why that is not its station if it should be."""
     if count == "component":
-        return runs.texts("record"), ""
-    stations_of_runs = runs.texts("station")
+        return rows.texts("record"), ""
+    stations_of_runs = rows.texts("station")
     if (stations_of_runs == "").any():
-        return runs.texts("record"), (
+        return rows.texts("record"), (
             "these results do not say which components are of one station, so that each counts as a record; start "
             "`rockbatch run` again"
         )

@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.runs import Runs
 from rockbatch.study.rules import Rule
 from rockbatch.toml.meant import in_another_unit
 
@@ -131,7 +131,7 @@ def _far_from(name: str, key: str, value: float, cases: Sequence[Case]) -> str:
     demand = DEMANDS[name]
     if demand.per_case:
         sizes, least, most = (
-            [float(demand.evaluate(Runs(pd.DataFrame()), case).value[0]) for case in cases],
+            [float(demand.evaluate(Rows(pd.DataFrame()), case).value[0]) for case in cases],
             1 / FAR,
             FAR,
         )

@@ -28,7 +28,7 @@ def all_runs(**ended):
 
 
 def worst(name="pads", **cells):
-    return worst_of_cases(runs(name=name, **cells), [case(name)])
+    return worst_of_cases(runs(name=name, **cells), [case(name)], at_each_scale=True)
 
 
 def test_the_worst_of_every_response_is_found_whatever_is_checked():
@@ -51,8 +51,17 @@ def test_the_worst_settlement_of_springs_that_creep_is_a_range():
     assert in_words(found["settlement_m"]) == "20 to 381 mm, by the law of the springs"
 
 
+def test_what_has_no_limit_is_told_with_its_values_at_the_scale_of_the_case():
+    strong, weak = runs(**YIELDED | {"settlement_m": 0.9}, scale=1.5), runs(**YIELDED)
+    both = worst_of_cases(pd.concat([strong, weak]), [case()], at_each_scale=True)
+    passing = [verdict("pads", "pass", check=d, demand=d) for d in ("theta_max_rad", "ductility", "base_tilt_rad")]
+    (line,) = lines(passing, both)
+    assert "mean settlement 381 mm" in " ".join(line.details)
+    assert "900" not in " ".join(line.details)
+
+
 def test_a_run_that_overturned_has_no_worst_response():
-    fell = worst_of_cases(runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]), [RIGID])
+    fell = worst_of_cases(runs((0.1, 40.0), name="rigid", status=["ok", "overturned"]), [RIGID], at_each_scale=True)
     assert worst_of_all(fell)["theta_max_over_alpha"].value == 0.1
 
 
@@ -80,7 +89,7 @@ def test_a_support_that_does_not_yield_needs_no_limit_of_its_settlement():
 
 def test_a_ban_on_overturning_alone_limits_no_rotation():
     ban = verdict("rigid", "pass", demand="overturned", statistic="max", limit=0.0)
-    rocking = worst_of_cases(runs(name="rigid"), [RIGID])
+    rocking = worst_of_cases(runs(name="rigid"), [RIGID], at_each_scale=True)
     assert [line.verdict for line in lines([ban], rocking)] == [NOT_DECIDED]
 
 
@@ -109,7 +118,7 @@ def test_names_of_cases_stand_in_the_sentence_while_they_are_few():
 
 def test_a_limit_that_is_lacking_is_found_case_by_case():
     """What governs a case is bounded by its own checks, whatever is asked of others."""
-    both = [*worst(**YIELDED), *worst_of_cases(runs(name="rigid"), [RIGID])]
+    both = [*worst(**YIELDED), *worst_of_cases(runs(name="rigid"), [RIGID], at_each_scale=True)]
     checks = [verdict("pads", "pass"), verdict("rigid", "pass")]
     found = without_limits({one.case: [one] for one in checks}, both)
     assert {name: [response.demand for response in responses] for name, responses in found.items()} == {
@@ -125,7 +134,9 @@ def test_of_cases_that_pass_the_closest_to_its_limit_is_named():
 
 def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
     held = case("rigid", base=RigidBase(restraints=(Damper("friction", f=0.6),)))
-    leans = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=[0.0, -0.05]), [held])
+    leans = worst_of_cases(
+        runs((0.3, 0.2), name="rigid", theta_res_over_alpha=[0.0, -0.05]), [held], at_each_scale=True
+    )
     assert (
         in_words(worst_of_all(leans)["theta_res_rad"])
         == f"{50 * PIER.alpha:.3g} mrad ({math.degrees(0.05 * PIER.alpha):.2g}°)"
@@ -136,7 +147,7 @@ def test_a_residual_rotation_that_dampers_hold_on_rigid_ground_needs_a_limit():
     )
     assert [line.verdict for line in lines([rotation], leans)] == [NOT_DECIDED]
     assert [line.verdict for line in lines([rotation, residual], leans)] == [PASS]
-    back = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0), [held])
+    back = worst_of_cases(runs((0.3, 0.2), name="rigid", theta_res_over_alpha=0.0), [held], at_each_scale=True)
     assert [line.verdict for line in lines([rotation], back)] == [PASS]
 
 

@@ -175,7 +175,9 @@ def test_the_answer_counts_the_pier_once():
     suites = runs_of_cases(table, cases, 2)
     assert [(suite.case, suite.runs) for suite in suites] == [("pads", 4)]
     verdicts = judged(table, Rule("r", "theta_max_over_alpha", at_most=0.5))
-    (line,) = answer(verdicts, worst_of_cases(table, cases), lambda row: row.case, lambda row: row.record, suites)
+    (line,) = answer(
+        verdicts, worst_of_cases(table, cases, at_each_scale=True), lambda row: row.case, lambda row: row.record, suites
+    )
     assert line.text.startswith("The only case meets the limits, but none is set on")
     assert "ductility" in line.text
 

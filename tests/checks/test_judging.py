@@ -14,8 +14,8 @@ from rockbatch.checks import Rule, judge
 from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
 from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, IN_MOTION, IN_MOTION_ERROR
-from rockbatch.quantities.runs import Runs
 from rockbatch.quantities.statistics import STATISTICS, quantile
 from rockbatch.results.rows import rows_of_cases
 
@@ -230,7 +230,7 @@ def test_a_response_that_is_unknown_does_not_pass_for_an_unacceptable_one_under_
     assert (found.verdict, found.low, found.high) == ("not decided", pytest.approx(0.21 / 11), INF)
 
 
-# Runs that did not go through
+# Rows that did not go through
 
 
 @pytest.mark.parametrize(
@@ -443,7 +443,7 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
     cells["status"] = rng.choice(["ok", "ok", "overturned", "flight", "failed"], n)
     cells["note"] = rng.choice(["", CHAOTIC, FALLS, "the residuals are chaotic"], n)
     plain = runs(rng.uniform(0.0, 1.2, n)).drop(columns=cells, errors="ignore")
-    suite = Runs(pd.concat([plain, pd.DataFrame(cells)], axis=1))
+    suite = Rows(pd.concat([plain, pd.DataFrame(cells)], axis=1))
     for name, demand in DEMANDS.items():
         if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
             continue

@@ -11,6 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from check_samples import RECORD, RIGID, case, folder, runs
+from report_page import Page
 from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
@@ -20,6 +21,7 @@ from rockbatch.commands import check
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS, listed
+from rockbatch.reporting import write_report
 from rockbatch.study.rule_files import CHECK, load_rules
 
 pytestmark = pytest.mark.usefixtures("no_report")
@@ -337,6 +339,24 @@ def test_without_checks_the_greatest_responses_of_each_case_stand_in_their_order
         ["other", "0.45"],
         ["wide", "0.6"],
     ]
+
+
+def test_without_checks_a_case_in_which_more_runs_overturn_stands_behind_however_little_the_others_rotate(tmp_path):
+    fell = {"status": ["overturned", "ok"]}
+    table = pd.concat(
+        [runs([9.0, 0.05], "weak", **fell), runs([0.5, 0.6], "pads"), runs([9.0, 9.0], "none", status="overturned")]
+    )
+    half = table.assign(scale=0.5, theta_max_over_alpha=0.01, status="ok")[table["case"] == "weak"]
+    out = folder(tmp_path / "out", pd.concat([table, half]), [case("weak"), case(), case("none")])
+    lines = check.answered((), rb.open_results(out)).splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("pads"))
+    told = [line.split() for line in lines[first : first + 3]]
+    assert [(line[0], line[1], " ".join(line[-3:])) for line in told] == [
+        ("pads", "0.6", told[0][-3] + " " + told[0][-2] + " none"), ("weak", "0.05", "1 of 4"), ("none", "-", "2 of 2"),
+    ]  # fmt: skip
+    assert "scaled by" not in "".join(lines[first : first + 3])  # their values are of all scales
+    _, *rows = Page(write_report(out).read_text(encoding="utf-8")).tables["answer"]
+    assert [(row[0], row[-1]) for row in rows[:3]] == [("pads", "none"), ("weak", "1 of 4"), ("none", "2 of 2")]
 
 
 @pytest.mark.parametrize("columns", [40, 80, 120])

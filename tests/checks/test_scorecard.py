@@ -86,7 +86,7 @@ def test_a_ban_stands_in_words():
 
 
 def test_a_case_without_a_limit_on_what_governs_says_so_instead_of_passing():
-    worst = worst_of_cases(runs(name="rigid"), [RIGID])
+    worst = worst_of_cases(runs(name="rigid"), [RIGID], at_each_scale=True)
     (row,) = scorecard([verdict("rigid", "pass", demand="static_deflection_m")], name_of, (), worst).rows
     assert (row.verdict, row.in_words) == (NOT_DECIDED, "no limit on rotation")
     (row,) = scorecard([verdict("rigid", "pass", demand="theta_max_over_alpha")], name_of, (), worst).rows

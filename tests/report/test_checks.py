@@ -172,7 +172,7 @@ def test_of_very_many_cases_a_page_has_the_best_and_the_worst_verdicts_and_says_
     assert [row[0].removesuffix("fails 1 check") for row in card(shown)[1:]] == [f"c{i}" for i in range(1, 201)]
     assert "6 of 1,100 cases, the best first. All are in checks.csv." in shown.text
     assert ("data-button", "The best 200 cases") in shown.attributes
-    assert "Verdicts with their numbers, the worst first (1100)" in shown.text
+    assert "Verdicts with their numbers, the worst first (1,100)" in shown.text
     assert "The worst 1,000 of 1,100 rows are shown.In each of these rows: verdict ✗ fail;" in shown.text
     assert [row[1] for row in shown.tables["checks"][-1000:]] == [f"c{i}" for i in range(1100, 100, -1)]
 

@@ -18,6 +18,7 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.motions.scaling import Target
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
@@ -30,7 +31,6 @@ from rockbatch.quantities.catalogue import (
     report_columns,
 )
 from rockbatch.quantities.quantity import BENDING, Limit, Quantity
-from rockbatch.quantities.runs import Runs
 from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
@@ -170,7 +170,7 @@ def test_a_row_of_the_catalogue_gives_column_heading_and_demands_in_two_units():
         ("slip_mm", "slip [mm]"),
     ]
     np.testing.assert_allclose(
-        demands["slip_mm"].evaluate(Runs(runs), case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]]
+        demands["slip_mm"].evaluate(Rows(runs), case("pads", PADS)), [[500.0, 200.0], [100.0, np.nan]]
     )
 
 
@@ -221,7 +221,7 @@ def test_a_target_that_is_no_spectrum_is_none_that_the_suite_is_compared_with(st
 
 def test_demands_read_columns_of_the_table_only():
     pads = case("pads", PADS)
-    runs = Runs(pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()}))
+    runs = Rows(pd.DataFrame({name: ["" if column.kind == "text" else 0.5] for name, column in COLUMNS.items()}))
     for demand in DEMANDS.values():
         assert len(demand.evaluate(runs, pads).value) == 1
         assert demand.other_law is None or len(demand.other_law(runs, pads)) == 1

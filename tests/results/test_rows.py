@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockbatch.quantities.runs import MISSING, Runs
+from rockbatch.quantities.arrays import MISSING, Rows
 from rockbatch.results.rows import NOT_RUN, complete
 
 
@@ -18,7 +18,9 @@ def table_of(rng: np.random.Generator, records: int) -> pd.DataFrame:
     table["impacts"] = pd.array(rng.integers(0, 9, len(table)), dtype="Int64")
     table.loc[table.index[::3], "impacts"] = pd.NA
     table["error"] = pd.Series([None] * len(table), index=table.index, dtype=object)
-    table["status"] = pd.Categorical(rng.choice(["ok", "failed", "overturned"], len(table)))
+    table["status"] = pd.Categorical(
+        rng.choice(np.array(["ok", "failed", "overturned", None], dtype=object), len(table))
+    )
     table["reason"] = pd.Series(
         rng.choice(np.array(["", "it fell", None], dtype=object), len(table)), index=table.index
     )
@@ -31,7 +33,7 @@ def test_columns_of_some_rows_are_those_of_the_table(seed):
     rng = np.random.default_rng(seed)
     table = table_of(rng, 8)
     rows = rng.integers(0, len(table), 30)
-    runs, taken = Runs(table).at(rows), table.iloc[rows]
+    runs, taken = Rows(table).at(rows), table.iloc[rows]
     assert len(runs) == 30
     for name in ("theta", "impacts", "error"):
         expected = [np.nan if pd.isna(cell) else float(cell) for cell in taken[name]]
@@ -46,14 +48,14 @@ def test_columns_of_some_rows_are_those_of_the_table(seed):
 
 def test_a_row_that_the_table_lacks_has_nothing_but_what_is_known_of_it():
     table = pd.DataFrame({"theta": [1.0, 2.0], "record": ["a", "b"]})
-    runs = Runs(table).at(np.array([1, MISSING, 0]), record=np.array(["b", "c", "a"], dtype=object))
+    runs = Rows(table).at(np.array([1, MISSING, 0]), record=np.array(["b", "c", "a"], dtype=object))
     np.testing.assert_array_equal(runs.numbers("theta"), [2.0, np.nan, 1.0])
     assert runs.texts("record").tolist() == ["b", "c", "a"]
     assert runs.texts("note").tolist() == ["", "", ""]
     some = runs.where(np.array([False, True, True]))
     np.testing.assert_array_equal(some.numbers("theta"), [np.nan, 1.0])
     assert some.texts("record").tolist() == ["c", "a"]
-    wider = some.beside(Runs(table.assign(shear=[5.0, 6.0])))
+    wider = some.beside(Rows(table.assign(shear=[5.0, 6.0])))
     np.testing.assert_array_equal(wider.numbers("shear"), [np.nan, 5.0])
     assert wider.texts("record").tolist() == ["c", "a"]
 
@@ -67,7 +69,7 @@ def test_a_suite_has_every_record_in_every_polarity_once_as_in_an_outer_join(see
         f"r{number}": f"S{number // 2}" for number in rng.permutation(9)[:7]
     }  # some are not in the table, and the reverse
     rows = np.flatnonzero(rng.random(len(table)) < 0.7)
-    suite = complete(Runs(table).at(rows), stations, ["+", "-"])
+    suite = complete(Rows(table).at(rows), stations, ["+", "-"])
 
     planned = pd.MultiIndex.from_product([list(stations), ["+", "-"]], names=["record", "polarity"]).to_frame(
         index=False

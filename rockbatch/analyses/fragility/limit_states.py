@@ -5,9 +5,9 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, has_device
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.runs import Runs
 from rockbatch.study.rule_choices import chooses
 from rockbatch.study.rules import Rule
 
@@ -39,12 +39,12 @@ def words(rule: Rule) -> str:
     return rule.demand if DEMANDS[rule.demand].event and limit == 0 else f"{rule.demand} > {limit:g}"
 
 
-def demands(rule: Rule, runs: Runs, case: Case) -> npt.NDArray[np.float64]:
+def demands(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.float64]:
     """Return the demand of each of the n runs of a case, shape (n,)."""
     return of_runs(rule, runs, case)[0].value
 
 
-def states(rule: Rule, runs: Runs, case: Case) -> npt.NDArray[np.int8]:
+def states(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.int8]:
     """Return the state of each of the n runs of a case, shape (n,)."""
     bounds, counted = of_runs(rule, runs, case)
     limit = threshold(rule)

@@ -18,8 +18,8 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.measures import pgv
 from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.runs import Runs
 from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Output, Study
 from rockbatch.study.rules import Rule
@@ -157,7 +157,7 @@ class RecordRuns:
         self.draws = Draws(spec.uncertain, study.cases, len(motions))
         self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
         self.status: dict[Point, str] = {}
-        self._last: tuple[dict[Point, int], Runs]
+        self._last: tuple[dict[Point, int], Rows]
 
     def execute(self, requested: Iterable[Point]) -> None:
         """Carry out one wave of runs."""
@@ -166,7 +166,7 @@ class RecordRuns:
         runs = ScaledRuns(points, self.motions, self.plan.unscaled, lambda point: self.drawn(point).case, polarity)
         table = self.simulate(runs)
         self.status |= dict(zip(points, table["status"], strict=True))
-        self._last = {point: i for i, point in enumerate(points)}, Runs(table)
+        self._last = {point: i for i, point in enumerate(points)}, Rows(table)
 
     def drawn(self, point: Point) -> Drawn:
         """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
@@ -192,7 +192,7 @@ class RecordRuns:
                 result[np.array(numbers)[places]] = states(rule, runs, drawn.described)
         return result.tolist()
 
-    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], Runs]]:
+    def _together(self, points: Sequence[Point]) -> Iterator[tuple[Drawn, list[int], Rows]]:
         """Yield cases as they are drawn, with the places of their runs among ``points`` of the last wave, and these."""
         of_row, runs = self._last
         for drawn, places in grouped(range(len(points)), lambda place: self.drawn(points[place])).items():

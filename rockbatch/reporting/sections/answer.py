@@ -1,14 +1,16 @@
 """The first screen: which cases pass, every check in every case, runs without a result, and every peak in one picture."""
 
+from collections import Counter
 from collections.abc import Iterator
 from decimal import ROUND_UP, Decimal
+from itertools import compress
 from typing import Any
 
 import numpy as np
 
 from rockbatch.checks import wording
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
-from rockbatch.checks.responses import RESPONSES, Worst, in_words
+from rockbatch.checks.responses import LOST, RESPONSES, Worst, in_words, standing
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
@@ -51,7 +53,10 @@ def responses_beside_checks(finished: Finished) -> Markup:
 
 
 def responses(finished: Finished) -> Markup:
-    """Return a row for each case with its greatest responses among the runs that end standing, each with its record."""
+    """Return a row for each case with its greatest responses among the runs that end standing, each with its record.
+
+    The best first: those with the fewest runs that do not, then by their rotation.
+    """
     if finished.runs.empty:
         return Markup("")
     by_case = grouped(finished.worst, lambda worst: _place(finished, worst))
@@ -59,9 +64,12 @@ def responses(finished: Finished) -> Markup:
     devices = [kind for kind, (column, _) in DEVICES.items() if f"{kind}_{column}" in finished.runs]
     places = [worst.place for worst in finished.worst]
     run_at = dict(zip(places, as_dicts(finished.runs.iloc[places]), strict=True))  # one by one takes a millisecond each
+    places_of_runs = list(zip(finished.runs["series"].tolist(), finished.runs["pier"].tolist(), strict=True))
+    planned = Counter(places_of_runs)
+    fallen = Counter(compress(places_of_runs, (~standing(finished.runs)).tolist()))
     rows = []
-    for (series, pier), of_case in sorted(by_case.items(), key=lambda item: _rotation(item[1])):
-        by_demand = {worst.demand: worst for worst in of_case}
+    for series, pier in sorted(planned, key=lambda place: (fallen[place], _rotation(by_case.get(place, [])))):
+        by_demand = {worst.demand: worst for worst in by_case.get((series, pier), [])}
         name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
         cells: list[object] = [
             _response(finished, by_demand[demand], run_at[by_demand[demand].place]) if demand in by_demand else "–"
@@ -70,10 +78,13 @@ def responses(finished: Finished) -> Markup:
         if devices:
             runs = finished.runs[(finished.runs["series"] == series) & (finished.runs["pier"] == pier)]
             cells += [cell for kind in devices for cell in _of_devices(finished, runs, kind)]
-        rows.append([name, *cells])
+        place = series, pier
+        rows.append([name, *cells, f"{fallen[place]:,} of {planned[place]:,}" if fallen[place] else "none"])
     heads = [Head("case"), *(_head(name) for name in present)]
     heads += [head for kind in devices for head in _heads_of(finished, kind)]
-    return table(heads, rows, name="Greatest responses")
+    if fallen:
+        return table([*heads, Head(LOST)], rows, name="Greatest responses")
+    return table(heads, [row[:-1] for row in rows], name="Greatest responses")
 
 
 def _place(finished: Finished, worst: Worst) -> tuple[int, int]:

@@ -2,7 +2,7 @@
 
 from itertools import islice
 
-from rockbatch.quantities.runs import Runs
+from rockbatch.quantities.arrays import Rows
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.overview import worst_first
@@ -31,7 +31,7 @@ def section(finished: Finished) -> Markup:
     chosen = places if len(places) <= MOST_CURVES else places[:BEST]
     groups = islice(finished.groups(), MOST_PANELS)
     shown = [(words, runs.loc[runs["series"].isin(chosen), SHOWN]) for words, runs in groups]
-    if len(set(counts_as(Runs(finished.runs), finished.count)[0])) >= LEAST_RECORDS:
+    if len(set(counts_as(Rows(finished.runs), finished.count)[0])) >= LEAST_RECORDS:
         picture = drawn(distributions(shown, finished.series, finished.count))
     return render(
         "reporting/sections/distribution.html", picture=picture, records=RECORDS[finished.count], shown=len(shown),

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS
-from rockbatch.quantities.runs import Runs
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, join, tag
@@ -74,7 +74,7 @@ def tables(
     index = pd.MultiIndex.from_tuples(list(names), names=keys)
     placed = [(runs, index.get_indexer(pd.MultiIndex.from_frame(runs[keys]))) for runs in sides.values()]
     grouped = [(runs[place >= 0], place[place >= 0].astype(np.int64)) for runs, place in placed]
-    counted_as = [counts_as(Runs(runs), count)[0].tolist() for runs, _ in grouped]
+    counted_as = [counts_as(Rows(runs), count)[0].tolist() for runs, _ in grouped]
     for column in COLUMNS.values():
         present = all(column.name in runs for runs, _ in grouped)
         if column.suite is None or column.page is None or not present:

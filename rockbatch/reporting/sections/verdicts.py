@@ -34,7 +34,7 @@ def section(finished: Finished) -> Markup:
     rest = [verdict for verdict in verdicts if verdict.verdict not in (FAIL, NOT_DECIDED)]
     every = _every(finished, [*wording.worst_first(verdicts), *rest], wording.Notes(verdicts))
     words = "Every verdict with its numbers" if len(verdicts) <= MOST_ROWS else "Verdicts with their numbers"
-    summary = tag("summary", f"{words}, the worst first ({len(verdicts)})")
+    summary = tag("summary", f"{words}, the worst first ({len(verdicts):,})")
     return join(_requirements(verdicts), tag("details", summary, every))
 
 
@@ -47,7 +47,7 @@ def mark(verdict: str, words: str) -> Markup:
 def answer(finished: Finished) -> Markup:
     """Report which cases pass, fail, or are not decided or not checked, and how many stations are behind it."""
     lines = answered(
-        finished.verdicts, finished.worst, _namer(finished), lambda row: finished.label(row.record), finished.suites,
+        finished.verdicts, finished.worst_at_scales, _namer(finished), lambda row: finished.label(row.record), finished.suites,
         stations_of(finished.info),
     )  # fmt: skip
     listed = tag("ul", *map(_line, lines), class_="answer") if lines else ""
@@ -71,7 +71,7 @@ def _namer(finished: Finished) -> Callable[[Verdict | CaseRuns], str]:
 
 def scorecard(finished: Finished) -> Markup:
     """Return a row for each case and a column for each check: demand, its share of the limit, and a bar up to twice that."""
-    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst)
+    card = of_verdicts(finished.verdicts, _namer(finished), finished.suites, finished.worst_at_scales)
     columns = card.open_columns(MOST_COLUMNS)
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     folded = len(card.columns) - len(columns)

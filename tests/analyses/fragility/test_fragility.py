@@ -38,8 +38,8 @@ from rockbatch.motions.hazard import HazardCurve
 from rockbatch.motions.measures import pga, pgv
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.pier import ElasticBase, Pier, RigidBase
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.quantities.runs import Runs
 from rockbatch.reporting import finished_analysis
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.results.columns import columns
@@ -156,13 +156,13 @@ def of_statuses(statuses, theta=0.4, error=0.01):
 ])  # fmt: skip
 def test_a_run_that_did_not_go_through_counts_as_its_check_says(rule, expected):
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
-    found = states(Rule("check", "theta_max_over_alpha", **rule), Runs(runs), {"base": "rigid", "pier": {"alpha": 0.2}})
+    found = states(Rule("check", "theta_max_over_alpha", **rule), Rows(runs), {"base": "rigid", "pier": {"alpha": 0.2}})
     assert list(found) == expected
 
 
 def test_whether_a_run_that_was_cut_short_would_have_overturned_is_undecided():
     runs = of_statuses(["ok", "overturned", "flight", "failed"])
-    found = states(Rule("overturning", "overturned", at_most=0), Runs(runs), {"base": "rigid"})
+    found = states(Rule("overturning", "overturned", at_most=0), Rows(runs), {"base": "rigid"})
     assert list(found) == [WITHSTOOD, EXCEEDED, UNDECIDED, UNDECIDED]
 
 
@@ -452,7 +452,7 @@ def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided
     assert (half.flight, half.failed, half.polarity) == ("unknown", "unknown", None)
     assert (settled.flight, settled.failed) == ("unknown", "left out")
     runs = of_statuses(["flight", "failed"], theta=0.6)
-    assert list(states(half, Runs(runs), {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
+    assert list(states(half, Rows(runs), {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
 
 
 def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_path):
