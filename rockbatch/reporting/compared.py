@@ -5,7 +5,7 @@ import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
-from rockbatch.checks.responses import RESPONSES, Worst, in_words, worst_of_all
+from rockbatch.checks.responses import RESPONSES, Worst, in_words, standing, worst_of_all
 from rockbatch.quantities.catalogue import COLUMNS
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.labels import counted, head, symbol
@@ -45,16 +45,20 @@ def answer(pair: Pair) -> Markup:
     studies = [replace(study, runs=study.runs.loc[runs.index]) for study, runs in in_common]
     if studies[0].runs.empty:
         return tag("p", "The two studies have no run in common.")
-    responses = [worst_of_all(study.worst) for study in studies]
+    stood = standing(pair.runs[0]) & standing(pair.runs[1])
+    in_both = [worst_of_all(replace(study, runs=study.runs[stood]).worst) for study in studies]
     changed = _pairs(pair)
     return join(
-        tag("div", _better(studies, responses), class_="lead"), tag("p", changed) if changed else "",
-        _worst_of_both(studies, responses),
+        tag("div", _better(studies, in_both, int(stood.sum())), class_="lead"), tag("p", changed) if changed else "",
+        _worst_of_both(studies, in_both, int(stood.sum())),
     )  # fmt: skip
 
 
-def _better(studies: list[Finished], responses: list[dict[str, Worst]]) -> Markup:
-    """Name the study with fewer runs that do not end standing, or else the one with smaller worst responses."""
+def _better(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> Markup:
+    """Name the study with fewer runs that do not end standing, or else the one with smaller worst responses.
+
+    ``responses`` are of the runs that end standing in both, ``stood`` of them.
+    """
     lost = [int(study.runs["status"].isin((*NO_PEAK, "failed")).sum()) for study in studies]
     if lost[0] != lost[1]:
         good, bad = (0, 1) if lost[0] < lost[1] else (1, 0)
@@ -70,8 +74,7 @@ def _better(studies: list[Finished], responses: list[dict[str, Worst]]) -> Marku
         parts.append(f"{RESPONSES[name].words} {change} ({'; then '.join(dict.fromkeys(labels))})")
     lead = f": from A to B, worst {', '.join(parts)}" if parts else ": no run ends standing"
     if parts and lost[0]:
-        n = len(studies[0].runs)
-        lead += f", of the {n - lost[0]} of {n} runs that end standing in each"
+        lead += f", of the {stood} of {len(studies[0].runs)} runs that end standing in both"
     lead += "."
     return join(tag("strong", BETTER[smaller, larger]), lead)
 
@@ -97,7 +100,8 @@ def _pairs(pair: Pair) -> str:
     )
 
 
-def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]]) -> Markup:
+def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]], stood: int) -> Markup:
+    """Return the worst responses of the runs that end standing in both, ``stood`` of them; empty without any."""
     rows: list[list[object]] = []
     for name, response in RESPONSES.items():
         pair = [w.get(name) for w in responses]
@@ -109,7 +113,11 @@ def _worst_of_both(studies: list[Finished], responses: list[dict[str, Worst]]) -
             row += ["none" if w is None else in_words(w), place]
         first, second = (math.nan if w is None else w.value for w in pair)
         rows.append([*row, second / first if first > 0 else None])
-    heads = [Head("worst of the runs in common")]
+    if not rows:
+        return Markup("")
+    common = len(studies[0].runs)
+    words = "runs in common" if stood == common else f"{stood} of {common} runs that end standing in both"
+    heads = [Head(f"worst of the {words}")]
     heads += [Head(words, group=side) for side in SIDES for words in ("value", "record and case")]
     return table([*heads, Head("B / A", ".3f")], rows, prose=True, name="Worst responses of both")
 

@@ -70,8 +70,31 @@ def test_failures_of_both_studies_stand_beside_the_better_one(tmp_path):
     fell = {("SYL360", "rigid"): {"status": "overturned"}}
     a, b = two(tmp_path, {"changes": fell}, {"changes": fell})
     text = Page(write_comparison(a, b).read_text(encoding="utf-8")).text
-    assert ", of the 29 of 30 runs that end standing in each." in text
+    assert ", of the 29 of 30 runs that end standing in both." in text
     assert "of 29 pairs of runs (1 more have no ratio)" in text
+
+
+def test_responses_of_two_studies_are_compared_over_the_runs_that_stand_in_both(tmp_path):
+    """The worst run of A overturns in B; B, whose other runs are the same, is not the better one for it."""
+    worst = ("RRS228", "2")
+    a, b = two(
+        tmp_path, {"changes": {worst: {"theta_max_over_alpha": 0.9}}}, {"changes": {worst: {"status": "overturned"}}}
+    )
+    _, head, rotation, *_ = Page(write_comparison(a, b).read_text(encoding="utf-8")).tables["answer"]
+    assert head[0] == "worst of the 29 of 30 runs that end standing in both"
+    assert (rotation[1], rotation[-1]) == (rotation[3], "1.000")
+    assert rotation[1].startswith("0.1338 α")
+
+
+def test_studies_of_which_no_run_stands_in_both_have_no_worst_response_to_compare(tmp_path):
+    fell = [
+        {(row[0], name): {"status": "overturned"} for row in FIG7 for name in names}
+        for names in (("rigid", "1", "2"), ("3", "4"))
+    ]
+    a, b = two(tmp_path, {"changes": fell[0]}, {"changes": fell[1]})
+    page = Page(write_comparison(a, b).read_text(encoding="utf-8"))
+    assert "answer" not in page.tables
+    assert "B is better" in page.text
 
 
 def test_the_picture_has_a_column_for_each_study_on_one_axis(changed):
