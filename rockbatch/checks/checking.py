@@ -12,6 +12,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.results.columns import given_table
 from rockbatch.results.reading import Saved, read_saved
 from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case
@@ -90,7 +91,7 @@ def verdicts(
             raise InputError("check: a table does not name its piers; give study = the study it was run from")
         study = study if isinstance(study, Study) else load_study(study)
         own_rules, count = study.checks, study.count
-        table, cases = results, [describe_case(case) for case in study.cases]
+        table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
     rules = own_rules if given_rules is None else given_rules
     if not (rules or of_suite):
         raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")

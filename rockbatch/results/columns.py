@@ -7,7 +7,11 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.common.showing import shown
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Pier
 from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
@@ -124,6 +128,40 @@ def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     present = [column for column in OPTIONAL if cells.get(column.name) is not None]
     table = pd.DataFrame([cells], columns=names((*FIXED, *TRAILING, *present)))
     return _typed(table, ()).iloc[0].rename(cells["record"])
+
+
+NEEDED = ("record", "case", "polarity", "scale", "status", "flight_s", "theta_max_over_alpha", "theta_max_error")
+"""Columns without which a run would seem to have gone well."""
+
+
+def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
+    """Return rows of peaks.csv that a user has, as ``pandas.read_csv`` or a filter left them, typed as :func:`as_table` does.
+
+    Raises ``InputError`` if it is no table, lacks columns that are needed, has words in place of numbers, or a run twice.
+    """
+    if not isinstance(table, pd.DataFrame):
+        raise InputError(f"expected the table that rockbatch.run returned, not {type(table).__name__}")
+    if wrong := [name for name in (*NEEDED, *varied) if list(table).count(name) != 1]:
+        raise InputError(f"the table needs these columns once each, as rockbatch.run returned it: {', '.join(wrong)}")
+    rows = table.reset_index(drop=True)
+    for name in rows:
+        if name in TEXTS:
+            cells = rows[name].astype(object)
+            rows[name] = cells.where(cells.notna(), "").map(str)
+        elif name in COLUMNS or name in varied:
+            cells = rows[name].astype(object)
+            numbers = pd.to_numeric(cells.where(cells.notna() & (cells != ""), np.nan), errors="coerce")
+            words = numbers.isna() & cells.notna() & (cells != "")
+            if words.any() and name not in varied:
+                raise InputError(f"{name} = {shown(str(cells[words].iloc[0]))}: expected a number")
+            rows[name] = (
+                cells.where(cells.notna() & (cells != ""), np.nan) if words.any() else numbers.astype("float64")
+            )
+    twice = (rows["case"] != "") & rows.duplicated(["record", "case", "polarity", "scale", *varied])
+    if twice.any():
+        record, case = rows.loc[twice, ["record", "case"]].iloc[0]
+        raise InputError(f"the table has a run of {record}, case {case}, twice; leave one out")
+    return rows
 
 
 def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":

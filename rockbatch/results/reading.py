@@ -69,9 +69,8 @@ def read_saved(directory: Path) -> Saved:
     """
     directory = Path(directory)
     if directory.exists() and not directory.is_dir():
-        raise InputError(
-            f"{directory}: a file, not a folder of results; write the folder, such as {Path('reports') / directory.stem}"
-        )
+        folder = directory.parent if (directory.parent / INFO).exists() else Path("reports") / directory.stem
+        raise InputError(f"{directory}: a file, not a folder of results; write the folder, such as {folder}")
     problems: list[str] = []
     info: dict[str, Any] = {}
     with _noting(problems):

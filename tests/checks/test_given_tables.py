@@ -1,0 +1,85 @@
+"""A table that a user has is judged as the folder that it comes from, however pandas keeps it, or is refused with words."""
+
+import pandas as pd
+import pytest
+from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.checks import Rule
+from rockbatch.common.errors import InputError
+
+RULES = [
+    Rule("rotation", "theta_max_over_alpha", 0.1, statistic="mean"),
+    Rule("settlement", "settlement_m", 0.001),
+    Rule("stands", "overturned", 0),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Return a study of both polarities and two scales, of which one pad falls, and its folder, with a file that is no record."""
+    home = tmp_path_factory.mktemp("given")
+    pulses = (SINE, COSINE | {"amplitude_g": 2.0, "period_s": 2.0})
+    cases = (RIGID, PADS | {"beta": [30, 50]})
+    motions = {"polarity": ["+", "-"], "scale": [0.5, 1.0]}
+    study = rb.load_study(write_study(home, study_text(pulses=pulses, cases=cases, motions=motions)))
+    rb.run(study, out=home / "out")
+    return study, home / "out"
+
+
+def read(folder, **options):
+    return pd.read_csv(folder / "peaks.csv", **options)
+
+
+def as_category(table):
+    return table.astype(dict.fromkeys(("record", "case", "polarity", "status"), "category"))
+
+
+@pytest.mark.parametrize("kept", [
+    read, lambda folder: read(folder, keep_default_na=False), lambda folder: read(folder, dtype_backend="numpy_nullable"),
+    lambda folder: read(folder, dtype=str), lambda folder: as_category(read(folder)), lambda folder: read(folder).astype(object),
+    lambda folder: read(folder).sample(frac=1.0, random_state=1).set_index("reason", drop=False),
+], ids=["as read", "empty cells", "nullable", "texts", "categories", "objects", "shuffled"])  # fmt: skip
+def test_a_table_is_judged_as_its_folder(folder, kept):
+    study, results = folder
+    expected = rb.check(results, RULES)
+    assert set(expected["verdict"]) >= {"pass", "fail"}
+    found = rb.check(kept(results), RULES, study=study)
+    order = ["check", "case", "beta", "scale"]
+    both = (table.sort_values(order, ignore_index=True).drop(columns="governing") for table in (found, expected))
+    pd.testing.assert_frame_equal(*both, check_dtype=False)
+
+
+def test_rows_of_files_that_could_not_be_used_are_in_no_suite_of_a_table_that_pandas_has_read(folder):
+    study, results = folder
+    unusable = pd.DataFrame({"record": ["broken"], "status": ["failed"], "reason": ["cut off"]})
+    found = rb.check(pd.concat([read(results), unusable]), RULES, study=study)
+    assert len(found) == len(rb.check(results, RULES))
+    assert not found["counted"].str.contains("not run").any()
+
+
+@pytest.mark.parametrize(("made", "words"), [
+    (lambda table: table.drop(columns="status"), "once each, as rockbatch.run returned it: status"),
+    (lambda table: table.set_index(["record", "case"]), "once each, as rockbatch.run returned it: record, case"),
+    (lambda table: table.drop(columns="beta"), "once each, as rockbatch.run returned it: beta"),
+    (lambda table: pd.concat([table, table["status"]], axis=1), "once each, as rockbatch.run returned it: status"),
+    (lambda table: pd.concat([table, table[:1]]), "the table has a run of one-sine, case rigid, twice; leave one out"),
+    (lambda table: table.assign(theta_max_error="small"), 'theta_max_error = "small": expected a number'),
+    (lambda table: table[table["polarity"] == "-"], "the table has mirror images only, and not the runs that they mirror"),
+    (lambda table: pd.DataFrame(), "once each, as rockbatch.run returned it: record, case"),
+    (lambda table: table.iloc[0], "expected the table that rockbatch.run returned, not Series"),
+    (lambda table: table.to_dict("records"), "expected the table that rockbatch.run returned, not list"),
+])  # fmt: skip
+def test_a_table_that_cannot_be_judged_is_refused_with_what_it_lacks(folder, made, words):
+    study, results = folder
+    with pytest.raises(InputError) as refused:
+        rb.check(made(read(results)), RULES, study=study)
+    assert words in str(refused.value)
+
+
+def test_a_table_that_was_given_is_left_as_it_is(folder):
+    study, results = folder
+    table = read(results, keep_default_na=False)
+    before = table.to_csv()
+    rb.check(table, RULES, study=study)
+    assert table.to_csv() == before
