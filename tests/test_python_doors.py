@@ -1,6 +1,7 @@
 """What commands do, from Python: the same folders and tables, and nothing on disk unless it is asked for."""
 
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -260,6 +261,13 @@ def test_a_report_is_made_of_one_folder_or_of_two(commanded, tmp_path):
     both = rb.report(commanded / "run", commanded / "run", out=tmp_path / "both.html")
     assert "two studies" in both.path.read_text(encoding="utf-8")
     assert both.peaks["study"].value_counts().to_dict() == {"A": len(made.peaks), "B": len(made.peaks)}
+    whole = rb.report(commanded / "run", out=tmp_path / "whole.html", whole=True)
+    assert whole.path.read_text(encoding="utf-8").count("<details open>") > 1
+    copied = shutil.copytree(commanded / "run", tmp_path / "b")
+    beside = rb.report(copied, commanded / "run", whole=True)
+    assert beside.path == copied / "compare-run.html"
+    assert "<details open>" in beside.path.read_text(encoding="utf-8")
+    assert "two studies" in beside.save(tmp_path / "saved").read_text(encoding="utf-8")
     with pytest.raises(rb.InputError, match="not there"):
         rb.report(tmp_path)
 

@@ -33,6 +33,7 @@ def test_a_name_that_is_no_unicode_is_in_tables_as_in_the_motion_itself(tmp_path
     for row in (table.iloc[0], response.row):
         assert (row["record"], row["station"]) == (motion.name, motion.station)
     assert response.record == motion.name
+    assert rb.Motion("two\tcolumns", 0.02, [0.0, 1.0]).name == "two\tcolumns"
 
 
 def stream(*channels: str, **header: object) -> Stream:

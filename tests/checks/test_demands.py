@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, judged, runs
@@ -10,6 +11,7 @@ from check_samples import ELASTIC, PADS, PIER, RIGID, case, in_sections, judged,
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, DeckSpring, RigidBase, Stop, Tendon
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 
 INF = math.inf
@@ -275,6 +277,28 @@ def test_a_run_that_went_through_without_a_flight_has_none_and_one_that_was_cut_
 ):
     found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0.5)
     assert (found.low, found.high) == (low, high)
+
+
+@pytest.mark.parametrize("demand", FLIGHTS)
+def test_a_column_of_flights_is_nothing_for_what_went_through_without_one_and_else_not_known(demand):
+    table = runs([0.1] * 4, status=["ok", "overturned", "failed", "ok"], flight_s=[math.nan, math.nan, math.nan, 1.0])
+    np.testing.assert_array_equal(DEMANDS[demand].evaluate(Rows(table), case()).value, [0.0, 0.0, math.nan, math.nan])
+
+
+def test_a_force_of_which_one_of_two_columns_is_missing_is_not_known_to_be_none():
+    table = runs([0.3], **FORCES | {"pivot_force_left": math.nan}).drop(columns="pivot_force_right")
+    assert np.isnan(DEMANDS["pivot_force"].evaluate(Rows(table), case()).value).all()
+
+
+def test_a_run_with_two_sections_at_a_height_is_refused():
+    _, sections = in_sections(table := runs([0.1, 0.3]), "section_shear_kN")
+    with pytest.raises(InputError, match=r"a run has several sections at 7\.5 m"):
+        judge(
+            [Rule("check", "section_shear_kN", 1.0, at_m=7.5)],
+            table,
+            [case()],
+            sections=pd.concat([sections, sections[:1]]),
+        )
 
 
 def test_events_are_counted_by_record():

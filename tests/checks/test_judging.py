@@ -65,6 +65,22 @@ def test_a_record_counts_once_with_the_worse_of_its_polarities():
     assert (plus.value, plus.records, plus.runs) == (pytest.approx(0.25), 2, 2)
 
 
+def test_a_rule_about_a_polarity_of_mirror_images_is_about_the_runs_that_they_mirror():
+    table = pd.concat([runs([0.1, 0.4], mirror_of=""), runs([0.1, 0.4], polarity="-", mirror_of="+")])
+    plus, minus = (judged(table, statistic="mean", polarity=polarity) for polarity in "+-")
+    assert (
+        (minus.value, minus.runs, minus.verdict)
+        == (plus.value, plus.runs, plus.verdict)
+        == (pytest.approx(0.25), 2, "pass")
+    )
+
+
+def test_where_one_station_is_not_known_each_component_counts():
+    found = judged(runs([0.1, 0.2, 0.3], station=["a", "", "a"]), statistic="mean")
+    assert (found.records, found.count, found.value) == (3, "component", pytest.approx(0.2))
+    assert "do not say which components are of one station" in found.note
+
+
 def test_a_polarity_that_is_missing_for_one_record_is_a_run_that_failed():
     table = pd.concat([runs([0.1, 0.4]), runs([0.3, 0.2], polarity="-")])[:3]
     assert judged(table).counted == "1 not run (unknown)"
@@ -358,6 +374,8 @@ def test_without_the_other_spring_law_nothing_passes_where_the_rule_asks_for_it(
     found = judged(table, demand="settlement_m", at_most=0.05, other_law=True)
     assert (found.verdict, found.low, found.high) == ("not decided", 0.04, INF)
     assert "by the other 1 of the runs did not go through" in found.note
+    fell = runs([0.1, 9.0], settlement_m=0.04, settlement_other_law_m=math.nan, status=["ok", "overturned"])
+    assert "by the other 1 of the runs did not" in judged(fell, demand="settlement_m", at_most=0.05).note
     elastic = runs([0.1], "elastic", settlement_m=0.0, settlement_other_law_m=math.nan)
     assert judged(elastic, one=ELASTIC, demand="settlement_m", at_most=0.05, other_law=True).verdict == "pass"
 

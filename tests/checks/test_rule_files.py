@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from check_samples import RECORD, RIGID, case, folder, runs
+from check_samples import RECORD, RIGID, case, folder, runs, verdict
 from report_page import Page
 from studies import PADS, SINE, study_text, write_study
 
@@ -455,6 +455,16 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
     assert read[0].high == math.inf
     assert read[0].columns == {"beta": 40.0}
     assert read[2].columns == {}
+
+
+def test_a_text_of_checks_csv_is_what_it_was_and_cannot_command_a_terminal_or_a_spreadsheet(tmp_path):
+    write_verdicts(
+        tmp_path, [verdict("pads", "pass", check="=1+1", note="two; parts"), verdict("pads", "pass", check="drift")]
+    )
+    path = tmp_path / "checks.csv"
+    assert "'=1+1" in path.read_text(encoding="utf-8")
+    path.write_text(path.read_text(encoding="utf-8").replace("drift", "dri\x1bft", 1), encoding="utf-8")
+    assert [each.check for each in read_verdicts(tmp_path)] == ["=1+1", r"dri\x1bft"]
 
 
 def test_a_damaged_checks_csv_is_reported_and_a_missing_one_is_empty(tmp_path):

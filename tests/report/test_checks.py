@@ -162,7 +162,8 @@ def test_of_many_cases_the_six_nearest_to_passing_stand_open_and_the_others_foll
     assert [name for folded, name in rows if folded] == [
         *(f"c{i}" for i in range(7, 41)), "rig", "1:", "2:", "3:", "4:",
     ]  # fmt: skip
-    assert "6 of 45 cases, the best first." in text  # the five of the study, which have no verdict, too
+    assert "6 of 45 cases, the best first.<" in text  # the five of the study, which have no verdict, too
+    assert 'data-button="All 45 cases"' in text
     assert "Every verdict with its numbers, the worst first (45)" in text
 
 

@@ -8,7 +8,7 @@ import pytest
 from report_page import Page
 
 from rockbatch.reporting.markup import Markup, number
-from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, Head, table
+from rockbatch.reporting.table import LEAST_COMMON, MOST_OPEN, MOST_ROWS, Head, table
 
 
 @pytest.mark.parametrize(
@@ -83,6 +83,19 @@ def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
         "status",
         "peak",
     ]
+
+
+def test_a_table_of_the_first_or_worst_rows_says_of_how_many_and_what_is_the_same_in_these():
+    heads = [Head("name"), Head("status")]
+    rows = [[f"r{i}", "ok"] for i in range(MOST_ROWS + 1)]
+    assert f"The first {MOST_ROWS:,} of {MOST_ROWS + 1:,} rows are shown." in table(heads, rows)
+    few = rows[: LEAST_COMMON + 1]
+    worst = table(heads, few, sortable=True, worst_of=90)
+    assert f"The worst {len(few)} of 90 rows are shown." in worst
+    assert "In each of these rows: status ok." in worst
+    whole = table(heads, few, sortable=True, worst_of=len(few))
+    assert "In every row: status ok." in whole
+    assert "are shown" not in whole
 
 
 def test_columns_by_which_rows_are_chosen_are_marked_and_long_tables_are_folded():
