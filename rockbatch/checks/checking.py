@@ -39,7 +39,8 @@ def check(
     ----------
     results : path, opened results or DataFrame
         A folder that ``rockbatch run`` has written, what :func:`rockbatch.open_results` made of it, or the table that
-        :func:`rockbatch.run` returned.
+        :func:`rockbatch.run` returned, or some rows of it, also as ``pandas.read_csv`` reads peaks.csv. A record of which a
+        table has no row is none of the suite.
     rules : path or iterable of Rule, optional
         A TOML file with [[check]] tables, or the rules themselves; by default the study's own.
     study : path or Study, optional
@@ -54,7 +55,7 @@ def check(
     Raises
     ------
     InputError
-        For mistakes in the rules, with their lines, and for rules that do not fit the results.
+        For mistakes in the rules, with their lines, for rules that do not fit the results, and for a table that lacks a column.
 
     Examples
     --------
