@@ -1,7 +1,7 @@
 """The responses that a designer asks for first, checked or not, and whether a check limits them."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -93,27 +93,29 @@ def worst_of_cases(runs: "pd.DataFrame", cases: Sequence[Case], *, at_each_scale
     """
     worst = []
     stood, table = standing(runs), Rows(runs)
-    scale_of = table.numbers("scale") if at_each_scale else np.full(len(runs), math.nan)
-    suites = (
-        (case, scale, rows[np.isclose(scale_of[rows], scale, rtol=0.0, atol=0.0, equal_nan=True)])
-        for case, rows in rows_of_cases(runs, cases)
-        for scale in np.unique(scale_of[rows]).tolist()
-    )
-    for case, scale, rows in suites:
-        rows = rows[stood[rows]]
-        of_case = table.at(rows)
-        for name in RESPONSES if len(rows) else ():
-            if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
-                continue
-            if name in PERMANENT and case["base"] != "yielding":
-                continue
-            values = DEMANDS[name].evaluate(of_case, case).value
-            if np.isfinite(values).any():
-                place = int(np.nanargmax(values))
-                value = float(values[place])
-                value = 0.0 if name in PERMANENT and value < ROUNDING else value
-                worst.append(Worst(name, value, case, runs, int(rows[place]), scale))
+    scale_of = table.numbers("scale")
+    for case, of_case in rows_of_cases(runs, cases):
+        suites = {math.nan: of_case}
+        if at_each_scale:
+            suites = {scale: of_case[scale_of[of_case] == scale] for scale in np.unique(scale_of[of_case]).tolist()}
+        for scale, places in suites.items():
+            for name, value, place in _greatest(table.at(places[stood[places]]), case):
+                worst.append(Worst(name, value, case, runs, place, scale))
     return worst
+
+
+def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
+    """Yield the demand of each response that a case has, its greatest value in these rows, and the place of that in the table."""
+    for name in RESPONSES if len(rows) else ():
+        if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
+            continue
+        if name in PERMANENT and case["base"] != "yielding":
+            continue
+        values = DEMANDS[name].evaluate(rows, case).value
+        if np.isfinite(values).any():
+            greatest = int(np.nanargmax(values))
+            value = float(values[greatest])
+            yield name, 0.0 if name in PERMANENT and value < ROUNDING else value, int(rows.places[greatest])
 
 
 def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
