@@ -161,7 +161,7 @@ class Quantity:
 
     @property
     def applies(self) -> str:
-        """Rows to which it applies, in words; empty for all."""
+        """Runs to which it applies, in words; empty for all."""
         base = BASES_IN_WORDS[self.bases]
         run = "if the pier stayed upright" if self.stood else "if it occurs" if self.sometimes else ""
         return ", ".join(filter(None, (base, run)))

@@ -35,7 +35,7 @@ class Finished(Contents, Labelled):
     saved : Saved
         Contents of ``peaks.csv`` and ``run.json``.
     responses : sequence of Response
-        Rows whose histories are shown.
+        Runs whose histories are shown.
     verdicts : sequence of Verdict
         Results of ``rockbatch check``.
     """

@@ -246,7 +246,7 @@ def test_a_response_that_is_unknown_does_not_pass_for_an_unacceptable_one_under_
     assert (found.verdict, found.low, found.high) == ("not decided", pytest.approx(0.21 / 11), INF)
 
 
-# Rows that did not go through
+# Runs that did not go through
 
 
 @pytest.mark.parametrize(
