@@ -85,7 +85,7 @@ def in_a_line(finished: Finished) -> str:
     axes = 1 + any(case.get("across_of") for case in finished.info["cases"])
     motions = f"{counted(axes * len(records), 'component')} ({_vertical(finished)})"
     runs, stood = len(finished.runs), int((finished.runs["status"] == "ok").sum())
-    ended = "all end standing" if stood == runs and not finished.not_run else f"{stood} end standing"
+    ended = "all end standing" if stood == runs and not finished.not_run else f"{stood:,} end standing"
     return " · ".join(
         filter(None, (", ".join(sizes), f"{suite}, {motions}", f"{counted(runs + finished.not_run, 'run')}, {ended}"))
     )
