@@ -1,7 +1,7 @@
 """Rows of peaks.csv as arrays, for what asks a few of them for a few columns, a thousand times over."""
 
 import copy
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,12 @@ Texts = npt.NDArray[np.object_]
 
 MISSING = -1
 """Place of a row that a table lacks."""
+
+
+def texts_in(column: "pd.Series[Any]") -> "pd.Series[Any]":
+    """Return a column as texts, "" where there is none, however pandas keeps it."""
+    cells = column.astype(object)
+    return cells.where(cells.notna(), "").map(str)
 
 
 class Rows:
@@ -69,7 +75,5 @@ class Rows:
         if column not in self._table:
             return np.full(len(self), "", dtype=object)
         if column not in self._texts:
-            cells = self._table[column].astype(object)
-            whole = cells.where(cells.notna(), "").map(str)
-            self._texts[column] = np.array([*whole, ""], dtype=object)  # which MISSING takes
+            self._texts[column] = np.array([*texts_in(self._table[column]), ""], dtype=object)  # which MISSING takes
         return self._texts[column][self.places]

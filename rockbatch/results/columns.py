@@ -3,17 +3,17 @@
 What its columns are is said by :mod:`rockbatch.quantities.catalogue`.
 """
 
+import math
 from collections.abc import Container, Iterable, Mapping, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.pier import Pier
+from rockbatch.quantities.arrays import texts_in
 from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
 from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case, Study
@@ -146,22 +146,24 @@ def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
     rows = table.reset_index(drop=True)
     for name in rows:
         if name in TEXTS:
-            cells = rows[name].astype(object)
-            rows[name] = cells.where(cells.notna(), "").map(str)
+            rows[name] = texts_in(rows[name])
         elif name in COLUMNS or name in varied:
-            cells = rows[name].astype(object)
-            numbers = pd.to_numeric(cells.where(cells.notna() & (cells != ""), np.nan), errors="coerce")
-            words = numbers.isna() & cells.notna() & (cells != "")
-            if words.any() and name not in varied:
-                raise InputError(f"{name} = {shown(str(cells[words].iloc[0]))}: expected a number")
-            rows[name] = (
-                cells.where(cells.notna() & (cells != ""), np.nan) if words.any() else numbers.astype("float64")
-            )
+            rows[name] = numbers_or_words(rows[name].astype(object))
+            if rows[name].dtype != "float64" and name not in varied:
+                word = next(cell for cell in rows[name].dropna() if math.isnan(pd.to_numeric(cell, errors="coerce")))
+                raise InputError(f"{name} = {shown(str(word))}: expected a number")
     twice = (rows["case"] != "") & rows.duplicated(["record", "case", "polarity", "scale", *varied])
     if twice.any():
         record, case = rows.loc[twice, ["record", "case"]].iloc[0]
         raise InputError(f"the table has a run of {record}, case {case}, twice; leave one out")
     return rows
+
+
+def numbers_or_words(cells: "pd.Series[Any]") -> "pd.Series[Any]":
+    """Return the values of a varied key: numbers, or words such as "finite"; NaN if the key does not apply."""
+    filled = cells.where(cells.notna() & (cells != ""))
+    numbers = pd.to_numeric(filled, errors="coerce")
+    return filled if (numbers.isna() & filled.notna()).any() else numbers.astype("float64")
 
 
 def _typed(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":

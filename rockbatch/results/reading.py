@@ -16,7 +16,7 @@ from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_t
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
 from rockbatch.quantities.catalogue import COUNTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
-from rockbatch.results.columns import PEAKS, STATUSES
+from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
 
@@ -203,7 +203,7 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
         if any(cell != text for cell, text in originals.items()):
             table[name] = table[name].map(originals)
     for name in varied:
-        table[name] = _values(table[name])
+        table[name] = numbers_or_words(table[name])
     return table
 
 
@@ -245,10 +245,3 @@ def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
     if unbounded and value == math.inf:
         return True
     return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
-
-
-def _values(texts: "pd.Series[str]") -> "pd.Series[Any]":
-    """Return the values of a varied key: numbers, or words such as "finite"; NaN if the key does not apply."""
-    numbers = pd.to_numeric(texts, errors="coerce")
-    words = numbers.isna() & (texts != "")
-    return texts.where(texts != "") if words.any() else numbers.astype("float64")
