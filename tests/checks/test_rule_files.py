@@ -359,6 +359,16 @@ def test_without_checks_a_case_in_which_more_runs_overturn_stands_behind_however
     assert [(row[0], row[-1]) for row in rows[:3]] == [("pads", "none"), ("weak", "1 of 4"), ("none", "2 of 2")]
 
 
+def test_the_terminal_tells_what_has_no_limit_at_the_scale_of_a_case(tmp_path):
+    yielded = {"ductility_left": 3.0, "ductility_right": 2.0, "base_tilt_rad": 1e-3}
+    table = pd.concat([runs([0.1], settlement_m=s, scale=scale, **yielded) for s, scale in ((0.2, 1.0), (0.7, 1.5))])
+    out = folder(tmp_path / "out", table, [case()], MARGIN.replace("at_most", "scale = [1.0]\nat_most"))
+    told = " ".join(check.answered(verdicts(out), rb.open_results(out)).split())
+    assert "no limit on mean settlement, residual tilt, ductility" in told
+    assert "mean settlement 200 mm" in told
+    assert "700" not in told
+
+
 @pytest.mark.parametrize("columns", [40, 80, 120])
 def test_the_scorecard_fits_the_terminal(tmp_path, columns, monkeypatch):
     rules = "".join(MARGIN.replace("margin", f"a check of {i} words") for i in range(9))

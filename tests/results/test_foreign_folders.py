@@ -29,6 +29,16 @@ STUDY = study_text(
 SECRET = "root:x:0:0:a planted secret"
 
 
+def test_who_names_a_file_of_a_folder_is_told_the_folder(tmp_path):
+    folder = tmp_path / "of pads"
+    folder.mkdir()
+    for name in ("run.json", "peaks.csv"):
+        (folder / name).write_text("{}", encoding="utf-8")
+    with pytest.raises(rb.InputError) as refused:
+        rb.open_results(folder / "peaks.csv")
+    assert str(refused.value).endswith(f"write the folder, such as {folder}")
+
+
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     """What `rockbatch run` leaves, with a history and a check."""
