@@ -64,16 +64,16 @@ def creeps(case: Case) -> bool:
 
 def has_device(case: Case, device: str) -> bool:
     """Return True if the pier has a device of this kind."""
-    return any(what_of(restraint) == device for restraint in _devices(case))
+    return any(what_of(restraint) == device for restraint in devices(case))
 
 
 def holds_a_tilt(case: Case) -> bool:
     """Return True if a damper keeps a force at rest, as friction does."""
     holding = ("friction", "hysteretic")
-    return any(damper.get("kind") in holding and damper.get("f") != 0.0 for damper in _devices(case))
+    return any(damper.get("kind") in holding and damper.get("f") != 0.0 for damper in devices(case))
 
 
-def _devices(case: Case) -> Iterable[Mapping[str, Any]]:
+def devices(case: Case) -> Iterable[Mapping[str, Any]]:
     """Return the devices of a case, as its file has them."""
     return case["parameters"].get("restraints", ()) if "parameters" in case else ()
 

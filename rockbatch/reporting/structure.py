@@ -19,7 +19,7 @@ from rockbatch.pier import (
     restraint_of,
 )
 from rockbatch.pier.plausibility import wrong_restraints
-from rockbatch.results.labels import DEVICE_SYMBOLS, plain
+from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (
@@ -89,9 +89,7 @@ def in_words(pier: Pier, restraint: Restraint) -> str:
 
 
 def _number(symbol: str, unit: str, value: float, power: float) -> str:
-    if symbol == "C" and power != 1.0:
-        unit = f"kN (s/m)^{power:g}"
-    return f"{symbol} = {plain(value, 4)} {unit}".strip().replace(" ", "\u00a0")
+    return f"{symbol} = {plain(value, 4)} {unit_with_exponent(unit, power)}".strip().replace(" ", "\u00a0")
 
 
 def _place(restraint: Restraint) -> str:

@@ -5,6 +5,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rockbatch.pier.restraints import what_of
+from rockbatch.quantities.cases import devices
 from rockbatch.study import PIER_KEYS
 
 SYMBOLS = {
@@ -35,12 +37,13 @@ SYMBOLS = {
     "area_m2": ("area", "m²"),
 }
 DEVICE_SYMBOLS = {
-    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", "kN s/m"),
+    "f": ("f", ""), "force_kN": ("F", "kN"), "yield_mm": ("uy", "mm"), "nu": ("ν", ""), "coefficient_kN_s_m": ("C", "kN (s/m)^a"),
     "exponent": ("a", ""), "psi": ("ψ", ""), "prestress_kN": ("P0", "kN"), "lambda": ("λ", ""),
     "stiffness_kN_m": ("kt", "kN/m"), "yield_kN": ("Ty", "kN"), "gap_mm": ("gap", "mm"), "restitution": ("e", ""),
     "brace": ("λb", ""), "brace_kN_m": ("kb", "kN/m"),
 }  # fmt: skip
-"""Symbols and units of the keys of devices, whose varied values have names such as damper_1_force_kN."""
+"""Symbols and units of the keys of devices, whose varied values have names such as damper_1_force_kN. The a of a unit is the
+device's exponent."""
 _OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
 
 BASE_KEYS = (
@@ -71,11 +74,16 @@ class Series:
         return self.label if self.rigid or self.label.split(":")[0] == self.tick else f"{self.tick} – {self.label}"
 
 
-def quantity(key: str, value: object, digits: int = 10) -> str:
-    """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite"."""
+def quantity(key: str, value: object, digits: int = 10, case: Mapping[str, Any] | None = None) -> str:
+    """Describe a value in words that stay on one line: "β = 40", "Fy = 45,000 kN", "kinematics finite".
+
+    ``case``, one of run.json, has the exponent of a viscous damper: "C = 900 kN (s/m)^0.3".
+    """
     symbol, unit = symbol_of(key)
     if not isinstance(value, float | int):
         return f"{symbol} {value}"
+    if case is not None and (device := _OF_DEVICE.fullmatch(key)):
+        unit = unit_with_exponent(unit, _exponent(case, device[1], int(device[2])))
     return f"{symbol} = {plain(value, digits)} {unit}".strip().replace(" ", "\u00a0")
 
 
@@ -86,6 +94,17 @@ def symbol_of(key: str) -> tuple[str, str]:
     kind, number, of_device = device.groups()
     symbol, unit = DEVICE_SYMBOLS.get(of_device, (of_device, ""))
     return (symbol if number == "1" else f"{kind.replace('_', ' ')} {number}: {symbol}"), unit
+
+
+def unit_with_exponent(unit: str, exponent: float) -> str:
+    """Return a unit with the number that its exponent a stands for: "kN (s/m)^0.3", and "kN s/m" for 1."""
+    return unit.replace("(s/m)^a", "s/m" if exponent == 1.0 else f"(s/m)^{exponent:g}")
+
+
+def _exponent(case: Mapping[str, Any], kind: str, number: int) -> float:
+    """Return the exponent of the ``number``-th device of a kind in a case of run.json; 1 for a kind without one."""
+    of_kind = [device for device in devices(case) if what_of(device) == kind]
+    return next((device.get("exponent") for device in of_kind[number - 1 :]), None) or 1.0
 
 
 def plain(value: float, digits: int) -> str:
@@ -136,7 +155,7 @@ def named(
     for key in cases:
         kind = key in rigid
         distinguishing = [name for name in differing[kinds[key]] if name in constants[key]]
-        words = [quantity(name, constants[key][name], digits[name]) for name in distinguishing]
+        words = [quantity(name, constants[key][name], digits[name], cases[key][0]) for name in distinguishing]
         case, index = str(key[0]), count[kind]
         count[kind] += 1
         label = ", ".join(words) if words and alone else f"{case}: {', '.join(words)}" if words else case

@@ -51,7 +51,7 @@ def test_a_foundation_is_called_by_the_keys_of_its_study_that_tell_it_apart(tmp_
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [
-        ("damper_1_coefficient_kN_s_m", 900.0, "C = 900 kN s/m"), ("damper_2_force_kN", 450.0, "damper 2: F = 450 kN"),
+        ("damper_1_coefficient_kN_s_m", 900.0, "C = 900 kN (s/m)^a"), ("damper_2_force_kN", 450.0, "damper 2: F = 450 kN"),
         ("tendon_1_psi", 0.5, "ψ = 0.5"), ("deck_spring_2_gap_mm", 20.0, "deck spring 2: gap = 20 mm"),
         ("damper_1_kind", "viscous", "kind viscous"), ("beta", 50.65704515, "β = 50.65704515"),
         ("yield_kN", 999.0, "Fy = 999 kN"), ("yield_kN", 37000.0, "Fy = 37,000 kN"),
@@ -98,3 +98,23 @@ def test_a_run_says_what_else_than_its_foundation_tells_it_from_others_of_its_re
     turned = finished.case_of(run | {"polarity": "-"})
     assert finished.case_of(run | {"polarity": "+"}) == turned.replace(", reversed", "")
     assert "scale 2, reversed" in turned
+
+
+@pytest.mark.parametrize(
+    ("key", "unit"),
+    [
+        ("damper_1_coefficient_kN_s_m", "C = 900 kN s/m"),
+        ("damper_2_coefficient_kN_s_m", "damper 2: C = 900 kN (s/m)^0.3"),
+        ("tendon_1_stiffness_kN_m", "kt = 900 kN/m"),
+    ],
+)
+def test_the_unit_of_a_viscous_coefficient_has_the_exponent_of_its_own_damper(key, unit):
+    devices = [{"kind": "viscous", "exponent": 1.0}, {"psi": 0.2}, {"kind": "viscous", "exponent": 0.3}]
+    case = {"parameters": {"restraints": devices}}
+    assert quantity(key, 900.0, case=case).replace("\u00a0", " ") == unit
+
+
+def test_legends_name_a_viscous_coefficient_with_the_unit_of_its_exponent(tmp_path):
+    oil = {"kind": "viscous", "coefficient_kN_s_m": [500.0, 900.0], "exponent": 0.3}
+    names = [label.replace("\u00a0", " ") for label in labels(tmp_path, RIGID | {"damper": [oil]})]
+    assert names == ["C = 500 kN (s/m)^0.3", "C = 900 kN (s/m)^0.3"]

@@ -54,7 +54,7 @@ def section(finished: Finished) -> Markup:
 
 
 def _name(case: Mapping[str, Any]) -> str:
-    return " ".join([str(case["case"]), *(quantity(key, value) for key, value in case["columns"].items())])
+    return " ".join([str(case["case"]), *(quantity(key, value, case=case) for key, value in case["columns"].items())])
 
 
 def _table(sheets: Named, devices: Sequence[str]) -> Markup:
