@@ -502,6 +502,17 @@ def test_a_library_that_memory_is_too_little_for_is_reported_in_a_sentence(study
         main(["run", str(study)])
 
 
+@pytest.mark.parametrize("command", [name for name, command in COMMANDS.items() if "--fresh" in command.arguments])
+@pytest.mark.parametrize("word", ["--fre", "--f", "--fresch", "--refresh", "--freeze", "--threads", "--FRESH"])
+def test_no_mistake_leads_to_the_option_that_discards_results(command, word, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([command, "pier.toml", word])
+    error = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert f"unrecognized arguments: {word}" in error
+    assert not error.partition(word)[2].count("--fresh")
+
+
 @pytest.mark.parametrize(
     ("words", "answer"),
     [
@@ -514,6 +525,8 @@ def test_a_library_that_memory_is_too_little_for_is_reported_in_a_sentence(study
          "rockbatch: unrecognized arguments: --list; `rockbatch examples` takes none; `rockbatch --help` says more"),
         ("-v", "rockbatch: unrecognized arguments: -v; did you mean --version?"),
         ("run pier.toml -o", "rockbatch: unrecognized arguments: -o; did you mean --out?"),
+        ("run pier.toml --threads 4", "rockbatch: unrecognized arguments: --threads 4; did you mean --jobs?"),
+        ("motions . --output=a.csv", "rockbatch: unrecognized arguments: --output=a.csv; `rockbatch --help` says more"),
         ("run", "rockbatch run: the following arguments are required: STUDY.toml; `rockbatch run --help` says more"),
         ("run pier", "rockbatch: pier: no such file; did you mean pier.toml?"),
         ("run .", "rockbatch: .: a folder; did you mean pier.toml?"),

@@ -87,6 +87,9 @@ _ENGINE: Arguments = {
 }
 """The engine that carries out the runs."""
 
+DISCARDING = ("--fresh",)
+"""Options that discard finished results: nobody is led to them by a suggestion or an abbreviation."""
+
 _CSV = {
     "--csv": value(
         str, None, "write peaks_semicolon.csv, too: with semicolons and decimal commas, as Excel opens it in half of Europe",

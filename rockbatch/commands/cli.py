@@ -10,7 +10,7 @@ from contextlib import nullcontext, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
-from rockbatch.commands.arguments import COMMANDS
+from rockbatch.commands.arguments import COMMANDS, DISCARDING
 from rockbatch.commands.interrupts import answered_interrupts
 from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import AboutResults, InputError
@@ -24,7 +24,16 @@ _COMMANDS_MEANT = {word: name for name, words in {
 }.items() for word in words.split()}  # fmt: skip
 """Commands by other words for what they do."""
 
-_OPTIONS_MEANT = {"-v": "--version", "-V": "--version", "-o": "--out", "-j": "--jobs"}
+_OPTIONS_MEANT = {
+    "--version": "-v -V",
+    "--jobs": "-j --threads --thread --workers --processes --procs --nproc --cores --cpus --n-jobs --parallel",
+    "--out": "-o --output --outdir --output-dir --dir --folder --results",
+    "--dry-run": "-n --dry --dryrun --estimate",
+    "--motions": "--records --ground-motions --input --path",
+    "--all": "-a --full --verbose",
+    "--rules": "--checks --limits",
+}
+"""Other words for what an option does; they come before words that are spelt alike."""
 
 EXIT_CODES = """exit codes:
   0    all is fine
@@ -34,7 +43,10 @@ EXIT_CODES = """exit codes:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that answers a mistake in one line."""
+    """A parser that answers a mistake in one line, and takes options by their whole names: "--f" is not "--fresh"."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, allow_abbrev=False)
 
     def error(self, message: str) -> NoReturn:
         more = "" if message.endswith("?") else f"; `{self.prog} --help` says more"
@@ -96,9 +108,16 @@ def _options_meant(command: str | None, unknown: Sequence[str]) -> str:
     if not options:
         return f"; `rockbatch {command}` takes none"
     words = [word.partition("=")[0] for word in unknown if word.startswith("-")]
-    matches = [_OPTIONS_MEANT.get(word) or closest(word, options) for word in words]
-    known = ", ".join(match for match in matches if match in options)
+    known = ", ".join(match for match in (_option_meant(word, options) for word in words) if match)
     return f"; did you mean {known}?" if known else ""
+
+
+def _option_meant(word: str, options: Sequence[str]) -> str | None:
+    """Return the option that a word means, or that is spelt alike; never one that discards results."""
+    meant = [name for name, words in _OPTIONS_MEANT.items() if word in words.split()]
+    if meant:
+        return next((name for name in meant if name in options), None)
+    return closest(word, [name for name in options if name not in DISCARDING])
 
 
 def _exit_code(parsed: argparse.Namespace) -> int:
