@@ -22,7 +22,6 @@ from rockbatch.pier import (
     Stop,
     Tendon,
     YieldingBase,
-    plausibility,
     problems,
     static_deflection,
     tilt_over_residual,
@@ -30,6 +29,7 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.pier.bases import OTHER_LAW, RATCHETING, fastest
+from rockbatch.pier.devices import doubt as pier_doubt
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import LAWS, springs
@@ -74,14 +74,13 @@ def test_least_beta_is_where_the_static_pier_loses_its_stiffness(alpha):
 
 
 def test_every_impossible_value_is_named_with_its_limit():
-    base = YieldingBase(3.0, 1.5, "second-order", "free", eta=0.9, spring="clay", n=0.5)
-    found = problems(FIG5, base)
-    assert len(found) == 7
-    names = ["beta", "epsilon", "kinematics", "flight", "eta", "spring", "n"]
-    assert [problem.split(" ")[0] for problem in found] == names
-    assert f"{FIG5.least_beta:.4g}" in found[0]
-    found = problems(FIG5, RigidBase(restraints=(Tendon(psi=0.1, at="deck"),)))
-    assert found == ['tendon: at = "deck": must be "left", "right" or an offset in m']
+    with pytest.raises(InputError) as caught:
+        YieldingBase(-3.0, 1.5, "second-order", "free", eta=0.9, spring="clay", n=0.5)
+    names = ["epsilon", "eta", "n", "kinematics", "flight", "spring", "beta"]
+    assert [problem.split(" ")[0] for problem in caught.value.problems] == names
+    (problem,) = problems(FIG5, ElasticBase(3.0))
+    assert problem.startswith("beta = 3: ")
+    assert f"{FIG5.least_beta:.4g}" in problem
 
 
 @pytest.mark.parametrize(
@@ -111,9 +110,11 @@ def test_flight_is_followed_unless_a_base_says_stop_and_its_limit_is_a_height(ma
     assert (make().flight, make().flies, make().flight_limit_mm) == ("guided", True, 5.0)
     assert not make(flight="stop").flies
     assert problems(FIG5, make(flight="stop", flight_limit_mm=20.0)) == []
-    assert problems(FIG5, make(flight="free"))[0].startswith('flight = "free": must be "guided" or "stop"')
+    with pytest.raises(InputError, match=r'^flight = "free": must be "guided" or "stop"'):
+        make(flight="free")
     for height in (0.0, -1.0, math.nan):
-        assert problems(FIG5, make(flight_limit_mm=height))[0].startswith("flight_limit_mm = ")
+        with pytest.raises(InputError, match=r"^flight_limit_mm = "):
+            make(flight_limit_mm=height)
 
 
 def test_a_base_tells_what_it_can_do():
@@ -149,7 +150,7 @@ def test_a_rigid_base_is_the_limit_of_stiff_springs():
     [
         (0.0, 1.0, RigidBase), (0.0, 1.0, lambda x: RigidBase(flexural_damping=x)),
         (0.0, 1.0, lambda x: ElasticBase(50.0, x)), (0.0, 1.0, lambda x: ElasticBase(50.0, zeta=x)),
-        (1.000001, 1e15, lambda x: YieldingBase(50.0, eta=x, spring="epp")),
+        (1.000001, 1e15, lambda x: YieldingBase(50.0, eta=x, spring="epp", confirm=("eta",))),
         (1.0, 1000.0, lambda x: YieldingBase(50.0, eta=3.0, n=x)),
         (0.0, 10.0, lambda x: RigidBase(restraints=(Damper("friction", f=x),))),
         (0.1, 2.0, lambda x: RigidBase(restraints=(Damper("viscous", nu=0.1, exponent=x),))),
@@ -160,16 +161,19 @@ def test_a_rigid_base_is_the_limit_of_stiff_springs():
 )  # fmt: skip
 def test_what_is_possible_ends_at_its_bounds(low, high, make):
     assert problems(FIG5, make(low)) == problems(FIG5, make(high)) == []
-    for value in (low - 1e-8, high * 1.001):
-        assert len(problems(FIG5, make(value))) == 1, value
-    assert problems(FIG5, make(math.nan))
+    for value in (low - 1e-8, high * 1.001, math.nan):
+        with pytest.raises(InputError) as caught:
+            make(value)
+        assert len(caught.value.problems) == 1, value
 
 
 @pytest.mark.parametrize(
     ("beta", "words"), [(math.nan, "above"), (-1.0, "above"), (math.inf, "1e+15 at most"), (2e15, "1e+15")]
 )
 def test_a_stiffness_that_is_no_number_is_refused(beta, words):
-    (problem,) = problems(FIG5, ElasticBase(beta))
+    with pytest.raises(InputError) as caught:
+        ElasticBase(beta)
+    (problem,) = caught.value.problems
     assert words in problem
 
 
@@ -225,6 +229,7 @@ def test_every_spring_law_has_a_code_in_the_core_and_one_that_creeps_another_law
 
 SQUARE = Pier.rectangle(6.0, 30.0, mass_t=1000.0)
 FRAME = Pier.frame(Pier.rectangle(1.0, 7.0, mass_t=20.0), 4, 200.0)
+TALL = Pier.with_deck(8.0, 30.0, 2000.0, 700.0)
 RUBS, FEW, BRACED = (
     Damper("friction", f=0.1),
     "damper: two places of friction at most",
@@ -238,28 +243,84 @@ AT_DECK = "columns: devices at the deck of a rocking frame are not solved"
     [
         ((RUBS,), []), ((RUBS, RUBS), [FEW]), ((replace(RUBS, at="left"), replace(RUBS, at=1.0)), []),
         ((RUBS, replace(RUBS, at="left")), [FEW]), ((RUBS, RUBS, Damper("viscous", nu=1.0)), [FEW]),
-        ((RUBS, RUBS, replace(RUBS, f=-1.0)), ["damper: f = -1: its force over the weight must be within 0..10"]),
         ((BRACED,), []), ((replace(BRACED, exponent=0.9),), []), ((Damper("viscous", nu=1.0, exponent=1.05),), []),
-        ((replace(BRACED, exponent=1.05),), ["damper: brace = 10: with one the exponent must be 1 at most; leave the brace out"]),
-        ((Damper("hysteretic", f=0.1, yield_m=0.01, brace=10.0),), []),
-        ((replace(BRACED, brace=0.0),), ["damper: brace = 0: must be"]),
-        ((replace(RUBS, brace=10.0),), ["damper: brace = 10: friction on a brace is a hysteretic damper"]),
-        ((Damper("viscous", nu=1.0, at="deck"),), []),
-        ((replace(RUBS, at="deck"),), ['damper: at = "deck": friction at the deck']),
-        ((Damper("viscous", nu=1.0, at="top"),), ['damper: at = "top": must be "left", "right", "deck" or an offset in m']),
-        ((Tendon(0.1, at="deck"),), ['tendon: at = "deck": must be "left", "right" or an offset in m']),
+        ((Damper("hysteretic", f=0.1, yield_m=0.01, brace=10.0),), []), ((Damper("viscous", nu=1.0, at="deck"),), []),
         ((Tendon(0.1, at=-6.0),), []), ((Tendon(0.1, at=6.01),), ["tendon: at = 6.01: must be within the base's width either"]),
-        ((replace(RUBS, nu=1.0, yield_m=0.1),), ["damper: nu = 1: is not", "damper: yield_m = 0.1: is not of a friction damper"]),
-        ((replace(RUBS, kind="oil"),), ['damper: kind = "oil": must be "friction" or "viscous" or "hysteretic"']),
-        ((Tendon(0.3, strength=0.3),), ["tendon: its yield force over the weight, 0.3, must be above its prestress, 0.3"]),
-        ((DeckSpring(1.0, side="top"),), ['deck_spring: side = "top": must be']),
         ((DeckSpring(1.0, gap_m=0.1, side="left"),), []),
     ],
 )  # fmt: skip
-def test_what_is_impossible_of_devices_is_said_once_and_nothing_else(devices, said):
+def test_what_is_impossible_of_devices_under_a_pier_is_said_once(devices, said):
     found = wrong_restraints(SQUARE, devices)
     assert len(found) == len(said)
     assert all(sentence.startswith(start) for sentence, start in zip(found, said, strict=True)), found
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda: replace(RUBS, f=-1.0), ["damper: f = -1: its force over the weight must be within 0..10"]),
+        (
+            lambda: replace(BRACED, exponent=1.05),
+            ["damper: brace = 10: with one the exponent must be 1 at most; leave the brace out"],
+        ),
+        (lambda: replace(BRACED, brace=0.0), ["damper: brace = 0: must be"]),
+        (lambda: replace(RUBS, brace=10.0), ["damper: brace = 10: friction on a brace is a hysteretic damper"]),
+        (lambda: replace(RUBS, at="deck"), ['damper: at = "deck": friction at the deck']),
+        (
+            lambda: Damper("viscous", nu=1.0, at="top"),
+            ['damper: at = "top": must be "left", "right", "deck" or an offset in m'],
+        ),
+        (lambda: Tendon(0.1, at="deck"), ['tendon: at = "deck": must be "left", "right" or an offset in m']),
+        (
+            lambda: replace(RUBS, nu=1.0, yield_m=0.1),
+            ["damper: nu = 1: is not", "damper: yield_m = 0.1: is not of a friction damper"],
+        ),
+        (
+            lambda: replace(RUBS, kind="oil"),
+            ['damper: kind = "oil": must be "friction" or "hysteretic" or "viscous"'],
+        ),
+        (
+            lambda: Tendon(0.3, strength=0.3),
+            ["tendon: its yield force over the weight, 0.3, must be above its prestress, 0.3"],
+        ),
+        (lambda: DeckSpring(1.0, side="top"), ['deck_spring: side = "top": must be']),
+        (lambda: ElasticBase(50.0, kinematics="large"), ['kinematics = "large": must be "first-order" or "finite"']),
+        (
+            lambda: YieldingBase(50.0, eta=0.5, spring="bilinear"),
+            ["eta = 0.5: the springs cannot", 'spring = "bilinear": must'],
+        ),
+        (lambda: ElasticBase(50.0, epsilon=0.5, zeta=0.1), ["epsilon = 0.5: zeta is given too"]),
+        (lambda: RigidBase(friction=35.0), ["friction = 35: more than 2 as a coefficient"]),
+        (lambda: RigidBase(restitution=0.1), ["restitution = 0.1: less than 0.3 of the angular velocity"]),
+        (lambda: Pier(0.2, 0.001), ["p = 0.001: less than 0.1 rad/s"]),
+        (lambda: Pier(0.2, 1.0, mass_t=2e6), ["mass_t = 2e+06: more than 1e+06 t"]),
+        (lambda: Pier.rectangle(600.0, 3000.0), ["width_m = 600: more than 400 m", "height_m = 3000: more than 400 m"]),
+        (
+            lambda: Damper.friction(TALL, force_kN=2.0),
+            ["damper: f = 7.55087e-05: it has 0.0076 % of the pier's weight"],
+        ),
+        (lambda: Tendon.of(TALL, prestress_kN=10.0), ["tendon: psi = 0.000377544: its prestress is 0.038 %"]),
+        (
+            lambda: Stop.of(TALL, gap_mm=0.1, stiffness_kN_m=1e6),
+            ["stop: gap_m = 0.0001: it is met after 0.1 mm already"],
+        ),
+        (lambda: ElasticBase.from_stiffness(TALL, 1e9), ["stiffness_kN_m = 1e+09: the pier's weight presses"]),
+        (lambda: YieldingBase.from_stiffness(TALL, 2e6, 4e6), ["yield_kN = 4e+06: 302 times what the support carries"]),
+    ],
+)
+def test_what_cannot_be_or_is_odd_is_said_where_it_is_made(made, said):
+    with pytest.raises(InputError) as caught:
+        made()
+    found = caught.value.problems
+    assert len(found) == len(said)
+    assert all(sentence.startswith(start) for sentence, start in zip(found, said, strict=True)), found
+
+
+def test_what_is_odd_is_made_when_it_is_confirmed():
+    assert RigidBase(friction=35.0, confirm=["friction"]).friction == 35.0
+    assert Pier(0.2, 0.001, confirm=("p",)) == replace(Pier(0.2, 1.0), p=0.001, confirm=("p",))
+    assert Damper.friction(TALL, force_kN=2.0, confirm=("f",)).f == pytest.approx(2.0 / (2700.0 * 9.81))
+    assert ElasticBase.from_stiffness(TALL, 1e9, confirm=("stiffness_kN_m",)).beta > 1000.0
 
 
 def test_the_columns_of_a_frame_are_no_frames():
@@ -272,7 +333,7 @@ def test_the_columns_of_a_frame_are_no_frames():
 @pytest.mark.parametrize(("share", "doubtful"), [(0.249, True), (0.251, False), (2.49, False), (2.51, True)])
 def test_a_spring_at_the_deck_is_at_a_quarter_to_two_and_a_half_heights_of_the_pier(share, doubtful):
     spring = DeckSpring(0.2, height_m=share * 2.0 * FIG5.height)
-    doubt = plausibility.doubt(FIG5, spring)
+    doubt = pier_doubt(FIG5, spring)
     assert (doubt is not None and doubt.name == "height_m") == doubtful
 
 

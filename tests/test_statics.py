@@ -302,7 +302,10 @@ def test_stiff_springs_are_rigid_ground():
     for devices in ((), (FRICTION, TENDON), (rb.Damper("hysteretic", f=0.1, yield_m=0.01),)):
         rigid, stiff = (
             rb.statics(PIER, base)
-            for base in (RigidBase(restraints=devices), ElasticBase(beta=3e4, kinematics="finite", restraints=devices))
+            for base in (
+                RigidBase(restraints=devices),
+                ElasticBase(beta=3e4, kinematics="finite", restraints=devices, confirm=("beta",)),
+            )
         )
         for name in ("lift_off_g", "strength_g", "moment_over_weight_m", "unstable_rad"):
             assert getattr(stiff, name) == pytest.approx(getattr(rigid, name), rel=1e-5), name
@@ -662,15 +665,18 @@ def test_the_page_shows_the_sheet_of_its_study(capsys):
     assert "\n".join(f"    {line}" for line in sheet.splitlines()) in page
 
 
+RUBBING = rb.Damper("friction", f=10.0)
+
+
 @pytest.mark.parametrize(
     ("pier", "base"),
     [
-        (Pier(0.01, 0.3), ElasticBase(1e6)),
+        (Pier(0.01, 0.3), ElasticBase(1e6, confirm=("beta",))),
         (Pier(1.57, 2.0, 1e6), ElasticBase(0.03, restraints=(rb.Stop(gap_m=100.0, lam=0.1), FRICTION))),
         (Pier(1.0, 0.3, 1e6), YieldingBase(0.88, eta=2.5, n=1000.0, restraints=(rb.Tendon(psi=0.3, lam=0.3), FRICTION))),
         (Pier(0.2, 1.0), YieldingBase(30.0, eta=1.000001, n=1.0)),
-        (Pier(0.2, 1.0), YieldingBase(30.0, eta=1e6, kinematics="finite", restraints=(rb.Damper("friction", f=10.0),))),
-        (Pier(1e-4, 1e3, 1e-3), RigidBase(restraints=(rb.Tendon(psi=10.0, lam=1e6),))),
+        (Pier(0.2, 1.0), YieldingBase(30.0, eta=1e6, kinematics="finite", restraints=(RUBBING,), confirm=("eta",))),
+        (Pier(1e-4, 1e3, 1e-3, confirm=("p",)), RigidBase(restraints=(rb.Tendon(psi=10.0, lam=1e6),))),
     ],
 )  # fmt: skip
 def test_the_sheet_of_any_pier_that_stands_has_finite_numbers(pier, base):

@@ -1,8 +1,10 @@
 """Units at the border: everything inside is SI, angles are in radians."""
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
@@ -59,6 +61,32 @@ POSITIVE = Bounds(LEAST, MOST)
 
 NOT_NEGATIVE = Bounds(0.0, MOST, why="must be 0 or above")
 """Any number but a negative one."""
+
+
+class Usual(NamedTuple):
+    """The largest and the least size of a value that are usual, and a word on them; others, but for 0, have to be confirmed."""
+
+    most: float
+    words: str
+    least: float = 0.0
+
+    def holds(self, value: float) -> bool:
+        """Return whether a value is usual."""
+        return value == 0 or self.least <= abs(value) <= self.most
+
+    def doubt(self, name: str, value: float) -> str:
+        """Return what is odd about a value of the key ``name``; empty if nothing is."""
+        if self.holds(value):
+            return ""
+        bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"
+        return f"{name} = {value:g}: {bound} {self.words}"
+
+
+def rounded_up(value: float, digits: int = 4) -> float:
+    """Return a positive value rounded up to so many significant digits: a least value that a message may advise."""
+    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return float(f"{math.ceil(value / unit) * unit:.{digits}g}")
+
 
 _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,

@@ -1,7 +1,12 @@
 """Limits of records: beyond these a header is damaged, or the file no record, and arrays would not fit into memory."""
 
+from rockbatch.common.units import Usual
+
 SHORTEST_STEP, LONGEST_STEP = 1e-5, 1.0
 """Sampling interval [s]: recorders take 20 to 1000 samples a second; digitised film and simulations stay within, too."""
+
+USUAL_STEP = Usual(0.2, "s: records have 0.002 to 0.05 s from sample to sample", 1e-5)
+"""Sampling interval of a motion from Python or a pulse."""
 
 SAME_STEP = 0.01
 """Relative: intervals that differ by less are the same one, printed with few decimals (1/256 s as .0039)."""

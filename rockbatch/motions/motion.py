@@ -15,6 +15,7 @@ from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
+from rockbatch.motions.limits import USUAL_STEP
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
@@ -135,7 +136,8 @@ class Motion(Shown):
     station : str
         What the components of one station in one earthquake share, which count as one record; empty for a record of its own.
     confirm : sequence of str
-        "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it.
+        "pga", if it is right though no earthquake has had such a one; else :func:`rockbatch.simulate` refuses it. "dt", if the
+        sampling interval is right though no record has such a one.
     shocks : tuple of Shock
         Records of which it is a sequence, in their order; empty for a record of its own.
     start : float or None
@@ -189,6 +191,9 @@ class Motion(Shown):
         wrong = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
+        elif "dt" not in self.confirm and (doubt := USUAL_STEP.doubt("dt", self.dt)):
+            rate = f"; if it is a rate in Hz, write dt = {1.0 / self.dt:g}" if self.dt >= 10.0 else ""
+            wrong.append(f'motion "{self.name}": {doubt}{rate}; if it is right, write confirm = ["dt"]')
         for component, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
             if samples is None and component == "vertical":
                 continue
@@ -227,6 +232,7 @@ class Motion(Shown):
         name: str = "motion",
         vertical: object = None,
         gravity: float = GRAVITY,
+        confirm: Sequence[str] = (),
     ) -> "Motion":
         """Return a motion of samples in ``unit``.
 
@@ -241,8 +247,10 @@ class Motion(Shown):
         vertical : array_like, shape (npts,), optional
         gravity : float
             What "g" is [m/s²].
+        confirm : sequence of str
+            "dt" or "pga", if it is right though unusual.
 
-        Raises ``InputError`` for samples that are no real numbers, another unit, or lengths that differ.
+        Raises ``InputError`` for samples that are no real numbers, another unit, lengths that differ, or an unusual ``dt``.
 
         Examples
         --------
@@ -253,7 +261,7 @@ class Motion(Shown):
             factor = acceleration_factor(unit, gravity)
         except ValueError as error:
             raise InputError(str(error)) from error
-        motion = cls(name, dt, values, vertical)  # type: ignore[arg-type]
+        motion = cls(name, dt, values, vertical, confirm=confirm)  # type: ignore[arg-type]
         return motion if factor == 1.0 else motion.scaled(factor)
 
     @classmethod

@@ -16,7 +16,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.common.units import GRAVITY
+from rockbatch.common.units import GRAVITY, Usual
 from rockbatch.motions import measures
 from rockbatch.motions.limits import MOST_SAMPLES, MOST_STEPS
 from rockbatch.motions.motion import Initial, LeftOut, Motion, Samples, Shock, Unusable
@@ -25,7 +25,7 @@ from rockbatch.motions.origin import UNKNOWN_ORIGIN
 from rockbatch.toml.kinds import boolean, choice, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile
-from rockbatch.toml.section import CONFIRM, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Key, Section
 
 PAUSE = 20.0
 """Pause between two shocks [s], unless another is given."""

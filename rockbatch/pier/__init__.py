@@ -1,8 +1,6 @@
 """The pier and its base: a rigid block on three kinds of base (Palmeri & Makris 2007)."""
 
-from rockbatch.pier.bases import EPSILON_AND_ZETA as EPSILON_AND_ZETA
 from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
-from rockbatch.pier.bases import MOST_ETA as MOST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
 from rockbatch.pier.bases import WITH_EXPONENT as WITH_EXPONENT
 from rockbatch.pier.bases import Base as Base
@@ -12,8 +10,6 @@ from rockbatch.pier.bases import Kinematics as Kinematics
 from rockbatch.pier.bases import RigidBase as RigidBase
 from rockbatch.pier.bases import SpringLaw as SpringLaw
 from rockbatch.pier.bases import YieldingBase as YieldingBase
-from rockbatch.pier.bases import beta_of as beta_of
-from rockbatch.pier.bases import eta_of as eta_of
 from rockbatch.pier.bases import fastest as fastest
 from rockbatch.pier.bases import in_kilonewtons as in_kilonewtons
 from rockbatch.pier.bases import least_beta as least_beta
@@ -30,19 +26,22 @@ from rockbatch.pier.bending import mode_of as mode_of
 from rockbatch.pier.bending import shape_at as shape_at
 from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described
+from rockbatch.pier.dampers import Damper as Damper
+from rockbatch.pier.dampers import DamperKind as DamperKind
+from rockbatch.pier.devices import doubt as doubt
+from rockbatch.pier.devices import fields_of as fields_of
+from rockbatch.pier.devices import unlikely_devices as unlikely_devices
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
 from rockbatch.pier.places import offsets as offsets
 from rockbatch.pier.places import places as places
 from rockbatch.pier.places import recentres as recentres
 from rockbatch.pier.places import symmetric as symmetric
-from rockbatch.pier.plausibility import doubt as doubt
-from rockbatch.pier.plausibility import unlikely_devices as unlikely_devices
-from rockbatch.pier.restraints import Damper as Damper
-from rockbatch.pier.restraints import DamperKind as DamperKind
 from rockbatch.pier.restraints import DeckSpring as DeckSpring
 from rockbatch.pier.restraints import Restraint as Restraint
 from rockbatch.pier.restraints import Stop as Stop
 from rockbatch.pier.restraints import Tendon as Tendon
-from rockbatch.pier.restraints import fields_of as fields_of
 from rockbatch.pier.restraints import restraint_of as restraint_of
+from rockbatch.pier.supports import MOST_ETA as MOST_ETA
+from rockbatch.pier.supports import beta_of as beta_of
+from rockbatch.pier.supports import eta_of as eta_of

@@ -4,27 +4,26 @@ Values are checked together: :func:`problems` reports what is impossible about a
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
 from rockbatch.common.showing import InNotebook
-from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
+from rockbatch.common.units import LEAST, MOST, Bounds, Usual, rounded_up
 from rockbatch.pier.bending import problems as bending_problems
 from rockbatch.pier.block import Pier
 from rockbatch.pier.places import holds_a_tilt, places, prestress_over_weight
 from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
 from rockbatch.pier.restraints import Restraint, described_restraints
+from rockbatch.pier.sizes import refuse, unusual
+from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 
 LEAST_ETA = 1.000001
 """Least η: closer to 1, Bouc–Wen and hardening springs would have to sink without end to carry the weight."""
 
 MOST_EXPONENT = 1000.0
 """Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
-
-MOST_ETA = 100.0
-"""η beyond which a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
 
 MOST_NEGLECTED = 0.05
 """Share of inertia and righting moment, neglected by linearised kinematics, from which a note reports it: 0.20 rad at α = 0.2."""
@@ -60,6 +59,9 @@ def _strength(eta: float) -> str:
     )
 
 
+BETA = Bounds(LEAST, MOST, why=lambda beta: f"must be {MOST:g} at most" if beta > MOST else "must be a number above 0")
+"""Possible values of β; the least that holds a pier upright depends on the pier."""
+
 BOUNDS = {
     "restitution": Bounds(0.0, 1.0, why="must be within 0..1 (leave it out for Housner's value)"),
     "friction": Bounds(LEAST, MOST, ", the coefficient of the interface"),
@@ -81,6 +83,15 @@ WORDS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 """Possible words of the fields of bases."""
 
+USUAL = {
+    "restitution": Usual(1.0, "of the angular velocity: stone and concrete were measured at 0.6 and above", 0.3),
+    "beta": Usual(5000.0, 'of ω_v/p: supports have 10 to 500, and ground that does not give is base = "rigid"'),
+    "eta": Usual(1000.0, 'times what they carry: supports bear 2 to 20 times that; without a limit base = "elastic"'),
+    "flight_limit_mm": Usual(1e4, "mm: shear keys reach 5 to 500 mm", 0.1),
+    "friction": Usual(2.0, "as a coefficient: interfaces have 0.1 to 1", 0.02),
+}
+"""Usual values of the fields of bases, in a study and in Python alike."""
+
 
 class _Traits(InNotebook):
     """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
@@ -97,6 +108,25 @@ class _Traits(InNotebook):
     flight: Flight
     flight_limit_mm: float
     restraints: tuple[Restraint, ...]
+    confirm: Sequence[str]
+
+    def __post_init__(self) -> None:
+        values = {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}  # type: ignore[arg-type]
+        wrong = [
+            problem
+            for name, bounds in BOUNDS.items()
+            if name in values
+            for problem in bounds.problems(name, values[name])
+        ]
+        for name, words in WORDS.items():
+            if name in values and values[name] not in words:
+                wrong.append(f'{name} = "{values[name]}": must be ' + " or ".join(f'"{word}"' for word in words))
+        wrong += self._wrong_together()
+        refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
+
+    def _wrong_together(self) -> list[str]:
+        """Return which fields cannot be together: one sentence each."""
+        return []
 
     @property
     def flies(self) -> bool:
@@ -132,7 +162,7 @@ class RigidBase(_Traits):
     e = 1 − 2μ/(1+μ) sin²α, which conserves the angular momentum about the new pivot, or 0 where that is negative.
     ``restraints`` are dampers and tendons between the pier and the ground.
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
-    ``flight``, ``flight_limit_mm`` and ``area_m2`` are as on springs (:class:`ElasticBase`).
+    ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
     With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
     ``flexural_damping``. At an impact ``flexural_impact`` is kept: the "momentum" of the mode, by which all else follows, or the
     "rate" of its deflection beside e (THEORY.md, A shaft that bends).
@@ -152,6 +182,7 @@ class RigidBase(_Traits):
     shaft: Shaft = field(default="rigid", kw_only=True)
     flexural_damping: float = field(default=0.05, kw_only=True)
     flexural_impact: FlexuralImpact = field(default="momentum", kw_only=True)
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     name = "rigid"
     on_springs: ClassVar[Literal[False]] = False
@@ -200,6 +231,10 @@ class ElasticBase(_Traits):
         Devices between the pier and the ground, other than its springs (THEORY.md, Dampers and tendons).
     area_m2 : float, optional
         Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
+    confirm : sequence of str
+        Fields that are right though unusual: "friction", "beta", …
+
+    Raises ``InputError`` with every value that is impossible, or unusual and not confirmed.
 
     Examples
     --------
@@ -216,9 +251,16 @@ class ElasticBase(_Traits):
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
     area_m2: float | None = field(default=None, kw_only=True)
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     name = "elastic"
     on_springs: ClassVar[Literal[True]] = True
+
+    def _wrong_together(self) -> list[str]:
+        wrong = BETA.problems("beta", self.beta)
+        if self.zeta is not None and self.epsilon != 0:
+            wrong.append(f"epsilon = {self.epsilon:g}: {EPSILON_AND_ZETA}")
+        return wrong
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""
@@ -234,9 +276,11 @@ class ElasticBase(_Traits):
     def from_stiffness(cls, pier: Pier, stiffness_kN_m: float, **rest: Any) -> Self:
         """Return a base from the stiffness K of one support [kN/m] under ``pier``, whose mass is known; ``rest`` as in the class.
 
-        Raises ``InputError`` if the pier has no mass, or K is not above 0.
+        Raises ``InputError`` if the pier has no mass, or for values that are impossible, or unusual and not confirmed.
         """
-        return cls(beta_of(pier, stiffness_kN_m), **rest)
+        base = cls(beta_of(pier, stiffness_kN_m), **rest)
+        refuse(unlikely_supports(pier, base.confirm, stiffness_kN_m=stiffness_kN_m, area_m2=base.area_m2))
+        return base
 
 
 @checked
@@ -296,6 +340,7 @@ class YieldingBase(ElasticBase):
         """Return a base as :meth:`ElasticBase.from_stiffness`, with the yield force F_y of one support [kN], or with ``eta``."""
         if yield_kN is not None:
             rest["eta"] = eta_of(pier, yield_kN)
+            refuse(unlikely_supports(pier, rest.get("confirm", ()), yield_kN=yield_kN))
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
 
 
@@ -306,26 +351,6 @@ def _interface(base: Base) -> dict[str, float]:
     """Return friction and area of the interface by the keys of run.json, if they are known."""
     values = {"friction": base.friction, "area_m2": base.area_m2}
     return {name: value for name, value in values.items() if value is not None}
-
-
-def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
-    """Return β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
-    mass = _mass(pier, stiffness_kN_m=stiffness_kN_m)
-    return math.sqrt(2 * stiffness_kN_m / mass) / pier.p
-
-
-def eta_of(pier: Pier, yield_kN: float) -> float:
-    """Return η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
-    return 2 * yield_kN / (_mass(pier, yield_kN=yield_kN) * pier.gravity)
-
-
-def _mass(pier: Pier, **value: float) -> float:
-    wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
-    if pier.mass_t is None:
-        wrong.append("mass_t is missing: kN and kN/m are of a pier whose mass is known")
-    if wrong or pier.mass_t is None:
-        raise InputError(*wrong)
-    return pier.mass_t
 
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
@@ -352,6 +377,11 @@ def least_beta(pier: Pier, base: Base) -> float:
         return pier.least_beta
     softer = -math.expm1(-base.n * math.log(carried))
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
+
+
+def least_eta(pier: Pier, base: Base) -> float:
+    """Return η below which the springs cannot carry the weight and the prestress of the tendons."""
+    return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints))
 
 
 def vertical_frequency(pier: Pier, base: Base) -> float:
@@ -422,26 +452,17 @@ def problems(pier: Pier, base: Base) -> list[str]:
             "for them and the beam, with width_m between the outer feet"
         ]
     wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
-    for name in (attribute.name for attribute in fields(base)):
-        value = getattr(base, name)
-        if name in BOUNDS:
-            wrong += BOUNDS[name].problems(name, value)
-        elif name in WORDS and value not in WORDS[name]:
-            wrong.append(f'{name} = "{value}": must be ' + " or ".join(f'"{word}"' for word in WORDS[name]))
-    if isinstance(base, ElasticBase) and base.zeta is not None and base.epsilon != 0:
-        wrong.append(f"epsilon = {base.epsilon:g}: {EPSILON_AND_ZETA}")
     wrong += wrong_restraints(pier, base.restraints)
     if base.bends:
         wrong += _wrong_bending(pier, base)
     if base.on_springs and not wrong:
         wrong += wrong_on_springs(pier, base.restraints)
-    if isinstance(base, YieldingBase):
+    if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
-        if LEAST_ETA <= base.eta < (1.0 + prestress) * LEAST_ETA:
-            wrong.append(
-                f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
-                f"{prestress:g} of it; eta must be above 1 + psi"
-            )
+        wrong.append(
+            f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
+            f"{prestress:g} of it; eta must be above 1 + psi, {rounded_up(least):g}"
+        )
     return wrong
 
 
@@ -460,8 +481,6 @@ def _wrong_bending(pier: Pier, base: Base) -> list[str]:
 
 def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[str]:
     least = least_beta(pier, base)
-    if base.beta > MOST:
-        return [f"beta = {base.beta:g}: must be {MOST:g} at most"]
     if not base.beta > pier.least_beta:
         return [
             f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "

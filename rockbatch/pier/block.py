@@ -1,7 +1,7 @@
 """The pier: a rigid block, with what it carries, and the rocking frame as its equivalent block."""
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 
 from rockbatch.common.arguments import checked
@@ -13,12 +13,14 @@ from rockbatch.pier.sizes import (
     BOUNDS,
     THICKEST,
     THINNEST,
+    USUAL,
     falls,
     out_of_bounds,
     refuse,
     unlikely_deck,
     unlikely_inertia,
     unlikely_sizes,
+    unusual,
 )
 
 
@@ -55,7 +57,10 @@ class Pier(InNotebook):
         Its parts, by which forces in sections know how the mass is spread over the height; see :meth:`of_parts`. Without
         them the pier is a solid rectangle there, if ``mu`` is 3.
 
-    Raises ``InputError`` with every impossible value.
+    confirm : sequence of str
+        Fields that are right though unusual: "p", "mass_t", …
+
+    Raises ``InputError`` with every value that is impossible, or unusual and not confirmed.
 
     Examples
     --------
@@ -78,12 +83,14 @@ class Pier(InNotebook):
     initial_rotation_rad: float = field(default=0.0, kw_only=True)
     flexural_period_s: float | None = field(default=None, kw_only=True)
     parts: tuple[Part, ...] | None = field(default=None, kw_only=True, repr=False)
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        wrong = out_of_bounds(
-            **{field.name: getattr(self, field.name) for field in fields(self) if field.name in BOUNDS}
-        )
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        wrong = out_of_bounds(**{name: value for name, value in values.items() if name in BOUNDS})
         refuse(wrong or falls(self.alpha, self.initial_rotation_rad))
+        doubts = unusual(USUAL, self.confirm, **{name: value for name, value in values.items() if name in USUAL})
+        refuse(doubts or unlikely_mass(self, self.confirm))
 
     @classmethod
     @checked
@@ -106,11 +113,11 @@ class Pier(InNotebook):
         """
         refuse(
             out_of_bounds(alpha=alpha, size_m=size_m, mu=mu, gravity=gravity)
-            or unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
+            or unusual(USUAL, confirm, size_m=size_m)
+            + unlikely_sizes(0.0, 2 * size_m * math.cos(alpha), confirm, top_m=top_m)
         )
-        pier = cls(alpha, math.sqrt(mu / (1 + mu) * gravity / size_m), mu, gravity, mass_t, top_m)
-        refuse(unlikely_mass(pier, confirm))
-        return pier
+        p = math.sqrt(mu / (1 + mu) * gravity / size_m)
+        return cls(alpha, p, mu, gravity, mass_t, top_m, confirm=(*confirm, "p"))
 
     @classmethod
     @checked
@@ -126,9 +133,12 @@ class Pier(InNotebook):
     ) -> "Pier":
         """Return a solid rectangular block; its width and height [m] give α, R0 and μ = 3. ``confirm``: see :meth:`from_size`."""
         wrong = out_of_bounds(width_m=width_m, height_m=height_m)
+        wrong = wrong or unusual(USUAL, confirm, width_m=width_m, height_m=height_m)
         refuse(wrong or unlikely_sizes(width_m, height_m, confirm, top_m=top_m))
         alpha, size = math.atan2(width_m, height_m), math.hypot(width_m, height_m) / 2
-        return cls.from_size(alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=(*confirm, "top_m"))
+        return cls.from_size(
+            alpha, size, 3.0, gravity, mass_t=mass_t, top_m=top_m, confirm=(*confirm, "top_m", "size_m")
+        )
 
     @classmethod
     @checked
@@ -172,7 +182,7 @@ class Pier(InNotebook):
             parts = [in_floats(*part) for part in parts]
         except (TypeError, ValueError, OverflowError) as error:
             raise InputError("parts: must be Part(mass_t, height_m, inertia_t_m2), or three numbers, each") from error
-        wrong = out_of_bounds(width_m=width_m)
+        wrong = out_of_bounds(width_m=width_m) or unusual(USUAL, confirm, width_m=width_m)
         for n, part in enumerate(parts, 1):
             wrong += part_problems(n, part)
         if not parts:
@@ -188,7 +198,7 @@ class Pier(InNotebook):
         size = math.hypot(0.5 * width_m, height)
         top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
-        confirmed = ("top_m", "mass_t")
+        confirmed = (*confirm, "top_m", "mass_t", "size_m")
         pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
         refuse(unlikely_mass(pier, confirm, "width_m"))
         return replace(pier, parts=tuple(parts), deck_height_m=None if deck_height_m == top else deck_height_m)
@@ -217,14 +227,15 @@ class Pier(InNotebook):
         wrong = out_of_bounds(width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
         refuse(
             wrong
-            or unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
+            or unusual(USUAL, confirm, width_m=width_m, height_m=height_m, mass_t=mass_t, deck_mass_t=deck_mass_t)
+            + unlikely_sizes(width_m, height_m, confirm, deck_height_m=deck_height_m, top_m=top_m)
             + unlikely_deck(mass_t, deck_mass_t, confirm)
         )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2, 0.0)
         refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
         top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
-        confirmed = ("width_m", "top_m", "deck_height_m")
+        confirmed = (*confirm, "width_m", "top_m", "deck_height_m")
         pier = cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
         refuse(unlikely_mass(pier, confirm))
         return pier
@@ -279,6 +290,7 @@ class Pier(InNotebook):
             mass_t=columns * column.mass_t + deck_mass_t,
             top_m=2 * column.height,
             deck_over_columns=ratio,
+            confirm=(*confirm, "p", "mass_t", "top_m"),
         )
 
     def _facts(self) -> tuple[str, dict[str, str]]:

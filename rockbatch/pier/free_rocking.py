@@ -38,7 +38,11 @@ class FreeRocking:
 
     def __init__(self, pier: Pier, base: Base) -> None:
         holding = without_dampers(base.restraints)
-        springs = ElasticBase(base.beta, kinematics=base.kinematics) if isinstance(base, ElasticBase) else base
+        springs = (
+            ElasticBase(base.beta, kinematics=base.kinematics, confirm=base.confirm)
+            if isinstance(base, ElasticBase)
+            else base
+        )
         self.pier, self.base, self.even = pier, base, symmetric(pier, holding)
         self.turn = SlowTurn(pier, springs, holding)
 

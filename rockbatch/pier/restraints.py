@@ -1,137 +1,46 @@
 """Devices between a pier and the ground (THEORY.md, Dampers and tendons, Stops and deck springs)."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
-from rockbatch.common.showing import InNotebook
-from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 from rockbatch.pier.block import Pier
+from rockbatch.pier.dampers import DAMPERS, Damper
+from rockbatch.pier.devices import (
+    FIRMEST,
+    LEAST_FORCE,
+    SOFTEST,
+    Device,
+    Doubt,
+    if_finite,
+    over_weight,
+    wrong_words,
+)
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
-
-DamperKind = Literal["friction", "viscous", "hysteretic"]
+from rockbatch.pier.sizes import HIGHEST, LOWEST
 
 Side = Literal["both", "left", "right"]
 """To which side a deck moves when it meets a spring."""
 
-BOUNDS = {
-    "f": Bounds(0.0, 10.0, why="its force over the weight must be within 0..10"),
-    "nu": Bounds(0.0, MOST, why="must be 0 or above"),
-    "exponent": Bounds(0.1, 2.0, why="must be within 0.1..2"),
-    "yield_m": Bounds(LEAST, MOST, why="a hysteretic damper yields at a deflection above 0 m"),
-    "psi": Bounds(0.0, 10.0, why="its prestress over the weight must be within 0..10"),
-    "lam": Bounds(0.0, MOST, why="must be 0 or above"),
-    "gap_m": Bounds(0.0, MOST, why="must be 0 or above"),
-    "restitution": Bounds(0.1, 1.0, why="must be within 0.1 and 1, the speed after a blow over that before"),
-}
-"""Values of devices. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
-exponents of 0.15 to 1, and one of 0 is friction."""
-
 HEIGHT = OF_PIER["deck_height_m"]
 """Heights at which a spring may act on the deck [m]."""
 
-DAMPERS = {"friction": ("f",), "hysteretic": ("f", "yield_m"), "viscous": ("nu", "exponent")}
-"""By kind of damper, the fields that count."""
-
 FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitution")}
 FIELDS["deck_spring"] = FIELDS["stop"]
-"""Of other devices too, but for a tendon's yield force."""
+"""Fields of devices with bounds, but for a tendon's yield force."""
+
+MOST_STRENGTH = 10.0
+"""Greatest yield force of a tendon over the weight."""
+
+MOST_LAMBDA = 100.0
+"""Greatest λ of a tendon, by which it adds the pier's weight at a hundredth of α; strands have 0.03 to 10."""
 
 
 @checked
 @dataclass(frozen=True)
-class Damper(InNotebook):
-    """A damper between the pier and the ground.
-
-    Attributes
-    ----------
-    kind : "friction", "viscous" or "hysteretic"
-        F_d sgn(ė); C |ė|^a sgn(ė); F_d z with a two-sided Bouc–Wen law, n = 5, of which friction is the limit u_y → 0.
-    f : float
-        F_d/(M g) of a friction or hysteretic damper.
-    nu : float
-        C/(M p) of a viscous damper; with an exponent a, of C in (m/s)^-a.
-    yield_m : float
-        u_y of a hysteretic damper [m].
-    exponent : float
-        a of a viscous damper, 0.1 to 2.
-    at : float, "left", "right", "deck" or None
-        Offset from the centre of the base [m], positive to the right; None: one at each pivot. "deck": a horizontal one between
-        the deck, at ``Pier.deck``, and a structure next to it that moves with the ground; not of friction.
-    brace : float
-        λ = k b²/(M g R0) of the stiffness k of what the damper hangs on, in series with it; infinite if that is rigid. Of a
-        viscous damper whose exponent is 1 at most, or a hysteretic one.
-    confirm : sequence of str
-        "f", "nu", "yield_m" or "brace", if the value is right though unusual.
-
-    Examples
-    --------
-    >>> steel = rb.Damper("hysteretic", f=0.05, yield_m=0.005)
-    >>> base = rb.RigidBase(restraints=(steel,))
-    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
-    >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
-    >>> response.status
-    'ok'
-    """
-
-    what: ClassVar[str] = "damper"
-
-    kind: DamperKind
-    f: float = 0.0
-    nu: float = 0.0
-    yield_m: float = 0.0
-    exponent: float = 1.0
-    at: float | str | None = None
-    brace: float = field(default=math.inf, kw_only=True)
-    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
-
-    @classmethod
-    @checked
-    def friction(cls, pier: Pier, force_kN: float, **rest: Any) -> Self:
-        """Return a friction damper of the force F_d [kN] under ``pier``; ``rest``: ``at`` and ``confirm``.
-
-        Here and in the other constructors from kN, raises ``InputError`` if the mass of the pier is not known, or for values that
-        cannot be.
-        """
-        return cls("friction", **_over_weight(pier, force_kN=force_kN), **rest)
-
-    @classmethod
-    @checked
-    def hysteretic(
-        cls, pier: Pier, force_kN: float, yield_mm: float, *, brace_kN_m: float = math.inf, **rest: Any
-    ) -> Self:
-        """Return a hysteretic damper of the yield force F_d [kN] and deflection u_y [mm]; otherwise as :meth:`friction`.
-
-        ``brace_kN_m`` is the stiffness of the brace on which it hangs.
-        """
-        values = {"force_kN": force_kN, "yield_mm": yield_mm} | _if_finite(brace_kN_m=brace_kN_m)
-        return cls("hysteretic", **_over_weight(pier, **values), **rest)
-
-    @classmethod
-    @checked
-    def viscous(
-        cls, pier: Pier, coefficient_kN_s_m: float, exponent: float = 1.0, *, brace_kN_m: float = math.inf, **rest: Any
-    ) -> Self:
-        """Return a viscous damper of C [kN (s/m)^a] and the exponent a, on a brace of the stiffness ``brace_kN_m``.
-
-        Otherwise as :meth:`friction`.
-
-        Examples
-        --------
-        >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
-        >>> rb.Damper.viscous(tall, coefficient_kN_s_m=1500.0, exponent=0.3)
-        Damper(kind='viscous', f=0.0, nu=0.8057089065897499, yield_m=0.0, exponent=0.3, at=None, brace=inf)
-        """
-        values = {"coefficient_kN_s_m": coefficient_kN_s_m, "exponent": exponent} | _if_finite(brace_kN_m=brace_kN_m)
-        return cls("viscous", **_over_weight(pier, **values), **rest)
-
-
-@checked
-@dataclass(frozen=True)
-class Tendon(InNotebook):
+class Tendon(Device):
     """An unbonded tendon between the pier and the ground that takes tension only.
 
     Attributes
@@ -173,13 +82,42 @@ class Tendon(InNotebook):
 
         ``rest``: ``at`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
         """
-        values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m} | _if_finite(yield_kN=yield_kN)
-        return cls(**_over_weight(pier, **values), **rest)
+        values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m} | if_finite(yield_kN=yield_kN)
+        return cls(**over_weight(pier, **values), **rest)._usual_under(pier)
+
+    def _measured(self) -> Sequence[str]:
+        return FIELDS[self.what]
+
+    def _wrong(self) -> list[str]:
+        wrong = wrong_words(self.at, "left", "right") + super()._wrong()
+        if self.strength <= self.psi:
+            strength = f"its yield force over the weight, {self.strength:g}"
+            wrong.append(f"{strength}, must be above its prestress, {self.psi:g}")
+        return wrong
+
+    def doubts(self, pier: Pier) -> Iterator[Doubt]:
+        for name, force, words in (("psi", self.psi, "its prestress is"), ("strength", self.strength, "it yields at")):
+            if 0.0 < force < LEAST_FORCE:
+                yield Doubt(name, f"{words} {100.0 * force:.2g} % of the pier's weight, as good as nothing")
+        if MOST_STRENGTH < self.strength < math.inf:
+            yield Doubt("strength", f"it yields at {self.strength:.3g} times the pier's weight")
+        if self.lam > MOST_LAMBDA:
+            arm = pier.half_width  # a tendon on the axis: its force over the weight is λ R0 θ/b
+            share = self.lam * pier.size * 0.01 * pier.alpha / arm
+            yield Doubt("lam", f"it adds {share:.3g} times the pier's weight at a rotation of 0.01 α already")
+        elif 0.0 < self.lam < SOFTEST[self.what]:
+            yield Doubt(
+                "lam", f"it adds {100.0 * self.lam:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+            )
+        if self.psi == 0.0 == self.lam:
+            yield Doubt(
+                "psi", "with no prestress and no stiffness the tendon is not there; give one, or leave the tendon out"
+            )
 
 
 @checked
 @dataclass(frozen=True)
-class Stop(InNotebook):
+class Stop(Device):
     """A stop that limits how far the base may lift: a spring that is met when its place has risen by a gap.
 
     While it is pressed in for the first time it takes F = k δ; on its way back, and pressed in again up to the greatest δ of the
@@ -224,12 +162,25 @@ class Stop(InNotebook):
         Raises ``InputError`` as :meth:`Damper.friction`.
         """
         values = {"gap_mm": gap_mm, "stiffness_kN_m": stiffness_kN_m, "restitution": restitution}
-        return cls(**_over_weight(pier, **values), **rest)
+        return cls(**over_weight(pier, **values), **rest)._usual_under(pier)
+
+    def _measured(self) -> Sequence[str]:
+        return FIELDS[self.what]
+
+    def _wrong(self) -> list[str]:
+        return wrong_words(self.at, "left", "right") + super()._wrong()
+
+    def doubts(self, pier: Pier) -> Iterator[Doubt]:
+        """See :meth:`Device.doubts`."""
+        yield from _gap_doubts(self)
+        if self.gap_m > 2.0 * pier.half_width:
+            yield Doubt("gap_m", f"it is met at a rise of {self.gap_m:.3g} m, more than the pier is wide")
+        yield from _stiffness_doubts(pier, self, 2.0 * pier.half_width)
 
 
 @checked
 @dataclass(frozen=True)
-class DeckSpring(InNotebook):
+class DeckSpring(Device):
     """A horizontal spring between the deck and a structure that moves with the ground: an abutment, a neighbouring span.
 
     With a gap, or on one side, the deck meets it as the base does a :class:`Stop`, and it follows the same law. On both sides
@@ -276,12 +227,55 @@ class DeckSpring(InNotebook):
         ``rest``: ``side``, ``height_m`` and ``confirm``. Raises ``InputError`` as :meth:`Damper.friction`.
         """
         values = {"stiffness_kN_m": stiffness_kN_m, "gap_mm": gap_mm, "restitution": restitution}
-        return cls(**_over_weight(pier, **values), **rest)
+        return cls(**over_weight(pier, **values), **rest)._usual_under(pier)
 
     @property
     def linear(self) -> bool:
         """Whether it pulls and pushes alike."""
         return self.side == "both" and self.gap_m == 0.0 and self.restitution == 1.0
+
+    def _measured(self) -> Sequence[str]:
+        return FIELDS[self.what]
+
+    def _wrong(self) -> list[str]:
+        wrong = HEIGHT.problems("height_m", self.height_m)
+        if self.side not in get_args(Side):
+            wrong.append(f'side = "{self.side}": must be ' + " or ".join(f'"{side}"' for side in get_args(Side)))
+        return wrong + super()._wrong()
+
+    def doubts(self, pier: Pier) -> Iterator[Doubt]:
+        """See :meth:`Device.doubts`."""
+        height = pier.deck if self.height_m is None else self.height_m
+        yield from _gap_doubts(self)
+        if not LOWEST * 2.0 * pier.height <= height <= HIGHEST * 2.0 * pier.height:
+            yield Doubt(
+                "height_m", f"{0.5 * height / pier.height:.3g} times the height of the pier, {2 * pier.height:.3g} m"
+            )
+        elif self.gap_m > height * math.tan(pier.alpha):
+            yield Doubt(
+                "gap_m", f"the deck is only there, {self.gap_m:.3g} m away, when the pier leans by more than alpha"
+            )
+        yield from _stiffness_doubts(pier, self, height)
+
+
+def _gap_doubts(device: Stop | DeckSpring) -> Iterator[Doubt]:
+    if 0.0 < device.gap_m < 5e-4:
+        yield Doubt("gap_m", f"it is met after {1000.0 * device.gap_m:.2g} mm already")
+
+
+def _stiffness_doubts(pier: Pier, device: Stop | DeckSpring, travel: float) -> Iterator[Doubt]:
+    """Yield what is odd about the stiffness of a device that moves by ``travel`` [m] times the rotation."""
+    name = "stop" if isinstance(device, Stop) else "spring"
+    if device.lam == 0.0:
+        yield Doubt("lam", f"with no stiffness the {name} is not there; give one, or leave the {name} out")
+        return
+    stiffness = device.lam * pier.size / pier.half_width**2  # over the weight [1/m]
+    if 1.0 / stiffness < FIRMEST[device.what]:
+        yield Doubt("lam", f"it bears the pier's weight at a deflection of {1000.0 / stiffness:.2g} mm")
+    if (share := stiffness * travel * pier.alpha) < SOFTEST[device.what]:
+        yield Doubt(
+            "lam", f"it bears {100.0 * share:.2g} % of the pier's weight at a rotation of α, as good as nothing"
+        )
 
 
 Restraint = Damper | Tendon | Stop | DeckSpring
@@ -302,39 +296,6 @@ def restraint_of(values: Mapping[str, Any]) -> Restraint:
     kind = KINDS[what_of(values)]
     names = {attribute.name for attribute in fields(kind)}
     return kind(**{name: value for name, value in values.items() if name in names and value is not None})
-
-
-def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
-    """Return by a study's key the field of a device, and the key's value over the field's; those in kN if the mass is known."""
-    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution", "brace")}
-    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0), "gap_mm": ("gap_m", 1000.0)}
-    if pier.mass_t is not None:
-        weight = pier.mass_t * pier.gravity
-        fields |= {
-            "force_kN": ("f", weight),
-            "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
-            "prestress_kN": ("psi", weight),
-            "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
-            "brace_kN_m": ("brace", weight * pier.size / pier.half_width**2),
-            "yield_kN": ("strength", weight),
-        }
-    return fields
-
-
-def _if_finite(**values: float) -> dict[str, float]:
-    """Return those values that are not infinite, which stands for what is not there."""
-    return {name: value for name, value in values.items() if value != math.inf}
-
-
-def _over_weight(pier: Pier, **values: float) -> dict[str, Any]:
-    """Return the fields of a device from the keys of a study."""
-    if pier.mass_t is None:
-        raise InputError("mass_t is missing: kN are of a pier whose mass is known")
-    wrong = [problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)]
-    if wrong:
-        raise InputError(*wrong)
-    factors = fields_of(pier)
-    return {factors[name][0]: value / factors[name][1] for name, value in values.items()}
 
 
 def described_restraints(restraints: tuple[Restraint, ...]) -> dict[str, Any]:

@@ -4,10 +4,10 @@ Implausible ones, as of a wrong unit or of two values exchanged, are refused unt
 """
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from rockbatch.common.errors import InputError, remedy
-from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds
+from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
 
 
 def _slenderness(alpha: float) -> str:
@@ -34,6 +34,24 @@ BOUNDS = {
     "initial_rotation_rad": Bounds(-math.pi / 2, math.pi / 2, why=_rotation),
 }
 """Possible values of a pier, far beyond any that exists: p = 0.001 rad/s is one of 7000 km. Beyond them a run would never end."""
+
+
+_USUAL_HEIGHT = Usual(
+    400.0, "m: the highest bridge piers reach some 300 m, blocks in laboratories 0.1 m at least", 0.05
+)
+_USUAL_MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
+
+USUAL: dict[str, Usual] = {
+    "gravity": Usual(30.0, "m/s²: on Earth it is 9.81", 1.0),
+    "p": Usual(30.0, "rad/s: piers have 0.2 to 2, which are 200 to 2 m of R0, blocks in laboratories up to 10", 0.1),
+    "size_m": _USUAL_HEIGHT._replace(least=0.1),
+    "width_m": _USUAL_HEIGHT._replace(least=0.01),
+    **dict.fromkeys(("height_m", "top_m", "deck_height_m"), _USUAL_HEIGHT),
+    **dict.fromkeys(("mass_t", "deck_mass_t"), _USUAL_MASS),
+    "flexural_period_s": Usual(10.0, "s: bridge piers have 0.1 to 3", 0.02),
+    "initial_rotation_rad": Usual(2.0, "rad: release tests have 0.2 to 0.9 of alpha", 1e-4),
+}
+"""Usual values of a pier, in a study and in Python alike."""
 
 
 LOWEST, HIGHEST = 0.25, 2.5
@@ -70,6 +88,13 @@ def refuse(wrong: list[str]) -> None:
     """Raise an InputError with these messages, if there are any."""
     if wrong:
         raise InputError(*wrong)
+
+
+def unusual(usual: Mapping[str, Usual], confirm: Collection[str], **values: float | None) -> list[str]:
+    """Return what is odd about the named values that are given, not ``usual`` and not in ``confirm``: one sentence each."""
+    given = {name: value for name, value in values.items() if value is not None and name not in confirm}
+    doubts = [(name, usual[name].doubt(name, value)) for name, value in given.items()]
+    return [f"{doubt}; {remedy(name)}" for name, doubt in doubts if doubt]
 
 
 def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:

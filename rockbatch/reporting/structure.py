@@ -18,7 +18,9 @@ from rockbatch.pier import (
     problems,
     restraint_of,
 )
+from rockbatch.pier.bases import USUAL as OF_BASE
 from rockbatch.pier.plausibility import wrong_restraints
+from rockbatch.pier.sizes import USUAL as OF_PIER
 from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
@@ -41,7 +43,8 @@ _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 def pier_of(case: Mapping[str, Any]) -> Pier | None:
     """Return the pier of a case; None if its values are impossible, since run.json may come from anybody."""
     try:
-        return Pier(**{name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None})
+        values = {name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None}
+        return Pier(**values, confirm=tuple(OF_PIER))
     except (InputError, TypeError, ValueError):
         return None
 
@@ -61,9 +64,12 @@ def restraints_of(case: Mapping[str, Any]) -> tuple[Restraint, ...]:
 def base_of(case: Mapping[str, Any], pier: Pier) -> Base | None:
     """Return the base of a case with its devices; None if its values are impossible under ``pier``."""
     kind: type[Base] = {kind.name: kind for kind in (RigidBase, ElasticBase, YieldingBase)}[case["base"]]
-    values, names = case["parameters"], [field.name for field in fields(kind) if field.name != "restraints"]
+    values, names = (
+        case["parameters"],
+        [field.name for field in fields(kind) if field.name not in ("restraints", "confirm")],
+    )
     try:
-        base = kind(**{name: values[name] for name in names if values.get(name) is not None})
+        base = kind(**{name: values[name] for name in names if values.get(name) is not None}, confirm=tuple(OF_BASE))
         base = replace(base, restraints=restraints_of(case))
     except (InputError, TypeError, ValueError):
         return None

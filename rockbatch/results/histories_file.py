@@ -47,6 +47,8 @@ from rockbatch.pier import (
     restraint_of,
     vertical_frequency,
 )
+from rockbatch.pier.bases import USUAL as BASES
+from rockbatch.pier.sizes import USUAL as PIERS
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
@@ -170,8 +172,11 @@ def _write(group: "h5py.Group", response: Response) -> None:
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
     parts = response.pier.parts
-    _set(group.create_group("pier"), asdict(response.pier) | {"parts": json.dumps(parts) if parts else None})
-    base = {"name": response.base.name} | asdict(response.base)
+    _set(
+        group.create_group("pier"),
+        asdict(response.pier) | {"parts": json.dumps(parts) if parts else None, "confirm": None},
+    )
+    base = {"name": response.base.name} | asdict(response.base) | {"confirm": None}
     base["restraints"] = json.dumps([asdict(device) for device in response.base.restraints])
     _set(group.create_group("base"), base)
     _write_all(group, response.history, columns_of(response.base, response.base.bends))
@@ -318,8 +323,8 @@ def _read(group: "h5py.Group") -> Response:
     return Response(
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
-        pier=Pier(**pier),
-        base=kind(**{"flight": "stop"} | base),  # as rigid ground was before it could be chosen
+        pier=Pier(**pier, confirm=tuple(PIERS)),
+        base=kind(**{"flight": "stop"} | base, confirm=tuple(BASES)),  # as rigid ground was before it could be chosen
         history=history.reindex(columns=[name for name in UNITS if bends or name != "deflection"]),
         events=events.astype(EVENT_TYPES),
         **tables,

@@ -1,16 +1,14 @@
 """The cases of a study file, with every combination of listed values: [[case]]."""
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import remedy
 from rockbatch.common.showing import shown
+from rockbatch.common.units import rounded_up
 from rockbatch.pier import (
-    EPSILON_AND_ZETA,
-    MOST_ETA,
     WITH_EXPONENT,
     Base,
     ElasticBase,
@@ -22,10 +20,11 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, least_eta
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
+from rockbatch.pier.supports import SUPPORTS
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
@@ -33,7 +32,7 @@ from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import choice, positive, text, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, names
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
 _CALLED = {
@@ -55,11 +54,11 @@ _YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
 BASE_KEYS = {
     "restitution": Key(within(BOUNDS["restitution"]), "0.9",
         "Factor on the angular velocity at an impact; default: Housner's, from the geometry.", many=True,
-        only=_ON_ROCK),
+        only=_ON_ROCK, usual=USUAL["restitution"]),
     "beta": Key(positive, "40.0",
         "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
         only=_ON_SPRINGS,
-        usual=Usual(5000.0, 'of ω_v/p: supports have 10 to 500, and ground that does not give is base = "rigid"')),
+        usual=USUAL["beta"]),
     "stiffness_kN_m": Key(positive, "2.0e6",
         "Stiffness K of one support, if the mass is given; or give `beta`.", many=True, only=_ON_SPRINGS),
     "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
@@ -73,7 +72,7 @@ BASE_KEYS = {
         "The paper's equations, \"first-order\", or equations for rotations of any size.", many=True, only=_ON_SPRINGS),
     "eta": Key(within(BOUNDS["eta"]), "2.5",
         "Strength as η = F_y/(static force of a support), above 1; or give `yield_kN`.", many=True, only=_YIELDS,
-        usual=Usual(1000.0, 'times what they carry: supports bear 2 to 20 times that; without a limit base = "elastic"')),
+        usual=USUAL["eta"]),
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
@@ -88,10 +87,10 @@ BASE_KEYS = {
         'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True),
     "flight_limit_mm": Key(within(BOUNDS["flight_limit_mm"]), "20.0",
         "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True,
-        usual=Usual(1e4, "mm: shear keys reach 5 to 500 mm", 0.1)),
+        usual=USUAL["flight_limit_mm"]),
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
-        "say so.", many=True),
+        "say so.", many=True, usual=USUAL["friction"]),
     "shaft": Key(choice(*WORDS["shaft"]), '"rigid"',
         'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
         many=True, only=_ON_ROCK),
@@ -130,12 +129,6 @@ CASE = Section(("case",), (
     Clash(("epsilon", "zeta"), f"epsilon = {{value}}: {EPSILON_AND_ZETA}"),
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
-
-LIGHTEST, HEAVIEST = 5.0, 1e5
-"""Bounds of the stress under a support at rest [kPa]: footings have 100 to 1000, steel bearings some 30 000."""
-
-LEAST_DEFLECTION_MM = 0.02
-"""Static deflection [mm] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
 
 _ANY_PIER = Pier(alpha=1.0, p=1.0)
 """Pier used if none can be read, so that everything independent of it is still checked."""
@@ -185,25 +178,24 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     values = {key: setting.value for key, setting in chosen.items()}
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
-        pier = replace(pier, mass_t=values["mass_t"])
-    devices = tuple(device.made(pier, chosen) for device in case.devices)
-    base = _base(
-        case.base, {name: values[name] for name in BASE_KEYS if name in values} | {"restraints": devices}, pier
-    )
-    wrong = problems(pier, base)
-    for written, device in zip(case.devices, devices, strict=True):
-        if not any_pier:
-            written.complain(pier, chosen, device)
+        pier = replace(pier, mass_t=values["mass_t"], confirm=(*pier.confirm, "mass_t"))
+    made = (written.made(pier, chosen, judged=not any_pier) for written in case.devices)
+    devices = tuple(device for device in made if device is not None)
+    of_base = {name: values[name] for name in BASE_KEYS if name in values}
+    of_base |= {"restraints": devices, "confirm": tuple(USUAL)}  # what is unusual is noted where it is read
+    if "zeta" in of_base:
+        of_base.pop("epsilon", None)  # that they clash is noted already
+    base, wrong = _base(case.base, of_base, pier)
+    wrong += problems(pier, base)
     of_devices = {problem for device in devices for problem in wrong_device(pier, device)}
     for problem in wrong:
-        if problem in of_devices or EPSILON_AND_ZETA in problem:  # said already
-            continue
-        if not (any_pier and problem.startswith("beta")):
+        if problem not in of_devices and not (any_pier and problem.startswith("beta")):
             _complain(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    applying.pop("restraints", None)  # their own keys say them
+    for name in ("restraints", "confirm"):  # their own keys say them
+        applying.pop(name, None)
     if "zeta" in applying:
         applying.pop("epsilon", None)
     if not base.has_exponent:
@@ -214,23 +206,24 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     return Case(case.name, pier, base, pier_values | applying)
 
 
-def _base(name: str, values: Mapping[str, Any], pier: Pier) -> Base:
-    """Return the base; K [kN/m] and F_y [kN] become β and η by the mass of the pier.
+def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[str]]:
+    """Return the base, and what is impossible about β and η that follow from K [kN/m] and F_y [kN] by the mass of the pier.
 
-    Where β or η is missing, which is noted already, a possible value lets the rest be checked.
+    Where β or η is impossible, or missing, which is noted already, a possible value lets the rest be checked.
     """
-    arguments = dict(values)
+    arguments, wrong = dict(values), []
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     kind = _BASES[name]
-    if kind.on_springs:
-        arguments.setdefault("beta", 2 * pier.least_beta)
     if stiffness and pier.mass_t:
         arguments["beta"] = beta_of(pier, stiffness)
-    if kind.yields:
-        arguments.setdefault("eta", 2.0)
     if strength and pier.mass_t:
         arguments["eta"] = eta_of(pier, strength)
-    return kind(**arguments)
+    ratios = {"beta": (BETA, 2 * pier.least_beta, kind.on_springs), "eta": (BOUNDS["eta"], 2.0, kind.yields)}
+    for ratio, (bounds, possible, applies) in ratios.items():
+        if applies and (problems_of_ratio := bounds.problems(ratio, arguments.setdefault(ratio, possible))):
+            wrong += problems_of_ratio
+            arguments[ratio] = possible
+    return kind(**arguments), wrong
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
@@ -284,52 +277,22 @@ def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base
     mass = pier.mass_t
     if source in chosen and mass is not None:
         least_omega_v = least_beta(pier, base) * pier.p
-        least = least_omega_v * least_omega_v * mass / 2 if name == "beta" else mass * pier.gravity / 2
+        least = least_omega_v**2 * mass / 2 if name == "beta" else least_eta(pier, base) * mass * pier.gravity / 2
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
-        problem = f"{derived} means {problem}; write {source} above {least:.4g}"
+        problem = f"{derived} means {problem}; write {source} above {rounded_up(least):.4g}"
     complain_where_due(table, chosen, problem)
 
 
-class _Usual(NamedTuple):
-    """What a value of a key comes to under a pier, its bounds, and words for it beyond them."""
-
-    comes_to: Callable[[Pier, float], float]
-    least: float
-    most: float
-    words: str
-
-    def holds(self, pier: Pier, value: float) -> bool:
-        return self.least <= self.comes_to(pier, value) <= self.most
-
-
-def _half_weight(pier: Pier) -> float:
-    assert pier.mass_t is not None
-    return 0.5 * pier.mass_t * pier.gravity
-
-
-_USUAL = {
-    "stiffness_kN_m": _Usual(lambda pier, value: 1000.0 * _half_weight(pier) / value, LEAST_DEFLECTION_MM, math.inf,
-        "the pier's weight presses the supports in by {:.2g} mm only, where sound rock gives some 0.1 mm"),
-    "yield_kN": _Usual(eta_of, 0.0, MOST_ETA, "{:.3g} times what the support carries at rest, where 2 to 20 times is usual"),
-    "area_m2": _Usual(lambda pier, value: _half_weight(pier) / value, LIGHTEST, HEAVIEST,
-        "the pier's weight presses {:.2g} kPa on it, where footings have 100 to 1000 kPa"),
-}  # fmt: skip
-
-
 def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
-    """Note an implausible mass, stiffness, yield force or area of a support under this pier, unless they are confirmed.
-
-    A wrong unit explains them better than the ground.
-    """
+    """Note an implausible mass, stiffness, yield force or area of a support under this pier, unless they are confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
             table.complain_about(chosen["mass_t"], f"{problem} in this table")
-    for name, usual in _USUAL.items():
+    for name, usual in SUPPORTS.items():
         if name not in chosen or name in table.confirmed:
             continue
         value = float(chosen[name].value)
-        if not usual.holds(pier, value):
+        if doubt := usual.doubt(pier, name, value):
             other = in_another_unit(name, value, partial(usual.holds, pier))
-            meaning = usual.words.format(usual.comes_to(pier, value))
-            table.complain_about(chosen[name], f"{name} = {value:g}: {meaning}{other}; {remedy(name)} in this table")
+            table.complain_about(chosen[name], f"{doubt}{other}; {remedy(name)} in this table")

@@ -60,14 +60,17 @@ def ranges(of: str = "", kind: Kind | None = None) -> dict[str, Key]:
 def varied(case: Case, values: Mapping[str, Any]) -> Case:
     """Return the case with other values of its pier and its base. Raises :class:`InputError` where the pier cannot be."""
     arguments = dict(values)
-    pier = replace(case.pier, **{name: arguments.pop(name) for name in OF_PIER if name in arguments})
+    of_pier = {name: arguments.pop(name) for name in OF_PIER if name in arguments}
+    pier = replace(
+        case.pier, **of_pier, confirm=(*case.pier.confirm, *of_pier, "mass_t")
+    )  # ranges are what the study means
     for name, ratio in IN_KILONEWTONS.items():
         if name in arguments:
             arguments[ratio] = (beta_of if ratio == "beta" else eta_of)(pier, arguments.pop(name))
     of_restraints = {name: arguments.pop(name) for name in list(arguments) if is_of_restraint(name)}
     if of_restraints:
         arguments["restraints"] = with_values(pier, case.base.restraints, of_restraints)
-    return replace(case, pier=pier, base=replace(case.base, **arguments))
+    return replace(case, pier=pier, base=replace(case.base, **arguments, confirm=(*case.base.confirm, *arguments)))
 
 
 def values_of(case: Case) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import Shown, several, shown
-from rockbatch.common.units import MOST, Bounds
+from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
@@ -36,7 +36,7 @@ from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 TOP = Section((), "", {
     "title": Key(text, '"Pier 4, longitudinal"', "Heading of the report and its tables; default: the file's name."),

@@ -8,7 +8,7 @@ from typing import Any
 
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.showing import shown
-from rockbatch.common.units import GRAVITY, Bounds
+from rockbatch.common.units import GRAVITY, Bounds, Usual
 from rockbatch.motions import Motion, MotionSet, kinds
 from rockbatch.motions.azimuths import azimuths_every
 from rockbatch.motions.baseline import RULES, Offset
@@ -33,7 +33,7 @@ from rockbatch.toml.kinds import (
 )
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 
 def _table(value: Any) -> dict[str, Any]:

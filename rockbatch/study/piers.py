@@ -6,18 +6,13 @@ from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Part, Pier
-from rockbatch.pier.block import unlikely_mass
-from rockbatch.pier.sizes import BOUNDS, unlikely_deck, unlikely_inertia
+from rockbatch.pier.sizes import BOUNDS, USUAL, unlikely_deck, unlikely_inertia
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-_HEIGHT = Usual(400.0, "m: the highest bridge piers reach some 300 m, blocks in laboratories 0.1 m at least", 0.05)
-_WIDTH = _HEIGHT._replace(least=0.01)
-_SIZE = _HEIGHT._replace(least=0.1)
-_MASS = Usual(1e6, "t: the heaviest bridge piers weigh some 200 000 t")
 PIER = Section(("pier",), (
     "The pier, a rigid block that can pivot about its two lower corners. Its size is given in one of three ways: "
     "`width_m` with `height_m`, `size_m`, or `p`. Every key but `gravity` may be a list: each value is a separate pier."
@@ -30,36 +25,37 @@ PIER = Section(("pier",), (
         "`height_m`, and is then left out.", many=True),
     "gravity": Key(within(BOUNDS["gravity"]), "9.81",
         "Acceleration of gravity [m/s²], for the pier and for motions that are given in g.",
-        usual=Usual(30.0, "m/s²: on Earth it is 9.81", 1.0)),
+        usual=USUAL["gravity"]),
     "p": Key(within(BOUNDS["p"]), "0.38", "Frequency parameter [rad/s], p² = μ/(1+μ) · gravity/R0.", many=True,
-        usual=Usual(30.0, "rad/s: piers have 0.2 to 2, which are 200 to 2 m of R0, blocks in laboratories up to 10", 0.1)),
-    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True, usual=_SIZE),
+        usual=USUAL["p"]),
+    "size_m": Key(within(BOUNDS["size_m"]), "60.1", "R0, from a lower corner to the centre of mass.", many=True,
+        usual=USUAL["size_m"]),
     "width_m": Key(within(BOUNDS["width_m"]), "4.0",
-        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=_WIDTH),
-    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=_HEIGHT),
+        "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=USUAL["width_m"]),
+    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=USUAL["height_m"]),
     "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
         "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
-        many=True, usual=_MASS),
+        many=True, usual=USUAL["mass_t"]),
     "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
-        "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=_MASS),
+        "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=USUAL["mass_t"]),
     "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
-        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=_HEIGHT),
+        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=USUAL["height_m"]),
     "deck_inertia_t_m2": Key(not_negative, "0.0",
         "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.", many=True),
     "top_m": Key(within(BOUNDS["top_m"]), "31.5",
         "Height above the pivots at which drift is read; default: the highest known point.", many=True,
-        usual=_HEIGHT),
+        usual=USUAL["height_m"]),
     "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
         "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period of rocking, to "
         "see whether the pier is rigid; runs take it as rigid unless a case says `shaft = \"elastic\"`.", many=True,
-        usual=Usual(10.0, "s: bridge piers have 0.1 to 3", 0.02)),
+        usual=USUAL["flexural_period_s"]),
     "columns": Key(Whole(2, "a whole number, 2 or above (a single column is a pier with a deck)"), "4",
         "Number of equal columns of a rocking frame under one deck that rests on their tops, on a rigid base only. A bent whose "
         "columns are fixed to its cap beam is one pier: leave this out and write [[pier.part]].", many=True),
     "initial_rotation_rad": Key(within(BOUNDS["initial_rotation_rad"]), "0.05",
         "Rotation at which the pier is held, and let go at the first sample of the motion; positive to the right, below α. A "
         "still ground, `still_s` of [motions], makes it a release test.", many=True,
-        usual=Usual(2.0, "rad: release tests have 0.2 to 0.9 of alpha", 1e-4)),
+        usual=USUAL["initial_rotation_rad"]),
     **CONFIRM,
 }, required=True, homes=(Pier,), also=names({
     Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight selfweight w",
@@ -104,20 +100,20 @@ PIER = Section(("pier",), (
 PART = Section(("pier", "part"), (
     "A part of a non-uniform pier, with its centre on the axis. Write one for each part, in addition to `width_m`."
 ), {
-    "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=_MASS),
+    "mass_t": Key(positive, "500.0", "Mass of the part.", required=True, many=True, usual=USUAL["mass_t"]),
     "height_m": Key(not_negative, "28.0", "Height of its centre above the pivots.",
-        required=True, many=True, usual=_HEIGHT._replace(least=0.0)),
+        required=True, many=True, usual=USUAL["height_m"]._replace(least=0.0)),
     "inertia_t_m2": Key(not_negative, "0.0",
         "Moment of inertia about its own centre; default 0, or what follows from `width_m`.", many=True),
     "length_m": Key(not_negative, "20.0",
         "Length along the axis over which its mass is spread evenly, 0 of a mass at one height; `sections` of [output] need it.",
-        many=True, usual=_HEIGHT._replace(least=0.0)),
+        many=True, usual=USUAL["height_m"]._replace(least=0.0)),
     "width_m": Key(not_negative, "2.4",
         "Width of a rectangle, or of each of two legs; its inertia follows from it and `length_m`.",
-        many=True, usual=_WIDTH._replace(least=0.0)),
+        many=True, usual=USUAL["width_m"]._replace(least=0.0)),
     "apart_m": Key(not_negative, "10.7",
         "Distance of the axes of two equal legs, which this part is; `mass_t` is that of both.",
-        many=True, usual=_WIDTH._replace(least=0.0)),
+        many=True, usual=USUAL["width_m"]._replace(least=0.0)),
     **CONFIRM,
 }, many=True, clashes=(
     Clash(("inertia_t_m2", "width_m"), "inertia_t_m2 and width_m are given, which fix the same; keep one"),
@@ -167,6 +163,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
                 complain_where_due(table, chosen, problem + place)
         else:
             of_pier = asdict(replace(pier, parts=None))  # their own keys say them
+            del of_pier["confirm"]
             piers.append((pier, {name: value for name, value in of_pier.items() if value is not None} | values))
     return piers, grid.varied
 
@@ -178,7 +175,7 @@ def has_mass(file: TomlFile) -> bool:
 
 def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pier:
     """Return the pier that these keys describe; which of them go together is checked already."""
-    common = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": confirmed}
+    common = {name: values[name] for name in ("gravity", "top_m") if name in values} | {"confirm": tuple(confirmed)}
 
     def constructed(constructor: Callable[..., Pier], *names: str) -> Pier:
         return constructor(**{name: values[name] for name in names if name in values}, **common)
@@ -193,10 +190,7 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
     elif "size_m" in values:
         pier = constructed(Pier.from_size, "alpha", "size_m", "mu", "mass_t")
     else:
-        del common["confirm"]
         pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
-        if wrong := unlikely_mass(pier, confirmed):
-            raise InputError(*wrong)
         if "top_m" in common:
             Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
     if "columns" in values:

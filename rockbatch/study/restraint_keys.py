@@ -1,12 +1,15 @@
 """Devices of a case: [[case.damper]], [[case.tendon]], [[case.stop]] and [[case.deck_spring]]."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rockbatch.common.errors import remedy
+from rockbatch.common.errors import InputError, remedy
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
+from rockbatch.pier.dampers import DAMPERS
+from rockbatch.pier.devices import BOUNDS
 from rockbatch.pier.plausibility import wrong_device
-from rockbatch.pier.restraints import BOUNDS, DAMPERS, KINDS
+from rockbatch.pier.restraints import KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
@@ -133,7 +136,7 @@ KEYS_OF = {
 """Keys with numbers of a damper of each kind, and of each other device."""
 
 
-FIELD_OF = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=1.0)).items()}
+FIELD_OF = {key: name for key, (name, _) in fields_of(Pier(alpha=0.2, p=1.0, mass_t=100.0)).items()}
 """The field of a device, by key."""
 
 
@@ -154,8 +157,8 @@ class Device:
         prefix = f"{self.name}_"
         return {key.removeprefix(prefix): setting for key, setting in chosen.items() if key.startswith(prefix)}
 
-    def made(self, pier: Pier, chosen: Chosen) -> Restraint:
-        """Return it with the chosen values."""
+    def made(self, pier: Pier, chosen: Chosen, *, judged: bool) -> Restraint | None:
+        """Return it with the chosen values; note what is impossible about them, when it is None, or odd, if it is ``judged``."""
         values = {key: setting.value for key, setting in self.values(chosen).items()}
         arguments: dict[str, Any] = {
             name: values[name] for name in ("kind", "at", "side", "height_m") if name in values
@@ -167,28 +170,43 @@ class Device:
         if self.what in ("stop", "deck_spring"):  # likewise
             arguments.setdefault("gap_m", 0.0)
             arguments.setdefault("lam", 1.0)
-        return KINDS[self.what](**arguments)
+        try:
+            device = KINDS[self.what](**arguments)
+        except InputError as error:
+            self._complain(chosen, error.problems)
+            return None
+        if judged:
+            self._complain(chosen, wrong_device(pier, device))
+            self._complain_unless_usual(pier, chosen, device)
+        return device
 
-    def complain(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
-        """Note what is impossible about it, or far from usual and not confirmed, each at its key."""
+    def _complain(self, chosen: Chosen, problems: Iterable[str]) -> None:
+        """Note what is impossible about it, each problem at its key."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
-        problems = [problem.partition(": ")[2] for problem in wrong_device(pier, device)]
-        for problem in problems:
+        for problem in (problem.partition(": ")[2] for problem in problems):
             symbol = problem.partition(" = ")[0]
             key = keys.get("lam" if symbol == "lambda" else symbol, "")
             if key and key != symbol:
                 problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
             self.table.complain(problem, key or next(iter(values)))
+
+    def _complain_unless_usual(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
+        """Note the first of its values that is far from usual and not confirmed, at its key."""
+        values = self.values(chosen)
+        keys = {FIELD_OF.get(key, key): key for key in values}
         doubts = doubt(pier, device)
-        if doubts is not None and doubts.name in keys and not problems:
+        if doubts is not None and doubts.name in keys:
             key = keys[doubts.name]
             value = float(values[key].value)
             field, unit = fields_of(pier).get(key, (key, 1.0))
 
             def fits(other: float) -> bool:
                 changed: dict[str, Any] = {field: other / unit}
-                return doubt(pier, replace(device, **changed)) is None
+                try:
+                    return doubt(pier, replace(device, **changed)) is None
+                except InputError:
+                    return False
 
             other = in_another_unit(key, value, fits)
             message = f"{key} = {value:g}: {doubts.meaning}{other}; {remedy(key)} in [[case.{self.what}]]"

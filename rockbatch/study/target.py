@@ -7,6 +7,7 @@ from typing import Any
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
+from rockbatch.common.units import Usual
 from rockbatch.motions.design_spectra import (
     EUROCODE,
     NZS_1170_5,
@@ -26,7 +27,7 @@ from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
-from rockbatch.toml.section import CONFIRM, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Key, Section
 
 CODES = ("EN 1998-1", "ASCE 7", "AASHTO", "NZS 1170.5", "EN 1998-1 vertical")
 _ALSO_CALLED = {

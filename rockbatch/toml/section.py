@@ -8,28 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, NamedTuple
 
+from rockbatch.common.units import Usual
 from rockbatch.toml.kinds import Choice, Kind, KindError, Number, text
 from rockbatch.toml.meant import Also, Meant, in_another_unit, known_as, plain, quantity_of
-
-
-class Usual(NamedTuple):
-    """The largest and the least size of a value that are usual, and a word on them; others, but for 0, have to be confirmed."""
-
-    most: float
-    words: str
-    least: float = 0.0
-
-    def holds(self, value: float) -> bool:
-        """Return whether a value is usual."""
-        return value == 0 or self.least <= abs(value) <= self.most
-
-    def doubt(self, name: str, value: float) -> str:
-        """Return what is odd about a value of the key ``name``, and in which unit it would be usual; empty if nothing is."""
-        if self.holds(value):
-            return ""
-        bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"
-        other = in_another_unit(name, value, self.holds)
-        return f"{name} = {value:g}: {bound} {self.words}{other}"
 
 
 @dataclass(frozen=True)
@@ -83,8 +64,10 @@ class Key:
         return written[1].replace("/", "_").replace("²", "2") if written else ""
 
     def doubt(self, name: str, value: Any) -> str:
-        """Return what is odd about a value, with its ``name``; empty if nothing is."""
-        return self.usual.doubt(name, value) if self.usual else ""
+        """Return what is odd about a value, with its ``name`` and the unit in which it would be usual; empty if nothing is."""
+        if self.usual is None or self.usual.holds(value):
+            return ""
+        return self.usual.doubt(name, value) + in_another_unit(name, value, self.usual.holds)
 
     def accepts(self, value: Any) -> bool:
         """Return whether it takes the value, or one of a list."""

@@ -127,7 +127,7 @@ def test_after_a_long_pause_a_sequence_has_the_larger_of_the_spectra_of_its_shoc
         ({"factors": [1.0, -1.0]}, "factors: -1 must be a number above 0"),
         ({"polarity": ["+", "x"]}, r'polarity: "x" must be "\+" or "-"'),
         ({"motions": [1, 2]}, "must be a list of Motion"),
-        ({"motions": [record("a", dt=0.5), record("b", dt=0.001)]}, "more than 20 times apart"),
+        ({"motions": [record("a", dt=0.2), record("b", dt=0.0004)]}, "more than 20 times apart"),
         ({"pause": 1e6}, "more than 20,000,000 samples"),
     ],
 )

@@ -219,7 +219,9 @@ def test_what_is_wrong_about_a_stop_or_a_deck_spring_is_said(tmp_path, device, k
 
 B, R0, P, A = 4.0, np.hypot(4.0, 15.0), TALL.p, TALL.alpha
 friction, hysteretic, viscous = (
-    partial(rb.Damper, kind, f=0.1, yield_m=0.005) for kind in ("friction", "hysteretic", "viscous")
+    partial(rb.Damper, "friction", f=0.1),
+    partial(rb.Damper, "hysteretic", f=0.1, yield_m=0.005),
+    partial(rb.Damper, "viscous"),
 )
 tendon, stop, beside = (
     partial(rb.Tendon, psi=0.1, lam=0.1),

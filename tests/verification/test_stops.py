@@ -205,15 +205,17 @@ def test_random_stops_beside_dampers_and_tendons_settle_on_real_records(seeds):
 
 
 @pytest.mark.parametrize(
-    ("stop", "told"),
+    ("made", "told"),
     [
-        (Stop(-0.1, 20.0), "stop: gap_m = -0.1: must be 0 or above"),
-        (Stop(0.1, 20.0, 0.0), "stop: restitution = 0: must be a number above 0"),
-        (Stop(0.1, 20.0, 1.5), "stop: restitution = 1.5: must be within 0.1 and 1"),
-        (Stop(0.1, -1.0), "stop: lambda = -1: must be 0 or above"),
-        (Stop(0.1, 1.0, at="middle"), 'stop: at = "middle": must be "left"'),
+        (lambda: Stop(-0.1, 20.0), "stop: gap_m = -0.1: must be 0 or above"),
+        (lambda: Stop(0.1, 20.0, 0.0), "stop: restitution = 0: must be a number above 0"),
+        (lambda: Stop(0.1, 20.0, 1.5), "stop: restitution = 1.5: must be within 0.1 and 1"),
+        (lambda: Stop(0.1, -1.0), "stop: lambda = -1: must be 0 or above"),
+        (lambda: Stop(0.1, 1.0, at="middle"), 'stop: at = "middle": must be "left"'),
     ],
 )
-def test_what_cannot_be_is_said(stop, told):
-    (problem,) = problems(FIG5, RigidBase(restraints=(stop,)))
+def test_what_cannot_be_is_said_where_it_is_made(made, told):
+    with pytest.raises(rb.InputError) as caught:
+        made()
+    (problem,) = caught.value.problems
     assert problem.startswith(told)

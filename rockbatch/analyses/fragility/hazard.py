@@ -7,11 +7,12 @@ from typing import Any
 
 from rockbatch.common.errors import InputError, remedy
 from rockbatch.common.showing import shown
+from rockbatch.common.units import Usual
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Number, choice, positive, text
 from rockbatch.toml.reader import Table, TomlFile
-from rockbatch.toml.section import CONFIRM, Clash, Key, Section, Usual
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 YEARS = (50.0,)
 """Periods for which probabilities are given, unless the study names others."""

@@ -65,7 +65,7 @@ def _self_similar(polarity: str, spectrum: SpectrumSpec, motions: Sequence[Motio
         rest, place = divmod(number, len(spectrum.cases))
         of_motion, level = divmod(rest, len(spectrum.intensities))
         case, intensity, motion = spectrum.cases[place], spectrum.intensities[level], motions[of_motion]
-        pier = replace(case.pier, p=case.pier.p * frequencies[of_motion])
+        pier = replace(case.pier, p=case.pier.p * frequencies[of_motion], confirm=("p",))
         scale = intensity * pier.gravity * math.tan(pier.alpha) / motion.pga
         scaled_case = replace(case, pier=pier, columns=case.columns | {INTENSITY: intensity})
         return StudyRun(motion, polarity, scale, scaled_case)

@@ -159,7 +159,10 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
     problems_before = len(table.file.problems)
     expanded, varied = read_cases(table.file, piers)
     larger = (
-        read_cases(table.file, [(replace(pier, p=0.5 * pier.p), pier_values) for pier, pier_values in piers])[0]
+        read_cases(
+            table.file,
+            [(replace(pier, p=0.5 * pier.p, confirm=(*pier.confirm, "p")), pier_values) for pier, pier_values in piers],
+        )[0]
         if axis == SELF_SIMILAR
         else []
     )
@@ -220,14 +223,14 @@ def _piers(
                 for value in values:
                     p = _p(axis, alpha, value, template)
                     values_of_pier = {"alpha": alpha, "mu": template.mu, axis: value} | mass
-                    piers.append((replace(template, alpha=alpha, p=p), values_of_pier))
+                    piers.append((replace(template, alpha=alpha, p=p, confirm=("p", "mass_t")), values_of_pier))
     return piers
 
 
 def _p(axis: str, alpha: float, value: float, pier: Pier) -> float:
     """Return p [rad/s] at a value on the axis, of a pier with all else as ``pier``; of a self-similar one for ω_g = 1 rad/s."""
     if axis == "size_m":
-        return Pier.from_size(alpha, value, pier.mu, pier.gravity).p
+        return Pier.from_size(alpha, value, pier.mu, pier.gravity, confirm=("size_m",)).p
     return {"p": value, "two_pi_over_p_s": 2 * math.pi / value, SELF_SIMILAR: 1.0 / value}[axis]
 
 

@@ -1,0 +1,129 @@
+"""What all devices between a pier and the ground share: where they are checked, and their values in kN."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, ClassVar, NamedTuple, Self
+
+from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.showing import InNotebook
+from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
+from rockbatch.pier.block import Pier
+from rockbatch.pier.sizes import refuse
+
+BOUNDS = {
+    "f": Bounds(0.0, 10.0, why="its force over the weight must be within 0..10"),
+    "nu": Bounds(0.0, MOST, why="must be 0 or above"),
+    "exponent": Bounds(0.1, 2.0, why="must be within 0.1..2"),
+    "yield_m": Bounds(LEAST, MOST, why="a hysteretic damper yields at a deflection above 0 m"),
+    "psi": Bounds(0.0, 10.0, why="its prestress over the weight must be within 0..10"),
+    "lam": Bounds(0.0, MOST, why="must be 0 or above"),
+    "gap_m": Bounds(0.0, MOST, why="must be 0 or above"),
+    "restitution": Bounds(0.1, 1.0, why="must be within 0.1 and 1, the speed after a blow over that before"),
+}
+"""Values of devices. Beyond ten times the weight a wrong unit is likelier than the device; fluid dampers have
+exponents of 0.15 to 1, and one of 0 is friction."""
+
+FIRMEST = {"stop": 1e-4, "deck_spring": 1e-3, "damper": 1e-3}
+"""Least deflection under the weight of the whole pier [m] of a stop, deck spring or damper's brace: a steel block of a
+metre gives way by a tenth of a millimetre, abutments and braces by 5 to 500 mm."""
+
+LEAST_FORCE = 1e-3
+"""Force over the weight below which a damper, at 1 m/s if it is viscous, or a tendon might as well not be there."""
+
+SOFTEST = {"tendon": 0.01, "stop": 0.05, "deck_spring": 0.05, "damper": 0.05}
+"""Least force of a device, or of a damper's brace, that yields by as much as a rotation of α asks, over the weight."""
+
+
+class Doubt(NamedTuple):
+    """A value of the field ``name`` that is probably wrong, and what it would mean."""
+
+    name: str
+    meaning: str
+
+
+class Device(InNotebook):
+    """A device between the pier and the ground; each class says what is wrong about it, and what is odd under a pier."""
+
+    what: ClassVar[str]
+    """Name of its table in a study."""
+
+    confirm: Sequence[str]
+
+    def __post_init__(self) -> None:
+        refuse([f"{self.what}: {problem}" for problem in self._wrong()])
+
+    def _measured(self) -> Sequence[str]:
+        """Return its fields with numbers that count."""
+        raise NotImplementedError
+
+    def _wrong(self) -> list[str]:
+        """Return what is impossible about it under any pier: one sentence each."""
+        return [
+            problem
+            for name in self._measured()
+            for problem in BOUNDS[name].problems(name.replace("lam", "lambda"), getattr(self, name))
+        ]
+
+    def doubts(self, pier: Pier) -> Iterator[Doubt]:
+        """Yield what is odd about it under ``pier``, confirmed or not."""
+        raise NotImplementedError
+
+    def _usual_under(self, pier: Pier) -> Self:
+        """Return it, made from values in kN under ``pier``; raise ``InputError`` if one is unusual and not confirmed."""
+        refuse(unlikely_devices(pier, (self,)))
+        return self
+
+
+def wrong_words(place: float | str | None, *words: str) -> list[str]:
+    """Return what is wrong about a place that is a word, none of these; empty if nothing is."""
+    if not isinstance(place, str) or place in words:
+        return []
+    return [f'at = "{place}": must be ' + "".join(f'"{word}", ' for word in words)[:-2] + " or an offset in m"]
+
+
+def doubt(pier: Pier, device: Device) -> Doubt | None:
+    """Return what is odd about a device of ``pier``; None if nothing is, or if it is confirmed."""
+    return next((doubt for doubt in device.doubts(pier) if doubt.name not in device.confirm), None)
+
+
+def unlikely_devices(pier: Pier, devices: Sequence[Device]) -> list[str]:
+    """Return what is odd about devices of ``pier``, a sentence each, except what they confirm."""
+    doubts = [(device, doubt(pier, device)) for device in devices]
+    return [
+        f"{device.what}: {odd.name} = {getattr(device, odd.name):g}: {odd.meaning}; {remedy(odd.name)}"
+        for device, odd in doubts
+        if odd is not None
+    ]
+
+
+def fields_of(pier: Pier) -> dict[str, tuple[str, float]]:
+    """Return by a study's key the field of a device, and the key's value over the field's; those in kN if the mass is known."""
+    fields = {name: (name, 1.0) for name in ("f", "nu", "exponent", "psi", "restitution", "brace")}
+    fields |= {"yield_mm": ("yield_m", 1000.0), "lambda": ("lam", 1.0), "gap_mm": ("gap_m", 1000.0)}
+    if pier.mass_t is not None:
+        weight = pier.mass_t * pier.gravity
+        fields |= {
+            "force_kN": ("f", weight),
+            "coefficient_kN_s_m": ("nu", weight * pier.p / pier.gravity),
+            "prestress_kN": ("psi", weight),
+            "stiffness_kN_m": ("lam", weight * pier.size / pier.half_width**2),
+            "brace_kN_m": ("brace", weight * pier.size / pier.half_width**2),
+            "yield_kN": ("strength", weight),
+        }
+    return fields
+
+
+def if_finite(**values: float) -> dict[str, float]:
+    """Return those values that are not infinite, which stands for what is not there."""
+    return {name: value for name, value in values.items() if value != math.inf}
+
+
+def over_weight(pier: Pier, **values: float) -> dict[str, Any]:
+    """Return the fields of a device from the keys of a study."""
+    if pier.mass_t is None:
+        raise InputError("mass_t is missing: kN are of a pier whose mass is known")
+    wrong = [problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)]
+    if wrong:
+        raise InputError(*wrong)
+    factors = fields_of(pier)
+    return {factors[name][0]: value / factors[name][1] for name, value in values.items()}

@@ -1,0 +1,87 @@
+"""Supports of a pier of known mass: their ratios from kN and kN/m, and which are usual."""
+
+import math
+from collections.abc import Callable, Collection
+from typing import NamedTuple
+
+from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.units import POSITIVE
+from rockbatch.pier.block import Pier
+
+MOST_ETA = 100.0
+"""η beyond which a wrong unit is likelier than the support: foundations bear 2 to 20 times what they carry."""
+
+LIGHTEST, HEAVIEST = 5.0, 1e5
+"""Bounds of the stress under a support at rest [kPa]: footings have 100 to 1000, steel bearings some 30 000."""
+
+LEAST_DEFLECTION_MM = 0.02
+"""Static deflection [mm] of supports below which a wrong unit is likelier than the ground: on sound rock it is some 0.1 mm."""
+
+
+def beta_of(pier: Pier, stiffness_kN_m: float) -> float:
+    """Return β = sqrt(2K/M)/p of supports with the stiffness K [kN/m]. Raises ``InputError`` for a pier without mass."""
+    mass = _mass(pier, stiffness_kN_m=stiffness_kN_m)
+    return math.sqrt(2 * stiffness_kN_m / mass) / pier.p
+
+
+def eta_of(pier: Pier, yield_kN: float) -> float:
+    """Return η = 2 F_y/(M g) of supports with the yield force F_y [kN]. Raises ``InputError`` for a pier without mass."""
+    return 2 * yield_kN / (_mass(pier, yield_kN=yield_kN) * pier.gravity)
+
+
+def _mass(pier: Pier, **value: float) -> float:
+    wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
+    if pier.mass_t is None:
+        wrong.append("mass_t is missing: kN and kN/m are of a pier whose mass is known")
+    if wrong or pier.mass_t is None:
+        raise InputError(*wrong)
+    return pier.mass_t
+
+
+class Support(NamedTuple):
+    """What a value of a support comes to under a pier of known mass, its usual bounds, and words for it beyond them."""
+
+    comes_to: Callable[[Pier, float], float]
+    least: float
+    most: float
+    words: str
+
+    def holds(self, pier: Pier, value: float) -> bool:
+        """Return whether a value is usual under a pier."""
+        return self.least <= self.comes_to(pier, value) <= self.most
+
+    def doubt(self, pier: Pier, name: str, value: float) -> str:
+        """Return what is odd about a value of the key ``name``; empty if nothing is."""
+        return "" if self.holds(pier, value) else f"{name} = {value:g}: {self.words.format(self.comes_to(pier, value))}"
+
+
+def _half_weight(pier: Pier) -> float:
+    assert pier.mass_t is not None
+    return 0.5 * pier.mass_t * pier.gravity
+
+
+SUPPORTS = {
+    "stiffness_kN_m": Support(
+        lambda pier, value: 1000.0 * _half_weight(pier) / value,
+        LEAST_DEFLECTION_MM,
+        math.inf,
+        "the pier's weight presses the supports in by {:.2g} mm only, where sound rock gives some 0.1 mm",
+    ),
+    "yield_kN": Support(
+        eta_of, 0.0, MOST_ETA, "{:.3g} times what the support carries at rest, where 2 to 20 times is usual"
+    ),
+    "area_m2": Support(
+        lambda pier, value: _half_weight(pier) / value,
+        LIGHTEST,
+        HEAVIEST,
+        "the pier's weight presses {:.2g} kPa on it, where footings have 100 to 1000 kPa",
+    ),
+}
+"""Usual supports of a pier of known mass, in a study and in Python alike: a wrong unit explains others better than the ground."""
+
+
+def unlikely_supports(pier: Pier, confirm: Collection[str], **values: float | None) -> list[str]:
+    """Return what is odd about :data:`SUPPORTS` under a pier of known mass that are given and not confirmed, a sentence each."""
+    given = {name: value for name, value in values.items() if value is not None and name not in confirm}
+    doubts = [(name, SUPPORTS[name].doubt(pier, name, value)) for name, value in given.items()]
+    return [f"{doubt}; {remedy(name)}" for name, doubt in doubts if doubt]
