@@ -95,9 +95,9 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
-    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the shaft are among them"), "5",
-        "Number of sections of the shaft, evenly from its foot to its top, in which shear, moment and axial force of every run "
-        "are computed: `sections.csv`."),
+    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
+        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
+        "every run are computed: `sections.csv`."),
     "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
     "devices_work": Key(boolean, "true",
         "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
