@@ -320,7 +320,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     along = along_the_axis(cases)
     if len(along) < len(cases) and isinstance(motion_spec.target, SpectrumTarget):
         motion_spec = replace(motion_spec, target=replace(motion_spec.target, both=True))
-    checks = read_checks(file, partial(_unfit, along, motion_spec, output) if along else None)
+    checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -347,8 +347,10 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
-    """Return the choices of a check that the study lacks, and limits that are implausible for its piers."""
+def _unfit(
+    cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
+) -> Iterator[str]:
+    """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
     yield from unmet(
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
@@ -356,8 +358,10 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
-        sections=_heights(cases, output),
+        sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
+    if not known_piers:
+        return
     rows = [
         {
             "case": case.name,
