@@ -72,7 +72,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "histories": Key(choice("worst", "all", "none"), '"all"',
         'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
     "histories_MB": Key(positive, "50",
-        'How large their file may become with "worst"; the greatest rotations are kept first.'),
+        'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
     "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
     "forces": Key(boolean, "true",
         "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
