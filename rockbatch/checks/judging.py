@@ -148,6 +148,7 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verd
         statistic, number = rule.statistic or "max", sum(map(len, suites))
         of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suites), "count": count}
     absent = [_absent(rule, axis) for axis in axes]
+    height = demand.height(case) if demand.height else rule.at_m
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = Verdict(
         check=rule.name,
@@ -155,13 +156,14 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verd
         columns=dict(case["columns"]),
         scale=scale,
         **{name: getattr(rule, name) for name in ("demand", "sense", "limit", "basis", "reason", "counting")},
-        words=rule.words + (f", {rule.on_both_axes}" if len(applying) > 1 else ""),
+        words=rule.words_at(height) + (f", {rule.on_both_axes}" if len(applying) > 1 else ""),
         **of_suite,
         **unknown,
         records=0,
         verdict=DOES_NOT_APPLY,
         note=absent[0],
         unit="" if rule.statistic == "count" else demand.unit,
+        at_m=math.nan if height is None else height,
     )
     if not applying:
         return none

@@ -1,13 +1,15 @@
 """The responses that a designer asks for first, checked or not, and whether a check limits them."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, Verdict
+from rockbatch.checks.wording import at
+from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
@@ -29,15 +31,15 @@ class Response(NamedTuple):
     unit: str = "mm"
     factor: float = 1e3
 
-    @property
-    def head(self) -> str:
-        """Return its name with the unit: "drift of the top [mm]"."""
-        return f"{self.words} [{self.unit}]" if self.unit else self.words
+    def head(self, heights: Collection[float] = ()) -> str:
+        """Return its name with the unit, and with the height if all are read at the same one: "drift at 72 m [mm]"."""
+        words = f"{self.words}{at(*heights)}" if len(heights) == 1 else self.words
+        return f"{words} [{self.unit}]" if self.unit else words
 
 
 RESPONSES = {
     "theta_max_over_alpha": Response("rotation", PEAKS, "θ/α", 1.0),
-    "top_drift_m": Response("drift of the top", PEAKS),
+    "top_drift_m": Response("drift", PEAKS),
     "settlement_m": Response("mean settlement", _SETTLED),
     "base_tilt_rad": Response("residual tilt", TILTS | {"toe_settlement_m"}, "mrad"),
     "theta_res_rad": Response("residual rotation", TILTS, "mrad"),
@@ -69,6 +71,16 @@ class Worst(NamedTuple):
     runs: "pd.DataFrame"
     place: int
     scale: float = math.nan
+
+    @property
+    def height(self) -> float:
+        """Height at which it is read [m]; NaN of what is read at none."""
+        lever = DEMANDS[self.demand].height
+        return math.nan if lever is None else lever(self.case)
+
+    def place_among(self, heights: Collection[float]) -> str:
+        """Return its height in words where responses are read at several ``heights``; of one the head of their column says it."""
+        return at(self.height) if len(heights) > 1 else ""
 
     @property
     def run(self) -> "pd.Series[Any]":
@@ -118,6 +130,14 @@ def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
             yield name, 0.0 if name in PERMANENT and value < ROUNDING else value, int(rows.places[greatest])
 
 
+def heights_of(worst: Iterable[Worst]) -> dict[str, set[float]]:
+    """Return the heights at which responses are read [m], those of all cases, by their demands; empty for those read at none."""
+    return {
+        name: {peak.height for peak in of_demand if not math.isnan(peak.height)}
+        for name, of_demand in grouped(worst, lambda peak: peak.demand).items()
+    }
+
+
 def worst_of_all(worst: Iterable[Worst]) -> dict[str, Worst]:
     """Return the worst of all cases for each demand, in the order of :data:`RESPONSES`."""
     greatest: dict[str, Worst] = {}
@@ -156,7 +176,7 @@ def in_words(worst: Worst) -> str:
     if worst.demand in ("base_tilt_rad", "theta_res_rad"):
         return f"{1000 * value:.3g} mrad ({math.degrees(value):.2g}°)"
     if worst.demand == "top_drift_m":
-        return f"{value:.3g} m ({_millimetres(value)} mm)"
+        return f"{value:.3g} m ({_millimetres(value)} mm){at(worst.height)}"
     if worst.demand == "settlement_m" and not math.isnan(worst.run.get(OTHER_LAW, math.nan)):
         low, high = sorted((value, float(worst.run[OTHER_LAW])))
         return f"{_millimetres(low)} to {_millimetres(high)} mm, by the law of the springs"

@@ -25,11 +25,15 @@ ROUNDING = 1e-6
 
 
 class Column(NamedTuple):
-    """A check: its name, the limit with its sign and unit, and the factor from the demand's unit to that one."""
+    """A check: its name, the limit with its sign and unit, and the factor from the demand's unit to that one.
+
+    ``at`` is the height at which the demand is read, in words; empty without one, and where cases differ in it.
+    """
 
     check: str
     limit: str
     factor: float
+    at: str = ""
 
 
 class Cell(NamedTuple):
@@ -129,12 +133,13 @@ def _badness(verdict: Verdict) -> tuple[int, float]:
 
 
 def _column(verdicts: Sequence[Verdict]) -> Column:
-    first = verdicts[0]
+    first, heights = verdicts[0], {verdict.at_m for verdict in verdicts if not math.isnan(verdict.at_m)}
     if first.is_ban:
         return Column(first.check, "none", 1.0)
     unit, factor = SMALL[first.unit] if first.unit in SMALL and abs(first.limit) < 1.0 else (first.unit, 1.0)
     sign = "≤" if first.sense == "at most" else "≥"
-    return Column(first.check, f"{sign}\u00a0{_number(first.limit * factor)}\u00a0{unit}".rstrip("\u00a0"), factor)
+    limit = f"{sign}\u00a0{_number(first.limit * factor)}\u00a0{unit}".rstrip("\u00a0")
+    return Column(first.check, limit, factor, wording.at(heights.pop()).strip() if len(heights) == 1 else "")
 
 
 def _cell(verdict: Verdict, column: Column) -> Cell:
@@ -144,7 +149,8 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
         return Cell(verdict, wording.demanded(verdict), "")
     bound = "≥\u00a0" if math.isinf(verdict.high) and math.isfinite(verdict.value) else ""
     value = _number(verdict.value * column.factor, verdict.limit * column.factor)
-    return Cell(verdict, bound + value, f"{bound}{wording.percent(verdict.ratio)}")
+    place = "" if column.at else wording.at(verdict.at_m)
+    return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}")
 
 
 def _number(value: float, limit: float = math.nan) -> str:

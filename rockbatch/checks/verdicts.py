@@ -60,6 +60,8 @@ class Verdict:
         The run that governs: whose demand is the largest, or, where nothing is decided, may be; empty without one.
     governing : float
         Demand of that run; NaN without one.
+    at_m : float
+        Height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others.
     """
 
     check: str
@@ -90,6 +92,7 @@ class Verdict:
     record: str = ""
     polarity: str = ""
     governing: float = math.nan
+    at_m: float = math.nan
 
     @property
     def is_ban(self) -> bool:

@@ -177,11 +177,30 @@ def governing(verdict: Verdict) -> str:
         return text
     if math.isinf(verdict.governing):
         return f"{text}, beyond any limit"
-    return f"{text}, {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip()
+    return f"{text}, {number(verdict.governing)} {_unit_of_demand(verdict)}".rstrip() + at(verdict.at_m)
 
 
 def _unit_of_demand(verdict: Verdict) -> str:
     return DEMANDS[verdict.demand].unit if verdict.demand in DEMANDS else verdict.unit
+
+
+def at(height: float) -> str:
+    """Return the place of what is read at a height [m], to follow its name or its value: " at 72 m"; empty for NaN."""
+    return "" if math.isnan(height) else f" at {height:.5g}\u00a0m"
+
+
+def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
+    """Return the requirements of each check: several where piers differ in the height at which its demand is read."""
+    asked = {
+        name: list(dict.fromkeys(map(requirement, same)))
+        for name, same in grouped(verdicts, lambda verdict: verdict.check).items()
+    }
+    return {
+        name: words
+        if len(words) <= REPEATED
+        else [*words[:REPEATED], f"likewise at {len(words) - REPEATED} more heights"]
+        for name, words in asked.items()
+    }
 
 
 def requirement(verdict: Verdict) -> str:

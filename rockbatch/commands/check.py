@@ -188,8 +188,8 @@ def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
     first = {verdict.check: verdict for verdict in reversed(verdicts)}
     rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
     lines = [
-        f"{name}: {wording.requirement(first[name])} [{first[name].basis}] {first[name].reason}".rstrip()
-        for name in dict.fromkeys(verdict.check for verdict in verdicts)
+        f"{name}: {'; '.join(asked)} [{first[name].basis}] {first[name].reason}".rstrip()
+        for name, asked in wording.requirements(verdicts).items()
     ]
     lines += [*notes.common(), *wording.counting(verdicts)]
     lines += [f"{name}: {wording.unchecked(verdict)}." for name, verdict in rests.items()]

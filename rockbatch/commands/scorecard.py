@@ -1,11 +1,11 @@
 """The scorecard on the terminal: cases by checks, or the greatest responses of each case where nothing is checked."""
 
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from rockbatch.checks import Verdict
 from rockbatch.checks.coverage import CaseRuns
-from rockbatch.checks.responses import LOST, RESPONSES, Worst, standing
+from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, standing
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS
@@ -30,7 +30,7 @@ def of_checks(verdicts: Sequence[Verdict], case_of: Names, runs: Sequence[CaseRu
     card = scorecard(verdicts, case_of, runs, worst)
     columns = card.open_columns(MOST_COLUMNS)
     rest = [i for i in range(len(card.columns)) if i not in columns]
-    heads = [_head(card.columns[i].check, card.columns[i].limit) for i in columns]
+    heads = [_head(card.columns[i].check, card.columns[i].at, card.columns[i].limit) for i in columns]
     remarked = any(row.verdict == DOES_NOT_APPLY or row.unlimited for row in card.rows)
     rows = []
     for row in card.rows:
@@ -48,29 +48,35 @@ def of_responses(
     """Return the greatest responses of each case as text, the best first: of those that end standing in the most runs the one
     with the least rotation.
     """
-    names = [name for name in RESPONSES if any(response.demand == name for response in worst)]
+    heights = heights_of(worst)
+    names = [name for name in RESPONSES if name in heights]
     of_cases = grouped(worst, lambda response: name_of(response.case))
     stood, rows = standing(runs), []
     for case, places in rows_of_cases(runs, cases):
         if not len(places):
             continue
-        values = {
-            response.demand: response.value * RESPONSES[response.demand].factor
-            for response in of_cases.get(name_of(case), ())
-        }
-        cells = [number(values[name], ".3g") if name in values else "-" for name in names]
+        own = {response.demand: response for response in of_cases.get(name_of(case), ())}
+        cells = [_response(own.get(name), heights[name]) for name in names]
         lost = int((~stood[places]).sum())
         ended = f"{lost} of {len(places)}" if lost else "none"
-        rows.append((lost, values.get("theta_max_over_alpha", 0.0), [name_of(case), *cells, ended]))
+        rotation = own["theta_max_over_alpha"].value if "theta_max_over_alpha" in own else 0.0
+        rows.append((lost, rotation, [name_of(case), *cells, ended]))
     rows.sort(key=lambda row: row[:2])
     any_lost = any(lost for lost, *_ in rows)
-    heads = [*(_head(RESPONSES[name].head, "") for name in names), *([_head(LOST, "")] if any_lost else [])]
+    heads = [*(_head(RESPONSES[name].head(heights[name])) for name in names), *([_head(LOST)] if any_lost else [])]
     return _table(heads, [row if any_lost else row[:-1] for *_, row in rows])
 
 
-def _head(words: str, limit: str) -> list[str]:
-    """Return the lines of a head: its words, and the limit below them."""
-    return [*textwrap.wrap(words, _WRAPPED, break_long_words=False), *filter(None, [limit])]
+def _response(response: Worst | None, heights: Collection[float]) -> str:
+    """Return a response in the unit of its column, with its own height where the ``heights`` of the column differ."""
+    if response is None:
+        return "-"
+    return number(response.value * RESPONSES[response.demand].factor, ".3g") + response.place_among(heights)
+
+
+def _head(words: str, *below: str) -> list[str]:
+    """Return the lines of a head: its words, and below them the height and the limit."""
+    return [*textwrap.wrap(words, _WRAPPED, break_long_words=False), *filter(None, below)]
 
 
 def _written(cell: Cell | None) -> str:

@@ -1,13 +1,12 @@
 """The mode in which a shaft bends, fixed at its foot (THEORY.md, A shaft that bends)."""
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
-from rockbatch.pier.sections import parts_of, shaft_height, unknown_masses
+from rockbatch.pier.sections import parts_of, unknown_masses
 
 NO_SECTIONS = 'sections: their forces are those of a rigid shaft; write shaft = "rigid", or leave them out'
 
@@ -32,11 +31,11 @@ def problems(pier: Pier) -> list[str]:
 
 
 def mode_of(pier: Pier) -> Mode:
-    """Return the mode of ``pier``: the line to which a force at the top bends a uniform shaft, and straight above it."""
-    top, sums = shaft_height(pier), np.zeros(3)
+    """Return the mode of ``pier``: the line to which a force at its highest point bends a uniform shaft."""
+    top, sums = pier.highest, np.zeros(3)
     parts = parts_of(pier)
     for part in parts:
-        z, mass = _points(part, top)
+        z, mass = _points(part)
         shape = _shape(z / top)
         sums += mass @ np.stack([shape, shape**2, shape * z], axis=1)
     first, second, coupling = (sums / sum(part.mass_t for part in parts)).tolist()
@@ -45,20 +44,17 @@ def mode_of(pier: Pier) -> Mode:
 
 def shape_at(pier: Pier, height: float) -> float:
     """Return the share of the top's deflection at ``height`` [m]."""
-    return float(_shape(np.array(height / shaft_height(pier))))
+    return float(_shape(np.array(height / pier.highest)))
 
 
 def _shape(ratio: "np.ndarray") -> "np.ndarray":
+    """Return the deflection over that of the highest point, at a height over its own; drift may be read above it."""
     return np.where(ratio <= 1.0, 0.5 * ratio**2 * (3.0 - ratio), 1.5 * ratio - 0.5)
 
 
-def _points(part: Part, top: float) -> tuple["np.ndarray", "np.ndarray"]:
-    """Return heights [m] and masses [t] that stand for a part in integrals of the mode; above the top it is straight."""
+def _points(part: Part) -> tuple["np.ndarray", "np.ndarray"]:
+    """Return heights [m] and masses [t] that stand for a part in integrals of the mode."""
     length = part.length_m or 0.0
     if length == 0.0:
         return np.array([part.height_m]), np.array([part.mass_t])
-    low, high = part.height_m - 0.5 * length, part.height_m + 0.5 * length
-    bounds = sorted({low, min(max(top, low), high), high})
-    pieces = [(0.5 * (a + b) + 0.5 * (b - a) * _NODES, 0.5 * (b - a) * _WEIGHTS) for a, b in pairwise(bounds)]
-    z, weights = (np.concatenate(values) for values in zip(*pieces, strict=True))
-    return z, weights * part.mass_t / length
+    return part.height_m + 0.5 * length * _NODES, 0.5 * _WEIGHTS * part.mass_t

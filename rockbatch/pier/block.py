@@ -18,6 +18,7 @@ from rockbatch.pier.sizes import (
     out_of_bounds,
     refuse,
     unlikely_deck,
+    unlikely_heights,
     unlikely_inertia,
     unlikely_sizes,
     unusual,
@@ -42,11 +43,11 @@ class Pier(InNotebook):
     mass_t : float, optional
         Mass M of all that rocks [t]; only forces in kN and stiffnesses in kN/m need it.
     top_m : float, optional
-        Height above the pivots at which drift is read [m]; twice that of the centre of mass by default.
+        Height above the pivots at which drift is read [m]; that of the highest point by default, see :attr:`highest`.
     deck_over_columns : float, optional
         γ = m_d/(N m_c) of a rocking frame, whose equivalent block this is; see :meth:`frame`.
     deck_height_m : float, optional
-        Height above the pivots of the deck's centre [m], whose acceleration is computed; the top by default.
+        Height above the pivots of the deck's centre [m], whose acceleration is computed; that of the highest point by default.
     initial_rotation_rad : float, default 0
         θ0 [rad], positive to the right, below α: the pier is pulled there slowly, held, and released at the first sample of the
         motion, at rest (THEORY.md, Release from a rotation).
@@ -162,9 +163,9 @@ class Pier(InNotebook):
             Or of (mass_t, height_m, inertia_t_m2, length_m): masses m_i at heights h_i, with inertias I_i about their own
             centres, spread over a length or not.
         top_m : float, optional
-            Height at which drift is read [m]; at the highest part's centre by default.
+            Height at which drift is read [m]; the highest upper end of a part, or the deck, by default.
         deck_height_m : float, optional
-            Height at which the deck's acceleration is computed [m]; at the top by default.
+            Height at which the deck's acceleration is computed [m]; without a deck at the highest point.
         confirm : collection of str
             See :meth:`from_size`.
 
@@ -194,14 +195,15 @@ class Pier(InNotebook):
         if height == 0 or inertia == 0:
             lack = "no height" if height == 0 else "no rotary inertia about their common centre"
             raise InputError(f"parts: they have {lack}; a shaft has m (width² + height²)/12 at half its height")
-        refuse(unlikely_sizes(width_m, 2 * height, confirm, top_m=top_m, deck_height_m=deck_height_m))
+        refuse(unlikely_sizes(width_m, 2 * height, confirm, deck_height_m=deck_height_m))
         size = math.hypot(0.5 * width_m, height)
-        top = max(part.height_m for part in parts) if top_m is None else top_m
         alpha = math.atan2(0.5 * width_m, height)
         confirmed = (*confirm, "top_m", "mass_t", "size_m")
-        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, top_m=top, confirm=confirmed)
+        pier = cls.from_size(alpha, size, mass * size**2 / inertia, gravity, mass_t=mass, confirm=confirmed)
         refuse(unlikely_mass(pier, confirm, "width_m"))
-        return replace(pier, parts=tuple(parts), deck_height_m=None if deck_height_m == top else deck_height_m)
+        pier = replace(pier, parts=tuple(parts), top_m=top_m, deck_height_m=deck_height_m)
+        refuse(unlikely_heights(pier.highest, confirm, top_m=top_m))
+        return pier
 
     @classmethod
     @checked
@@ -233,10 +235,11 @@ class Pier(InNotebook):
         )
         deck = Part(deck_mass_t, height_m if deck_height_m is None else deck_height_m, deck_inertia_t_m2, 0.0)
         refuse(unlikely_inertia(deck_mass_t, deck_inertia_t_m2, deck.height_m, confirm))
-        top = max(height_m, deck.height_m) if top_m is None else top_m
         parts = [Part.shaft(width_m, height_m, mass_t), deck]
         confirmed = (*confirm, "width_m", "top_m", "deck_height_m")
-        pier = cls.of_parts(width_m, parts, top_m=top, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed)
+        pier = cls.of_parts(
+            width_m, parts, top_m=top_m, deck_height_m=deck.height_m, gravity=gravity, confirm=confirmed
+        )
         refuse(unlikely_mass(pier, confirm))
         return pier
 
@@ -288,7 +291,6 @@ class Pier(InNotebook):
             3 * (1 + 2 * ratio) ** 2 / (1 + 4 * ratio),
             column.gravity,
             mass_t=columns * column.mass_t + deck_mass_t,
-            top_m=2 * column.height,
             deck_over_columns=ratio,
             confirm=(*confirm, "p", "mass_t", "top_m"),
         )
@@ -305,9 +307,7 @@ class Pier(InNotebook):
     @property
     def half_width(self) -> float:
         """Return b = R0 sin α [m]; of a frame that of a column, whose R0 is (1+γ)/(1+2γ) of the equivalent block's."""
-        ratio = self.deck_over_columns
-        share = 1.0 if ratio is None else (1 + ratio) / (1 + 2 * ratio)
-        return share * self.size * math.sin(self.alpha)
+        return self._column_share * self.size * math.sin(self.alpha)
 
     @property
     def height(self) -> float:
@@ -325,14 +325,29 @@ class Pier(InNotebook):
         return self.inertia + self.size**2
 
     @property
+    def _column_share(self) -> float:
+        """Return R0 of a column over that of the equivalent block of its frame; 1 if it is no frame."""
+        ratio = self.deck_over_columns
+        return 1.0 if ratio is None else (1 + ratio) / (1 + 2 * ratio)
+
+    @property
+    def highest(self) -> float:
+        """Return the height of the highest point above the pivots [m]: of its parts and its deck.
+
+        Without parts the pier is as a rectangle, twice as high as its centre of mass; a frame is as high as its columns.
+        """
+        ends = [part.upper_end for part in self.parts] if self.parts else [2.0 * self._column_share * self.height]
+        return max(*ends, self.deck_height_m or 0.0)
+
+    @property
     def top(self) -> float:
-        """Return the height above the pivots at which drift is read [m]: ``top_m``, or twice that of the centre of mass."""
-        return 2.0 * self.height if self.top_m is None else self.top_m
+        """Return the height above the pivots at which drift is read [m]: ``top_m``, or that of the highest point."""
+        return self.highest if self.top_m is None else self.top_m
 
     @property
     def deck(self) -> float:
-        """Return the height above the pivots at which the deck's acceleration is computed [m]: ``deck_height_m``, or the top."""
-        return self.top if self.deck_height_m is None else self.deck_height_m
+        """Return the height at which the deck's acceleration is computed [m]: ``deck_height_m``, or that of the highest point."""
+        return self.highest if self.deck_height_m is None else self.deck_height_m
 
     @property
     def restitution(self) -> float:
@@ -368,8 +383,11 @@ def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") ->
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the names and units of run.json; mass, top, γ, deck, period only if it has them, θ0 unless it is 0."""
-    optional = ("mass_t", "top_m", "deck_over_columns", "deck_height_m", "flexural_period_s")
+    """Return a pier by the names and units of run.json; mass, γ, deck, period only if it has them, θ0 unless it is 0.
+
+    ``top_m`` is the height at which drift is read, whether it was given or not.
+    """
+    optional = ("mass_t", "deck_over_columns", "deck_height_m", "flexural_period_s")
     given = {name: getattr(pier, name) for name in optional}
     return {
         "alpha": pier.alpha,
@@ -379,6 +397,8 @@ def described(pier: Pier) -> dict[str, float]:
         "size_m": pier.size,
         "half_width_m": pier.half_width,
         "height_m": pier.height,
+        "highest_m": pier.highest,
+        "top_m": pier.top,
         **{name: value for name, value in given.items() if value is not None},
         **({"initial_rotation_rad": pier.initial_rotation_rad} if pier.initial_rotation_rad else {}),
     }

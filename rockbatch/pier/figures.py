@@ -109,7 +109,7 @@ def sketches(all_of_them: Sequence[Mapping[str, Any]], bases: Collection[str]) -
     shown = [pier for pier in all_of_them if _can_be(pier)][:MOST_PIERS]
     if not shown:
         return []
-    scale = HEIGHT / max(_highest(pier) for pier in shown)
+    scale = HEIGHT / max(map(_top, shown))
     return [_sketch(pier, scale, any(base != "rigid" for base in bases)) for pier in shown]
 
 
@@ -124,18 +124,14 @@ def _can_be(pier: Mapping[str, Any]) -> bool:
 
 
 def _top(pier: Mapping[str, Any]) -> float:
-    """Return the height of the highest point of the shaft [m]; that of a uniform block if it is not given."""
-    return float(pier.get("top_m") or 2.0 * pier["height_m"])
-
-
-def _highest(pier: Mapping[str, Any]) -> float:
-    return max(_top(pier), float(pier.get("deck_m") or 0.0))
+    """Return the height of the highest point [m]; that of a uniform block if it is not given."""
+    return max(float(pier.get("highest_m") or 2.0 * pier["height_m"]), float(pier.get("deck_m") or 0.0))
 
 
 def _sketch(pier: Mapping[str, Any], scale: float, springs: bool) -> Figure:
     """Return a pier in pixels from the middle of its base."""
     b, h, top = (scale * length for length in (pier["half_width_m"], pier["height_m"], _top(pier)))
-    side, high = max(b, 30.0), max(scale * _highest(pier), h) + ABOVE
+    side, high = max(b, 30.0), max(top, h) + ABOVE
     arc = 0.45 * math.hypot(b, h)
     turn = np.linspace(0.0, pier["alpha"], 9)
     marks: list[Mark] = [

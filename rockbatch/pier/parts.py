@@ -24,6 +24,11 @@ class Part(NamedTuple):
     inertia_t_m2: float = 0.0
     length_m: float | None = None
 
+    @property
+    def upper_end(self) -> float:
+        """Return the height of its upper end above the pivots [m]: that of its centre without a length."""
+        return self.height_m + 0.5 * (self.length_m or 0.0)
+
     @classmethod
     @checked
     def shaft(cls, width_m: float, height_m: float, mass_t: float) -> "Part":

@@ -11,7 +11,7 @@ from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
 
 _ROUNDING = 1e-9
-"""Share of the shaft's height within which a mass at one height is at a section: it counts as above it."""
+"""Share of the pier's height within which a mass at one height is at a section: it counts as above it."""
 
 _SAME = 1e-6
 """Share by which parts may differ from the pier that they belong to."""
@@ -58,31 +58,23 @@ def unknown_masses(pier: Pier) -> list[str]:
     return wrong
 
 
-def shaft_height(pier: Pier) -> float:
-    """Return the height of the shaft's top [m]: of the highest part with a length, or of the highest one if none has."""
-    parts = parts_of(pier)
-    return max((part.height_m + 0.5 * part.length_m for part in parts if part.length_m), default=0.0) or max(
-        part.height_m for part in parts
-    )
-
-
 def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float, ...]:
-    """Return the heights [m] of ``sections``: these, or that many from the foot to the top of the shaft.
+    """Return the heights [m] of ``sections``: these, or that many from the foot to the top of the pier.
 
-    Raises ``InputError`` for heights outside the shaft, and for a pier whose sections are not known.
+    Raises ``InputError`` for heights outside the pier, and for a pier whose sections are not known.
     """
     wrong = problems(pier)
     if wrong:
         raise InputError(*wrong)
-    top = shaft_height(pier)
+    top = pier.highest
     if isinstance(sections, int):
         if sections < 2:
             raise InputError(
-                f"sections = {sections}: must be 2 or above: the foot and the top of the shaft are among them"
+                f"sections = {sections}: must be 2 or above: the foot and the top of the pier are among them"
             )
         return tuple(np.linspace(0.0, top, sections).tolist())
     wrong = [
-        f"sections_m = {height:g}: must be within 0 and the top of the shaft, {top:g} m"
+        f"sections_m = {height:g}: must be within 0 and the top of the pier, {top:g} m"
         for height in sections
         if not 0.0 <= height <= top * (1.0 + _ROUNDING)
     ]
@@ -93,7 +85,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
 
 def above(pier: Pier, height: float) -> Above:
     """Return the part of ``pier`` above ``height`` [m]; a mass at that height is above."""
-    return _of_parts(parts_of(pier), height, _ROUNDING * shaft_height(pier))
+    return _of_parts(parts_of(pier), height, _ROUNDING * pier.highest)
 
 
 def parts_of(pier: Pier) -> Sequence[Part]:

@@ -105,10 +105,17 @@ def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **
             f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
             "only, and slides before; width and height may be exchanged"
         )
-    for name, value in heights.items():
-        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m:
-            doubts[name] = f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m"
-    return [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+    wrong = [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+    return wrong + unlikely_heights(height_m, confirm, **heights)
+
+
+def unlikely_heights(height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+    """Return what is odd about ``heights`` over that of a pier [m], except those in ``confirm``."""
+    return [
+        f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m; {remedy(name)}"
+        for name, value in heights.items()
+        if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m and name not in confirm
+    ]
 
 
 def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:

@@ -42,7 +42,7 @@ def width(case: Case) -> float:
 
 
 def top(case: Case) -> float:
-    """Return the height at which drift is read [m]: twice that of the centre of mass unless the pier gives it."""
+    """Return the height at which drift is read [m]: twice that of the centre of mass where run.json does not say it."""
     pier = case["pier"]
     return float(pier.get("top_m", 2.0 * pier["height_m"]))
 

@@ -98,19 +98,21 @@ def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
 
 
 def _top_drift(run: Run) -> float:
-    """Return the greatest drift of the top [m]: of a shaft that bends as its own run has it."""
+    """Return the greatest drift [m]: of a shaft that bends as its own run has it."""
     bent = run.outcome.top_drift_max
     return run.pier.top * run.outcome.theta_max if bent is None else bent
 
 
 def _bent_as_well(limit: Limit) -> Limit:
-    """Return a limit on the drift of the top that also holds for a shaft that bends, which drifts by more than it rotates."""
+    """Return a limit on drift that also holds for a shaft that bends, which drifts by more than it rotates."""
     bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
 
     def either(rigid: Evaluate | None) -> Evaluate | None:
         return rigid and (lambda runs, case: (bent if bends(case) else rigid)(runs, case))
 
-    return limit._replace(evaluate=either(limit.evaluate), reached=either(limit.reached))
+    return limit._replace(
+        evaluate=either(limit.evaluate), reached=either(limit.reached), words="greatest drift", height=top
+    )
 
 
 def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None) -> Callable[[Run], float | None]:
@@ -334,9 +336,9 @@ TRAILING = (
         kind="text",
     ),
     Quantity(
-        "top_drift_m", "greatest drift of the top",
-        _top_drift, "m", ReportFormat("top drift [mm]", ".1f", 1000, "t_max_s"),
-        ": its height times the greatest rotation; of a shaft that bends its greatest horizontal way",
+        "top_drift_m", "greatest drift, at the height `drift_height_m`",
+        _top_drift, "m", ReportFormat("drift [mm]", ".1f", 1000, "t_max_s"),
+        ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
         limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)),
     ),
     Quantity(
@@ -386,6 +388,10 @@ TRAILING = (
         "estimated error of the settlement, including its drift between readings; empty if it is chaotic, and with a "
         "fixed step",
         "settlement_error", "m", bases=YIELDING, stood=True, sometimes=True,
+    ),
+    Quantity(
+        "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
+        ReportFormat("read at [m]", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
     ),
 )  # fmt: skip
 """Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
@@ -621,7 +627,7 @@ def _bends(study: Any) -> bool:
 _OF_BENDING = (
     Quantity(
         "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
-        ReportFormat("deflection [mm]", ".1f", 1000, "top_drift_m"), bases=BENDING, error="deflection_error_m",
+        ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"), bases=BENDING, error="deflection_error_m",
         limits=_LENGTHS, requested=_bends,
     ),
     Quantity(
@@ -630,7 +636,7 @@ _OF_BENDING = (
         requested=_bends,
     ),
     Quantity(
-        "top_drift_error_m", "likewise, of the drift of the top of a shaft that bends", "top_drift_max_error", "m",
+        "top_drift_error_m", "likewise, of the drift of a shaft that bends", "top_drift_max_error", "m",
         bases=BENDING, stood=True, requested=_bends,
     ),
 )  # fmt: skip

@@ -70,6 +70,8 @@ class Demand:
         Device that the pier has to have.
     reached : function or None
         Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
+    height : function or None
+        Of a case: the height above the pivots at which it is read [m].
     """
 
     name: str
@@ -87,6 +89,7 @@ class Demand:
     weighed: bool = False
     device: str = ""
     reached: Evaluate | None = None
+    height: Lever | None = None
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""

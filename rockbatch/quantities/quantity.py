@@ -86,6 +86,7 @@ class Limit(NamedTuple):
     evaluate: Evaluate | None = None
     reached: Evaluate | None = None
     other_law: Callable[[Rows, Case], Values] | None = None
+    height: Lever | None = None
 
 
 @dataclass(frozen=True)
@@ -192,7 +193,7 @@ class Quantity:
         return Demand(
             name, limit.words or self.words, evaluate, limit.unit or in_print(self.unit), self.bases, residual=self.stood,
             other_law=limit.other_law, ceiling=limit.ceiling, needs=self.needs, weighed=self.weighed, device=self.device,
-            reached=limit.reached,
+            reached=limit.reached, height=limit.height,
         )  # fmt: skip
 
     @property

@@ -91,7 +91,8 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
         most = DEMANDS[verdict.demand].ceiling if verdict.demand in PEAKS else None
         if most is None or verdict.case not in names or verdict.scale not in scales or verdict.statistic == "count":
             continue
-        words = f"limit of {verdict.check}, {wording.number(verdict.limit)} {verdict.unit}".rstrip()
+        limit = f"{wording.number(verdict.limit)} {verdict.unit}".rstrip()
+        words = f"limit of {verdict.check}, {limit}{wording.at(verdict.at_m)}"
         if verdict.statistic != "max":  # a mean, say, that single records may exceed
             words += f" ({STATISTICS[verdict.statistic].words})"
         cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), set()).add(verdict.case)

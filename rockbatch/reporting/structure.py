@@ -42,8 +42,10 @@ _OF_STOP = {"stiffness_kN_m": ("k", "kN/m")}
 
 def pier_of(case: Mapping[str, Any]) -> Pier | None:
     """Return the pier of a case; None if its values are impossible, since run.json may come from anybody."""
+    values = {name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None}
+    if "highest_m" in case["pier"]:  # the parts, whose highest point it may be, are not in run.json
+        values.setdefault("deck_height_m", case["pier"]["highest_m"])
     try:
-        values = {name: case["pier"][name] for name in _PIER if case["pier"].get(name) is not None}
         return Pier(**values, confirm=tuple(OF_PIER))
     except (InputError, TypeError, ValueError):
         return None

@@ -72,7 +72,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "histories": Key(choice("worst", "all", "none"), '"all"',
         'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
     "histories_MB": Key(positive, "50",
-        'How large their file may become with "worst"; the greatest rotations are kept first.'),
+        'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
     "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
     "forces": Key(boolean, "true",
         "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
@@ -95,9 +95,9 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "half_cycles": Key(boolean, "true",
         "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
         "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
-    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the shaft are among them"), "5",
-        "Number of sections of the shaft, evenly from its foot to its top, in which shear, moment and axial force of every run "
-        "are computed: `sections.csv`."),
+    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
+        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
+        "every run are computed: `sections.csv`."),
     "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
     "devices_work": Key(boolean, "true",
         "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
@@ -320,7 +320,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     along = along_the_axis(cases)
     if len(along) < len(cases) and isinstance(motion_spec.target, SpectrumTarget):
         motion_spec = replace(motion_spec, target=replace(motion_spec.target, both=True))
-    checks = read_checks(file, partial(_unfit, along, motion_spec, output) if along else None)
+    checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -347,8 +347,8 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rule) -> Iterator[str]:
-    """Return the choices of a check that the study lacks, and limits that are implausible for its piers."""
+def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule) -> Iterator[str]:
+    """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
     yield from unmet(
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
@@ -356,8 +356,10 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, rule: Rul
         polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
-        sections=_heights(cases, output),
+        sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
+    if not known_piers:
+        return
     rows = [
         {
             "case": case.name,

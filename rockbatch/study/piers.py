@@ -32,19 +32,21 @@ PIER = Section(("pier",), (
         usual=USUAL["size_m"]),
     "width_m": Key(within(BOUNDS["width_m"]), "4.0",
         "Width of a solid rectangle; of a pier with parts, the distance between its pivots.", many=True, usual=USUAL["width_m"]),
-    "height_m": Key(within(BOUNDS["height_m"]), "30.0", "Height of a solid rectangle.", many=True, usual=USUAL["height_m"]),
+    "height_m": Key(within(BOUNDS["height_m"]), "30.0",
+        "Height of a solid rectangle. Parts have heights of their own.", many=True, usual=USUAL["height_m"]),
     "mass_t": Key(within(BOUNDS["mass_t"]), "3000.0",
         "Mass of the pier without its deck; of one column of a frame. Forces in kN need a mass.",
         many=True, usual=USUAL["mass_t"]),
     "deck_mass_t": Key(within(BOUNDS["deck_mass_t"]), "1000.0",
         "Mass of the deck that it carries; of a frame, of the whole deck.", many=True, usual=USUAL["mass_t"]),
     "deck_height_m": Key(within(BOUNDS["deck_height_m"]), "31.0",
-        "Height of the deck's centre above the pivots; default: `height_m`.", many=True, usual=USUAL["height_m"]),
+        "Height of the deck's centre above the pivots; default: `height_m`; of a pier with parts it has to be given.", many=True,
+        usual=USUAL["height_m"]),
     "deck_inertia_t_m2": Key(not_negative, "0.0",
         "Moment of inertia of the deck about its own centre. 0 for a deck on bearings, which does not rotate.", many=True),
     "top_m": Key(within(BOUNDS["top_m"]), "31.5",
-        "Height above the pivots at which drift is read; default: the highest known point.", many=True,
-        usual=USUAL["height_m"]),
+        "Height above the pivots at which drift is read; default: the highest point of the pier, its parts and its deck.",
+        many=True, usual=USUAL["height_m"]),
     "flexural_period_s": Key(within(BOUNDS["flexural_period_s"]), "0.6",
         "First period of the pier with its deck, fixed at its base. The statics sheet holds it against the period of rocking, to "
         "see whether the pier is rigid; runs take it as rigid unless a case says `shaft = \"elastic\"`.", many=True,
@@ -73,6 +75,8 @@ PIER = Section(("pier",), (
 }), clashes=(
     Clash(("part",), "[[pier.part]]: needs width_m, between the pivots, and no other size; write width_m = 4.0",
         lacking=("width_m",)),
+    Clash(("height_m", "part"),
+        "height_m: the parts say how high the pier is; call it top_m if drift is to be read at this height, or leave it out"),
     Clash(("mass_t", "part"), "mass_t: the parts say what the pier weighs; leave it out"),
     Clash(("deck_mass_t",),
         "mass_t is missing beside deck_mass_t, of the pier without its deck; write for example mass_t = 2000.0",
@@ -82,7 +86,7 @@ PIER = Section(("pier",), (
     Clash(("deck_mass_t",), "deck_mass_t: goes with width_m and height_m; other sizes are those of the pier with its deck, and "
         "mass_t is then the mass of both", lacking=("width_m", "columns")),
     Clash(("deck_mass_t", "part"), "deck_height_m is missing beside deck_mass_t; write for example deck_height_m = 31.0",
-        lacking=("height_m", "deck_height_m")),
+        lacking=("deck_height_m",)),
     Clash(("deck_height_m",), "deck_height_m: there is no deck; write deck_mass_t too, or leave it out",
         lacking=("deck_mass_t",)),
     Clash(("deck_inertia_t_m2",), "deck_inertia_t_m2: there is no deck; write deck_mass_t too, or leave it out",
@@ -192,7 +196,7 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
     else:
         pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
         if "top_m" in common:
-            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=confirmed)
+            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=(*confirmed, "size_m"))
     if "columns" in values:
         return Pier.frame(pier, values["columns"], values["deck_mass_t"], confirm=confirmed)
     return pier
@@ -209,7 +213,7 @@ def with_width(values: Values, width_m: float, confirmed: Collection[str]) -> Pi
 
 
 def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pier:
-    """Return a pier of parts, and the deck as one more; drift is read at the highest point that is known."""
+    """Return a pier of parts, and the deck as one more."""
     written = (
         {name: values[f"part_{n}_{name}"] for name in PART if f"part_{n}_{name}" in values} for n in range(1, parts + 1)
     )
@@ -219,13 +223,12 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
         wrong = unlikely_deck(sum(part.mass_t for part in all_of_them), values["deck_mass_t"], common["confirm"])
         if wrong:
             raise InputError(*wrong)
-        deck = values["deck_height_m"] if "deck_height_m" in values else values["height_m"]
+        deck = values["deck_height_m"]
         inertia = values.get("deck_inertia_t_m2", 0.0)
         if wrong := unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]):
             raise InputError(*wrong)
         all_of_them.append(Part(values["deck_mass_t"], deck, inertia, 0.0))
-    top = max(values.get("height_m", 0.0), *(part.height_m for part in all_of_them))
-    return Pier.of_parts(values["width_m"], all_of_them, **{"top_m": top, "deck_height_m": deck} | common)
+    return Pier.of_parts(values["width_m"], all_of_them, deck_height_m=deck, **common)
 
 
 def _check_one_size(table: Table) -> None:

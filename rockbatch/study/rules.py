@@ -164,13 +164,17 @@ class Rule:
     @property
     def words(self) -> str:
         """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
+        return self.words_at(self.at_m)
+
+    def words_at(self, height: float | None) -> str:
+        """Return that name with the height at which the demand is read [m], if it is read at one."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
         statistic = STATISTICS[self.statistic or "max"].words
         if self.is_ban:
             return f"no record {demand.verb}"
-        place = "" if self.at_m is None else f" at {self.at_m:g} m"
+        place = "" if height is None else f" at {height:g} m"
         if self.statistic != "count":
             return f"{statistic} of {self.demand}{place}"
         return f"{statistic} with {self.demand}{place}" + (

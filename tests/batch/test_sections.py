@@ -73,9 +73,9 @@ IN_PARTS = {"width_m": 4.0, "part": [{"mass_t": 500.0, "height_m": 7.0, "inertia
 @pytest.mark.parametrize(
     ("tables", "message"),
     [
-        ({"output": {"sections_m": [0.0, 15.0]}}, "sections_m = 15: must be within 0 and the top of the shaft, 14 m"),
+        ({"output": {"sections_m": [0.0, 15.0]}}, "sections_m = 15: must be within 0 and the top of the pier, 14 m"),
         ({"output": {"sections": 3, "sections_m": [0.0]}}, "sections and sections_m are given, which say the same; keep one"),
-        ({"output": {"sections": 1}}, "2 or above: foot and top of the shaft are among them"),
+        ({"output": {"sections": 1}}, "2 or above: foot and top of the pier are among them"),
         ({"output": {"sections": 3}, "pier": FRAME}, "how the deck of a frame presses on each of its columns is not known"),
         ({"output": {"sections": 3}, "pier": IN_PARTS}, "part 1, at 7 m, has no length_m, over which its mass is spread"),
         ({"output": {"sections": 3}, "pier": {"alpha": 0.2, "p": 1.0, "mu": 4.0}}, "mu = 4 does not say how the mass"),

@@ -43,7 +43,7 @@ def test_the_worst_of_every_response_is_found_whatever_is_checked():
     assert (found["base_tilt_rad"].value, found["ductility"].value) == (4e-3, 33.0)
     assert in_words(found["settlement_m"]) == "381 mm"
     assert in_words(found["base_tilt_rad"]) == "4 mrad (0.23°)"
-    assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm)"
+    assert in_words(found["top_drift_m"]) == "1.73 m (1,731 mm) at 14.422\u00a0m"
 
 
 def test_the_worst_settlement_of_springs_that_creep_is_a_range():

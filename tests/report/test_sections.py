@@ -107,8 +107,11 @@ def test_the_answer_says_how_far_the_worst_pier_rotates_and_how_high_its_heel_ri
     peaks[peaks["p"].isin(run)].to_csv(tmp_path / "peaks.csv", index=False)
     markup = section_of(tmp_path, answer)
     own = {row[0].split("p = ")[-1]: row[1:] for row in table_of(markup)[1:]}
-    assert table_of(markup)[0] == ["case", "rotation [θ/α]", "drift of the top [mm]", "uplift of the heel [mm]"]
     pier = Pier(alpha=0.13, p=0.35)
+    at = f" at {2 * pier.height:.5g} m"  # in the head, unless the piers differ in it
+    head, place = (f"drift{at} [mm]", "") if len(run) == 1 else ("drift [mm]", at)
+    assert table_of(markup)[0] == ["case", "rotation [θ/α]", head, "uplift of the heel [mm]"]
+    own = {name: [cells[0], cells[1].removesuffix(place), *cells[2:]] for name, cells in own.items()}
     uplift, drift = 2 * pier.half_width * 0.1 * 0.13, 2 * pier.height * 0.1 * 0.13  # of the top of a uniform block
     assert [float(cell.replace(",", "")) for cell in own["0.35 rad/s"]] == pytest.approx(
         [0.1, 1000 * drift, 1000 * uplift], rel=5e-3
@@ -135,9 +138,9 @@ def test_the_answer_has_what_dampers_bear_and_that_they_hold_the_pier_at_a_tilt(
     peaks.loc[damped & (peaks["record"] == "ERZ-NS"), "damper_stroke_m"] = 0.0512
     peaks.to_csv(tmp_path / "peaks.csv", index=False)
     head, free, *rest = table_of(section_of(tmp_path, answer))
+    drift = f"drift at {2 * pier.height:.5g} m [mm]"
     assert head[1:] == [
-        "rotation [θ/α]", "drift of the top [mm]", "residual rotation [mrad]", "uplift of the heel [mm]", "damper force [kN]",
-        "stroke [mm]",
+        "rotation [θ/α]", drift, "residual rotation [mrad]", "uplift of the heel [mm]", "damper force [kN]", "stroke [mm]",
     ]  # fmt: skip
     (damped,) = [row for row in (free, *rest) if row[0].startswith("damped")]
     (free,) = [row for row in (free, *rest) if row[0].startswith("free")]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from report_page import Page
 
 import rockbatch as rb
 from rockbatch.analyses.sensitivity.sampled import low_base_high
@@ -53,9 +54,7 @@ def problems_of(folder, pier, *rest):
         (SHAFT + "deck_mass_t = 1000", Pier.with_deck(4.0, 30.0, 2000.0, 1000.0)),
         (
             SHAFT + "deck_mass_t = 1000\ndeck_height_m = 28\ndeck_inertia_t_m2 = 5e4\ngravity = 9.8",
-            Pier.with_deck(
-                4.0, 30.0, 2000.0, 1000.0, deck_height_m=28.0, deck_inertia_t_m2=5e4, top_m=30.0, gravity=9.8
-            ),
+            Pier.with_deck(4.0, 30.0, 2000.0, 1000.0, deck_height_m=28.0, deck_inertia_t_m2=5e4, gravity=9.8),
         ),
         (
             "width_m = 6\n[[pier.part]]\nmass_t = 900\nheight_m = 10\ninertia_t_m2 = 3e4\n"
@@ -63,8 +62,8 @@ def problems_of(folder, pier, *rest):
             Pier.of_parts(6.0, [Part(900.0, 10.0, 3e4), Part(300.0, 25.0)]),
         ),
         (
-            "width_m = 6\nheight_m = 24\ndeck_mass_t = 300\n[[pier.part]]\nmass_t = 900\nheight_m = 10\ninertia_t_m2 = 3e4",
-            Pier.of_parts(6.0, [Part(900.0, 10.0, 3e4), Part(300.0, 24.0, length_m=0.0)]),
+            "width_m = 6\ndeck_height_m = 24\ndeck_mass_t = 300\n[[pier.part]]\nmass_t = 900\nheight_m = 10\ninertia_t_m2 = 3e4",
+            Pier.of_parts(6.0, [Part(900.0, 10.0, 3e4), Part(300.0, 24.0, length_m=0.0)], deck_height_m=24.0),
         ),
         (
             "width_m = 6\n[[pier.part]]\nmass_t = 900\nheight_m = 10\nlength_m = 20\nwidth_m = 2\napart_m = 5\n"
@@ -119,7 +118,7 @@ def test_lists_of_parts_and_of_columns_are_combined_too(tmp_path):
         ("alpha = 0.1\np = 1\nmass_t = 10\ndeck_mass_t = 9\n", "5: [pier]: deck_mass_t: goes with width_m and height_m"),
         (SHAFT + "deck_height_m = 31\n", "5: [pier]: deck_height_m: there is no deck; write deck_mass_t too"),
         (SHAFT + "deck_inertia_t_m2 = 31\n", "5: [pier]: deck_inertia_t_m2: there is no deck"),
-        (SHAFT + "[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "4: [pier]: mass_t: the parts say what the pier weighs"),
+        ("width_m = 4\nmass_t = 9\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "3: [pier]: mass_t: the parts say what"),
         ("width_m = 4\n[[pier.part]]\nmass_t = 1\n", "3: [[pier.part]] no. 1: height_m is missing; write for example"),
         ("width_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "1: [pier]: parts: they have no rotary inertia"),
         ("width_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\nheigth_m = 2\n", "6: [[pier.part]] no. 1: heigth_m: unknown key"),
@@ -130,6 +129,10 @@ def test_lists_of_parts_and_of_columns_are_combined_too(tmp_path):
         (PARTS + "inertia_t_m2 = 9\nlength_m = 2\nwidth_m = 2\n", "6: [[pier.part]] no. 1: inertia_t_m2 and width_m are given"),
         ("width_m = 4\npart = []\n", "3: [pier]: part = []: a pier has one part at least"),
         ("width_m = 4\n[pier.part]\nmass_t = 1\nheight_m = 2\n", "3: pier.part: expected a list of tables; write [[pier.part]]"),
+        ("width_m = 4\nheight_m = 9\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "3: [pier]: height_m: the parts say how high"),
+        ("height_m = [9, 8]\nwidth_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n", "2: [pier]: height_m: the parts say how"),
+        ("width_m = 4\nheight_m = 9\ndeck_mass_t = 3\ndeck_height_m = 4\n[[pier.part]]\nmass_t = 1\nheight_m = 2\n",
+         "3: [pier]: height_m: the parts say how high the pier is; call it top_m if drift is to be read at this height"),
         ("alpha = 0.1\np = 1\ntop_m = 100\n", "4: [pier]: top_m = 100: 6.8 times the height of the pier, 14.6"),
         (FRAME.replace("= 4", "= 1"), "6: [pier]: columns = 1: expected a whole number, 2 or above"),
         (FRAME.replace("deck_mass_t = 420\n", ""), "5: [pier]: columns: a frame has a deck; write deck_mass_t"),
@@ -190,11 +193,116 @@ def test_drift_is_read_at_the_top_and_forces_in_kilonewtons(tmp_path):
     assert response.pier == Pier.with_deck(4.0, 30.0, 2000.0, 1000.0, top_m=20.0)
 
 
+IN_PARTS = {"width_m": 4.0, "part": [{"mass_t": 1000.0, "height_m": 30.0, "length_m": 60.0, "width_m": 4.0}]}
+PULSES = {
+    "pulse": [{"name": "s", "shape": "sine", "amplitude_g": 0.3, "period_s": 2.0, "dt_s": 0.02, "duration_s": 4.0}]
+}
+
+
+def of_parts(**keys):
+    return {"pier": IN_PARTS | keys, "motions": PULSES, "case": [{"name": "rigid", "base": "rigid"}]}
+
+
+@pytest.mark.parametrize("height", [60.0, [50.0, 60.0]])
+def test_a_height_beside_parts_is_refused_by_every_door(height):
+    said = r"height_m: the parts say how high the pier is; call it top_m"
+    with pytest.raises(InputError, match=said):
+        rb.Study.from_dict(of_parts(height_m=height))
+    with pytest.raises(InputError, match=said):
+        rb.Study.from_dict(of_parts()).with_(pier={"height_m": height})
+    across = of_parts(height_m=height) | {"case": [{"name": "r", "base": "rigid", "other_width_m": 6.0}]}
+    across["motions"] = PULSES | {"axis_deg": 0.0}
+    with pytest.raises(InputError, match=said):
+        rb.Study.from_dict(across)
+
+
+def test_the_advice_about_a_height_beside_parts_reads_the_drift_there():
+    drift = rb.run(rb.Study.from_dict(of_parts(top_m=[30.0, 60.0])))["top_drift_m"]
+    assert drift[0] == pytest.approx(0.5 * drift[1], rel=1e-12)
+    (ended,) = rb.run(rb.Study.from_dict(of_parts()))["top_drift_m"]
+    assert ended == drift[1] > 0.0
+
+
+def test_a_pier_of_one_part_drifts_as_the_same_pier_by_width_and_height():
+    whole = of_parts() | {"pier": {"width_m": 4.0, "height_m": 60.0, "mass_t": 1000.0}}
+    row, same = (rb.run(rb.Study.from_dict(tables)).iloc[0] for tables in (of_parts(), whole))
+    for name in ("theta_max_over_alpha", "top_drift_m", "heel_uplift_m", "drift_height_m"):
+        assert row[name] == pytest.approx(same[name], rel=1e-9), name
+
+
+def test_every_drift_of_a_folder_says_its_own_height(tmp_path, capsys):
+    """Two piers, whose drift is read at different heights: the heights are numbers, by which all words are made."""
+    check = '[[check]]\nname = "joint"\ndemand = "top_drift_m"\nat_most = 1.0\nreason = "r"\n'
+    path = written(tmp_path, SHAFT + "top_m = [28.5, 15]\n", RIGID, check)
+    main(["run", str(path), "--out", str(tmp_path / "out")])
+    told = capsys.readouterr().out
+    results = rb.open_results(tmp_path / "out")
+    assert [case["pier"]["top_m"] for case in results.info["cases"]] == [28.5, 15.0]
+    assert results.peaks["drift_height_m"].tolist() == [28.5, 15.0]
+    verdicts = rb.check(tmp_path / "out")
+    assert verdicts["at_m"].tolist() == [28.5, 15.0]
+    for value, height in zip(verdicts["value"], ("28.5", "15"), strict=True):
+        assert f"{value:.3g} at {height} m ✓" in told
+    assert verdicts["words"].tolist() == [f"maximum of top_drift_m at {height} m" for height in ("28.5", "15")]
+    main(["check", str(tmp_path / "out"), "--all"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert "joint: maximum of top_drift_m at 28.5 m at most 1 m; maximum of top_drift_m at 15 m at most 1 m" in told
+    page = Page((rb.report(tmp_path / "out").path).read_text(encoding="utf-8")).text
+    for height in ("28.5", "15"):
+        assert f"drift is read at {height} m" in page
+        assert f" at {height} m" in page.partition("drift is read at")[0]
+
+
+def test_the_head_of_a_column_has_the_height_that_all_share(tmp_path, capsys):
+    path = written(tmp_path, SHAFT + "top_m = 28.5\n", RIGID)
+    main(["run", str(path), "--out", str(tmp_path / "out")])
+    told = capsys.readouterr().out
+    assert "drift at" in told
+    assert "28.5 m [mm]" in told
+    check = '[[check]]\nname = "joint"\ndemand = "top_drift_mm"\nat_most = 900\nreason = "r"\n'
+    path = written(tmp_path, SHAFT + "top_m = 28.5\n", RIGID, check)
+    main(["run", str(path), "--out", str(tmp_path / "checked")])
+    assert "joint at 28.5 m ≤ 900 mm" in " ".join(capsys.readouterr().out.split())
+    page = Page(rb.report(tmp_path / "checked").path.read_text(encoding="utf-8")).text
+    assert "at 28.5 m, ≤ 900 mm" in page
+
+
+def test_words_on_drift_follow_the_number_in_the_results(tmp_path):
+    path = written(tmp_path, SHAFT, RIGID)
+    main(["run", str(path), "--out", str(tmp_path / "out")])
+    file = tmp_path / "out" / "run.json"
+    assert '"top_m": 30.0' in file.read_text(encoding="utf-8").replace("30.000000000000004", "30.0")
+    info = json.loads(file.read_text(encoding="utf-8"))
+    info["cases"][0]["pier"]["top_m"] = 12.5
+    file.write_text(json.dumps(info), encoding="utf-8")
+    page = Page(rb.report(tmp_path / "out").path.read_text(encoding="utf-8")).text
+    assert "drift at 12.5 m [mm]" in page
+
+
+def test_a_spectrum_of_piers_of_parts_does_not_read_drift_at_their_ends(tmp_path):
+    """Its piers have sizes of their own, and the parts are those of the study's."""
+    tables = of_parts(top_m=20.0) | {"spectrum": {"alpha": [0.1], "size_m": [5.0, 50.0]}}
+    tables["pier"] |= {"deck_mass_t": 500.0, "deck_height_m": 61.0}
+    spectrum, _ = read_spectrum(rb.Study.from_dict(tables))
+    for case in spectrum.cases:
+        assert case.pier.top == case.pier.deck == 2.0 * case.pier.height
+
+
 def test_a_study_without_masses_tells_of_none(tmp_path):
     study = study_of(tmp_path, "alpha = 0.13\np = 0.38\n")
     assert main(["run", str(study.path), "--out", str(tmp_path / "out")]) == 0
     (case,) = json.loads((tmp_path / "out" / "run.json").read_text())["cases"]
-    assert list(case["pier"]) == ["alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"]
+    assert list(case["pier"]) == [
+        "alpha",
+        "p",
+        "mu",
+        "gravity",
+        "size_m",
+        "half_width_m",
+        "height_m",
+        "highest_m",
+        "top_m",
+    ]
     assert case["parameters"] == {"restitution": None, "flight": "guided", "flight_limit_mm": 5.0}
 
 

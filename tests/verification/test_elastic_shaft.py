@@ -34,7 +34,7 @@ from rockbatch.core.types import (
     Pull,
 )
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import mode_of
+from rockbatch.pier import mode_of, shape_at
 from rockbatch.simulation import Run, run_fixed, written_run
 from rockbatch.simulation.forces import at_rows
 from rockbatch.simulation.models import flexible_block
@@ -154,10 +154,14 @@ def test_modes_have_the_integrals_of_a_beam_under_a_force_at_its_top():
     legs = rb.Part.shaft(3.0, 20.0, 1e-6)
     lumped = mode_of(rb.Pier.of_parts(6.0, [legs, rb.Part(1000.0, 20.0, 500.0, 0.0)], top_m=20.0))
     np.testing.assert_allclose(lumped, (1.0, 1.0, 20.0), rtol=1e-8)
-    raised = mode_of(rb.Pier.of_parts(6.0, [legs, rb.Part(1000.0, 22.0, 500.0, 0.0)], top_m=20.0))
-    np.testing.assert_allclose(raised, (1.15, 1.15**2, 1.15 * 22.0), rtol=1e-8)  # 1 + 1.5 · 2/20
+    raised = rb.Pier.of_parts(6.0, [legs, rb.Part(1000.0, 22.0, 500.0, 0.0)], top_m=20.0)
+    np.testing.assert_allclose(
+        mode_of(raised), (1.0, 1.0, 22.0), rtol=1e-8
+    )  # the top is the mass, whatever drift is read at
+    assert shape_at(raised, 22.0) == 1.0
+    assert shape_at(raised, 24.2) == pytest.approx(1.15, rel=1e-14)  # straight above it: 1 + 1.5 · 2.2/22
     whole, lower = rb.Part.shaft(2.0, 30.0, 1000.0), rb.Part.shaft(2.0, 12.0, 400.0)
-    upper = rb.Part(600.0, 21.0, 600.0 * (2.0**2 + 18.0**2) / 12, 18.0)  # of which the shaft's top cuts another piece
+    upper = rb.Part(600.0, 21.0, 600.0 * (2.0**2 + 18.0**2) / 12, 18.0)
     cut, uncut = (mode_of(rb.Pier.of_parts(6.0, parts, top_m=24.0)) for parts in ([lower, upper], [whole]))
     np.testing.assert_allclose(cut, uncut, rtol=1e-13)
 

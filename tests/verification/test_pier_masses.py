@@ -1,6 +1,7 @@
 """Piers with a deck, of parts, and rocking frames: published numbers, and mechanics done again with point masses."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +9,10 @@ import pytest
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
-from rockbatch.pier import Part, Pier, in_kilonewtons
+from rockbatch.pier import Part, Pier, described, in_kilonewtons
+from rockbatch.pier.bending import shape_at
+from rockbatch.pier.figures import sketches
+from rockbatch.pier.sections import section_heights
 from rockbatch.simulation import run_fixed
 
 G = 9.81
@@ -85,6 +89,44 @@ def test_the_top_is_the_highest_point_unless_it_is_said():
     assert Pier.with_deck(4.0, 30.0, 2000.0, 500.0, deck_height_m=32.0).top == 32.0
     assert Pier.with_deck(4.0, 30.0, 2000.0, 500.0, top_m=31.5).top == 31.5
     assert Pier.of_parts(4.0, [(1000.0, 10.0, 5e4), (300.0, 31.0)]).top == 31.0
+
+
+SHAFT, CAP = Part.rectangle(1000.0, 30.0, 60.0, 4.0), Part.rectangle(100.0, 61.0, 2.0, 12.0)
+LIFTS = [Part.rectangle(500.0, 15.0, 30.0, 5.0), Part.rectangle(500.0, 45.0, 30.0, 3.0)]
+FOOTING = [Part.rectangle(3000.0, 1.0, 2.0, 12.0), Part.rectangle(500.0, 32.0, 60.0, 4.0)]
+
+
+@pytest.mark.parametrize(
+    ("pier", "highest", "deck"),
+    [
+        (Pier.rectangle(4.0, 60.0), 60.0, 60.0),
+        (Pier.frame(Pier.rectangle(4.0, 60.0, mass_t=1000.0), 3, 900.0), 60.0, 60.0),
+        (Pier.with_deck(4.0, 60.0, 1000.0, 500.0, deck_height_m=62.0), 62.0, 62.0),
+        (Pier.with_deck(4.0, 60.0, 1000.0, 500.0, deck_height_m=58.0), 60.0, 58.0),
+        (replace(Pier.rectangle(4.0, 60.0), deck_height_m=62.0), 62.0, 62.0),
+        (Pier.of_parts(10.0, [SHAFT]), 60.0, 60.0), (Pier.of_parts(10.0, LIFTS), 60.0, 60.0),
+        (Pier.of_parts(10.0, [CAP, SHAFT]), 62.0, 62.0), (Pier.of_parts(10.0, FOOTING), 62.0, 62.0),
+        (Pier.of_parts(10.0, [SHAFT, Part(500.0, 63.0, 0.0, 0.0)], deck_height_m=63.0), 63.0, 63.0),
+        (Pier.of_parts(10.0, [SHAFT, Part(500.0, 50.0, 0.0, 0.0)], deck_height_m=50.0), 60.0, 50.0),
+    ],
+)  # fmt: skip
+def test_every_pier_has_one_top_whatever_it_is_made_of(pier, highest, deck):
+    """Drift, the highest section, the end of the bending shaft and of the sketch are there; `top_m` moves the drift alone."""
+    for drift, one in ((highest, pier), (50.0, replace(pier, top_m=50.0))):
+        assert (one.highest, one.top, one.deck) == pytest.approx((highest, drift, deck), rel=1e-14)
+        if pier.deck_over_columns is None:
+            assert (section_heights(one, 2)[-1], shape_at(one, highest)) == (highest, 1.0)
+        (outline,) = [
+            mark for mark in sketches([described(one)], {"rigid"})[0].panels[0].marks if mark.look.kind == "band"
+        ]
+        assert np.ptp(outline.x) / np.ptp(outline.y) == pytest.approx(2.0 * pier.half_width / highest, rel=1e-14)
+
+
+def test_a_drift_read_at_the_end_of_a_tall_part_is_nothing_odd():
+    """Most of the mass is in the footing: the centre is at 5.4 m, the upper end of the shaft at 62 m."""
+    assert Pier.of_parts(10.0, FOOTING, top_m=62.0).top == 62.0
+    with pytest.raises(InputError, match=r"top_m = 160: 2\.6 times the height of the pier, 62 m"):
+        Pier.of_parts(10.0, FOOTING, top_m=160.0)
 
 
 @pytest.mark.parametrize(

@@ -310,13 +310,13 @@ def test_a_pier_whose_mass_is_not_known_over_the_height_has_no_sections(pier, me
         section_heights(pier, 3)
 
 
-def test_sections_are_within_the_shaft_and_a_deck_above_it_is_none_of_it():
+def test_sections_are_between_the_foot_and_the_highest_point():
     pier = rb.Pier.with_deck(4.0, 20.0, 600.0, 300.0, deck_height_m=22.0)
-    assert section_heights(pier, 3) == (0.0, 10.0, 20.0)
+    assert section_heights(pier, 3) == (0.0, 11.0, 22.0)
     assert section_heights(pier, (15.0, 5.0, 5.0)) == (5.0, 15.0)
-    for height in (-1.0, 21.0):
+    for height in (-1.0, 23.0):
         with pytest.raises(
-            rb.InputError, match=rf"sections_m = {height:g}: must be within 0 and the top of the shaft, 20 m"
+            rb.InputError, match=rf"sections_m = {height:g}: must be within 0 and the top of the pier, 22 m"
         ):
             section_heights(pier, (5.0, height))
 

@@ -211,7 +211,13 @@ def _piers(
     weighed = has_mass(table.file)
     templates = dict.fromkeys(
         replace(
-            case.pier, alpha=1.0, p=1.0, top_m=None, deck_height_m=None, mass_t=case.pier.mass_t if weighed else None
+            case.pier,
+            alpha=1.0,
+            p=1.0,
+            top_m=None,
+            deck_height_m=None,
+            parts=None,
+            mass_t=case.pier.mass_t if weighed else None,
         )
         for case in study.cases
     )

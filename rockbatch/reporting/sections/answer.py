@@ -1,7 +1,7 @@
 """The first screen: which cases pass, every check in every case, runs without a result, and every peak in one picture."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from decimal import ROUND_UP, Decimal
 from itertools import compress
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 
 from rockbatch.checks import wording
 from rockbatch.checks.remarks import undamped_settlement, weak_supports
-from rockbatch.checks.responses import LOST, RESPONSES, Worst, in_words, standing
+from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_words, standing
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
@@ -60,7 +60,8 @@ def responses(finished: Finished) -> Markup:
     if finished.runs.empty:
         return Markup("")
     by_case = grouped(finished.worst, lambda worst: _place(finished, worst))
-    present = [name for name in RESPONSES if any(worst.demand == name for worst in finished.worst)]
+    heights = heights_of(finished.worst)
+    present = [name for name in RESPONSES if name in heights]
     devices = [kind for kind, (column, _) in DEVICES.items() if f"{kind}_{column}" in finished.runs]
     places = [worst.place for worst in finished.worst]
     run_at = dict(zip(places, as_dicts(finished.runs.iloc[places]), strict=True))  # one by one takes a millisecond each
@@ -72,7 +73,9 @@ def responses(finished: Finished) -> Markup:
         by_demand = {worst.demand: worst for worst in by_case.get((series, pier), [])}
         name = finished.series[series].label + (f", {finished.piers[pier]}" if finished.piers[pier] else "")
         cells: list[object] = [
-            _response(finished, by_demand[demand], run_at[by_demand[demand].place]) if demand in by_demand else "–"
+            _response(finished, by_demand[demand], run_at[by_demand[demand].place], heights[demand])
+            if demand in by_demand
+            else "–"
             for demand in present
         ]
         if devices:
@@ -80,7 +83,7 @@ def responses(finished: Finished) -> Markup:
             cells += [cell for kind in devices for cell in _of_devices(finished, runs, kind)]
         place = series, pier
         rows.append([name, *cells, f"{fallen[place]:,} of {planned[place]:,}" if fallen[place] else "none"])
-    heads = [Head("case"), *(_head(name) for name in present)]
+    heads = [Head("case"), *(_head(name, heights[name]) for name in present)]
     heads += [head for kind in devices for head in _heads_of(finished, kind)]
     if fallen:
         return table([*heads, Head(LOST)], rows, name="Greatest responses")
@@ -95,15 +98,15 @@ def _rotation(of_case: "list[Worst]") -> float:
     return next((worst.value for worst in of_case if worst.demand == "theta_max_over_alpha"), 0.0)
 
 
-def _head(name: str) -> Head:
-    note = DEMANDS[name].words + (", of a rigid shaft" if name == "top_drift_m" else "")
-    return Head(RESPONSES[name].head, ".3g", note)
+def _head(name: str, heights: Collection[float]) -> Head:
+    return Head(RESPONSES[name].head(heights), ".3g", DEMANDS[name].words)
 
 
-def _response(finished: Finished, worst: Worst, run: dict[str, Any]) -> Markup:
+def _response(finished: Finished, worst: Worst, run: dict[str, Any], heights: Collection[float]) -> Markup:
     """Return a greatest response, with the value in all its units and its record as a note."""
     said = f"{in_words(worst)}: {finished.place_of(run)}, t = {number(float(run['t_max_s']))} s"
-    return tag("span", number(worst.value * RESPONSES[worst.demand].factor, "#.3g"), title=said)
+    value = number(worst.value * RESPONSES[worst.demand].factor, "#.3g")
+    return tag("span", value + worst.place_among(heights), title=said)
 
 
 def _heads_of(finished: Finished, kind: str) -> list[Head]:

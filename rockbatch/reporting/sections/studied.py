@@ -6,6 +6,7 @@ from typing import Any
 
 from rockbatch.checks.coverage import stations_of
 from rockbatch.pier.figures import devices, sketches
+from rockbatch.quantities.cases import top
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted, symbol
 from rockbatch.reporting.markup import Markup, join
@@ -51,7 +52,9 @@ def section(finished: Finished, level: str = "h3") -> Markup:
     across: dict[tuple[float, ...], Case] = {}
     for case in cases:
         piers = across if case.get("across_of") else along
-        piers.setdefault(tuple(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), case["pier"])
+        drift_at = top(case)
+        key = *(case["pier"][key] for key in ("alpha", "p", "mu", "gravity")), drift_at
+        piers.setdefault(key, case["pier"] | {"top_m": drift_at})
     names_across = {case["case"] for case in cases if case.get("across_of")}
     return render(
         "reporting/sections/studied.html", finished=finished, records=records, level=level, span=span, plain=plain,
@@ -99,7 +102,7 @@ def _drawn(finished: Finished) -> list[Markup]:
         pier = pier_of(case)
         places = devices(pier, restraints_of(case)) if pier else ()
         deck = {"deck_m": pier.deck} if has_deck and pier else {}
-        key = case["pier"]["alpha"], case["pier"]["p"], places
+        key = case["pier"]["alpha"], case["pier"]["p"], case["pier"].get("highest_m"), places
         names = shown.setdefault(key, (case["pier"] | deck | {"devices": places}, []))[1]
         if case["case"] not in names:
             names.append(str(case["case"]))

@@ -75,10 +75,16 @@ def scorecard(finished: Finished) -> Markup:
     columns = card.open_columns(MOST_COLUMNS)
     shown = MOST_CASES if len(card.rows) <= MOST_CASES else OPEN_CASES
     folded = len(card.columns) - len(columns)
-    asked = {verdict.check: wording.requirement(verdict) for verdict in finished.verdicts}
+    asked = wording.requirements(finished.verdicts)
     heads = [
-        tag("th", name, tag("small", limit), scope="col", title=asked[name])
-        for name, limit, _ in (card.columns[i] for i in columns)
+        tag(
+            "th",
+            column.check,
+            tag("small", ", ".join(filter(None, (column.at, column.limit)))),
+            scope="col",
+            title="; ".join(asked[column.check]),
+        )
+        for column in (card.columns[i] for i in columns)
     ]
     more = [tag("th", scope="col")] if folded else []
     best = card.rows[:MOST_DRAWN]
@@ -118,7 +124,7 @@ def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class
 
 def _cell(finished: Finished, column: Column, cell: Cell | None) -> Markup:
     """Return a cell: value, sign and share of the limit, the bar, and, on paper, the record that governs."""
-    check = f"{column.check} {column.limit}"
+    check = " ".join(filter(None, (column.check, column.at, column.limit)))
     if cell is None or cell.verdict.verdict == DOES_NOT_APPLY:
         return tag("td", tag("span", "–", aria_label="does not apply"), class_="na", data_check=check)
     verdict = cell.verdict
@@ -142,7 +148,8 @@ def _said(finished: Finished, verdict: Verdict) -> str:
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
     firsts = [of_check[0] for of_check in grouped(verdicts, lambda verdict: verdict.check).values()]
-    rows = [[row.check, wording.requirement(row), BASIS.get(row.basis, row.basis), row.reason] for row in firsts]
+    asked = wording.requirements(verdicts)
+    rows = [[row.check, "; ".join(asked[row.check]), BASIS.get(row.basis, row.basis), row.reason] for row in firsts]
     rests = {row.statistic: wording.unchecked(row) for row in firsts}
     heads = map(Head, ("check", "asks", "limit from", "reason"))
     sentences = (f"{name}: {words}." for name, words in rests.items() if words)
