@@ -8,6 +8,7 @@ from rockbatch.core.block.events import (
     event_functions_of,
     lift_off,
     lift_rate,
+    released,
     within_bounce,
 )
 from rockbatch.core.block.model import Stance
@@ -34,6 +35,7 @@ from rockbatch.core.types import (
 )
 
 system.event_functions.of(FlexibleBlock)(event_functions_of)
+system.released.of(FlexibleBlock)(released)
 
 
 @system.longest_step.of(FlexibleBlock)
