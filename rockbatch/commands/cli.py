@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 from rockbatch.commands.arguments import COMMANDS, DISCARDING
 from rockbatch.commands.interrupts import answered_interrupts
 from rockbatch.commands.streams import is_lost, open_missing, say
-from rockbatch.common.errors import AboutResults, InputError
+from rockbatch.common.errors import InputError, PlainRemark
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import __version__
@@ -125,7 +125,7 @@ def _exit_code(parsed: argparse.Namespace) -> int:
     is_taken = any(isinstance(value, Path) and is_stdout(value) for value in vars(parsed).values())
     try:
         with redirect_stdout(sys.stderr) if is_taken else nullcontext(), warnings.catch_warnings():
-            warnings.simplefilter("always", AboutResults)
+            warnings.simplefilter("always", PlainRemark)
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].run_command(parsed)
     except InputError as error:
@@ -152,11 +152,11 @@ def _exit_code(parsed: argparse.Namespace) -> int:
 
 
 def _plainly(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Return how warnings are shown: those about a folder of results once and in plain words, others ``otherwise``."""
+    """Return how warnings are shown: plain remarks once and in plain words, others ``otherwise``."""
     shown = set()
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-        if not issubclass(category, AboutResults):
+        if not issubclass(category, PlainRemark):
             otherwise(message, category, *place)
         elif str(message) not in shown:
             shown.add(str(message))

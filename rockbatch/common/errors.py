@@ -61,7 +61,15 @@ def starting_threads(otherwise: str = "") -> Iterator[None]:
         ) from error
 
 
-class AboutResults(UserWarning):
+class PlainRemark(Warning):
+    """A warning that the command shows in plain words, and each once."""
+
+
+class Superseded(PlainRemark, DeprecationWarning):
+    """A key or an argument without effect, which a later version will refuse."""
+
+
+class AboutResults(PlainRemark, UserWarning):
     """A remark on a folder of results that is opened."""
 
 

@@ -40,6 +40,7 @@ from rockbatch.core.system import (
     longest_step,
     one_pass,
     pier_in,
+    released,
     status_at_sample,
     take_in_part,
     take_in_step,
@@ -200,6 +201,7 @@ def _apply_event(context, i, m, now, which, x):
     after = event.now
     if event.kind not in (LIFT_OFF, TAKE_OFF):  # these have chosen the devices' directions and modes
         after_contact(m, devices, after, here)
+        after = released(loaded(devices, m, after, here), after, here)
     if event.kind == LIFT_OFF and _is_zero(now.y):  # nothing jumps, nor has it moved since the last row
         take_back(history, number)
     write(history, Stamp(number, t, event.kind), m, devices, after, here)

@@ -67,6 +67,12 @@ def transition(m, devices, now, which, ground, dt):
 
 
 @optional_hook
+def released(m, now, ground):
+    """Return the Moment ``now`` behind an impact of a pier under its devices, in the air if the ground would have to hold it."""
+    return now
+
+
+@optional_hook
 def longest_step(m, start, h):
     """Return the length [s], ``h`` at most, of a sub-step from the Instant ``start`` in which event functions show all events."""
     return h

@@ -4,11 +4,13 @@ Values are checked together: :func:`problems` reports what is impossible about a
 """
 
 import math
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import InitVar, dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError, Superseded
 from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, Bounds, Usual, rounded_up
 from rockbatch.pier.bending import problems as bending_problems
@@ -35,7 +37,6 @@ Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
 SpringLaw = Literal["bouc-wen", "epp", "hardening"]
 Shaft = Literal["rigid", "elastic"]
-FlexuralImpact = Literal["rate", "momentum"]
 
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
 """Laws whose first loading is Bouc–Wen's curve with the exponent n; the other has a sharp corner."""
@@ -79,7 +80,6 @@ BOUNDS = {
 
 WORDS: dict[str, tuple[str, ...]] = {
     "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw), "shaft": get_args(Shaft),
-    "flexural_impact": get_args(FlexuralImpact),
 }  # fmt: skip
 """Possible words of the fields of bases."""
 
@@ -91,6 +91,18 @@ USUAL = {
     "friction": Usual(2.0, "as a coefficient: interfaces have 0.1 to 1", 0.02),
 }
 """Usual values of the fields of bases, in a study and in Python alike."""
+
+
+def wrong_blow(flexural_impact: str) -> str:
+    """Return why this is no rule of a blow on a shaft that bends; empty if it is."""
+    if flexural_impact == "momentum":
+        return ""
+    if flexural_impact == "rate":
+        return (
+            "to carry the rate of the deflection over would create energy at about half of the blows; a blow keeps the momentum "
+            "of the mode. Leave the key out"
+        )
+    return 'a blow keeps the "momentum" of the mode, the only rule; leave the key out'
 
 
 class _Traits(InNotebook):
@@ -110,7 +122,8 @@ class _Traits(InNotebook):
     restraints: tuple[Restraint, ...]
     confirm: Sequence[str]
 
-    def __post_init__(self) -> None:
+    def _check(self) -> None:
+        """Raise ``InputError`` with every field that is impossible, or unusual and not confirmed."""
         values = {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}  # type: ignore[arg-type]
         wrong = [
             problem
@@ -164,8 +177,8 @@ class RigidBase(_Traits):
     ``friction``, if known, is the coefficient of the interface: a run reports where its forces need more (THEORY.md, Forces).
     ``flight``, ``flight_limit_mm``, ``area_m2`` and ``confirm`` are as on springs (:class:`ElasticBase`).
     With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
-    ``flexural_damping``. At an impact ``flexural_impact`` is kept: the "momentum" of the mode, by which all else follows, or the
-    "rate" of its deflection beside e (THEORY.md, A shaft that bends).
+    ``flexural_damping``. A blow keeps the momentum of the mode, from which all else follows, so that ``restitution`` does not
+    apply (THEORY.md, A shaft that bends); ``flexural_impact = "momentum"``, which said so, has no effect.
 
     Examples
     --------
@@ -181,7 +194,7 @@ class RigidBase(_Traits):
     area_m2: float | None = field(default=None, kw_only=True)
     shaft: Shaft = field(default="rigid", kw_only=True)
     flexural_damping: float = field(default=0.05, kw_only=True)
-    flexural_impact: FlexuralImpact = field(default="momentum", kw_only=True)
+    flexural_impact: InitVar[str | None] = field(default=None, kw_only=True)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     name = "rigid"
@@ -189,6 +202,16 @@ class RigidBase(_Traits):
     kinematics: ClassVar[Kinematics] = "finite"
     beta: ClassVar[float] = math.inf
     """β of ground that does not give: the limit of springs."""
+
+    def __post_init__(self, flexural_impact: str | None) -> None:
+        """Check the fields, and take the only rule of a blow that there is, with a remark."""
+        self._check()
+        if flexural_impact is None:
+            return
+        if problem := wrong_blow(flexural_impact):
+            raise InputError(f'flexural_impact = "{flexural_impact}": {problem}')
+        message = 'flexural_impact = "momentum" has no effect, since no other rule of a blow is left; leave it out'
+        warnings.warn(message, Superseded, stacklevel=4)
 
     @property
     def bends(self) -> bool:  # type: ignore[override]
@@ -201,7 +224,7 @@ class RigidBase(_Traits):
         values: dict[str, Any] = {"restitution": of_frame if self.restitution is None else self.restitution}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         if self.bends:
-            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping", "flexural_impact")}
+            values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping")}
         return values | _interface(self) | described_restraints(self.restraints)
 
 
@@ -255,6 +278,9 @@ class ElasticBase(_Traits):
 
     name = "elastic"
     on_springs: ClassVar[Literal[True]] = True
+
+    def __post_init__(self) -> None:
+        self._check()
 
     def _wrong_together(self) -> list[str]:
         wrong = BETA.problems("beta", self.beta)
@@ -472,9 +498,10 @@ def _wrong_bending(pier: Pier, base: Base) -> list[str]:
         wrong.append(
             'shaft = "elastic": devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
         )
-    if isinstance(base, RigidBase) and base.restitution is not None and base.flexural_impact == "momentum":
+    if isinstance(base, RigidBase) and base.restitution is not None:
         wrong.append(
-            f'restitution = {base.restitution:g}: what a blow takes follows from flexural_impact = "momentum"; leave it out'
+            f"restitution = {base.restitution:g}: what a blow takes of a shaft that bends follows from the momentum of its mode; "
+            "leave it out"
         )
     return wrong
 

@@ -44,7 +44,7 @@ def greatest_change(quantities: Mapping[str, Sized], fine: Any, coarse: Any, pie
     for name, (fields, scale) in quantities.items():
         finer, coarser = ([getattr(results, field) or 0.0 for field in fields] for results in (fine, coarse))
         changed = max(abs(new - old) for new, old in zip(finer, coarser, strict=True))
-        changes[name] = changed / max(*finer, FLOOR * scales[scale])
+        changes[name] = changed / max(*map(abs, finer), FLOOR * scales[scale])
     worst = max(changes, key=changes.__getitem__)
     return worst, changes[worst]
 

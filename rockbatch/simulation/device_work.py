@@ -16,12 +16,15 @@ from rockbatch.simulation.outcome import DeviceWork, Outcome
 class Courses(NamedTuple):
     """Elongation [m], force [N/kg] and energy taken [J/kg] of all devices at every row; shape (rows, devices) each.
 
-    Without the energy it is that of the force along the way, by the trapezoidal rule.
+    Without the energy it is that of the force along the way, by the trapezoidal rule. With the times ``t`` [s] of the rows and
+    the ``speed`` [m/s] of the elongation a device turns between rows, where its elongation is cubic; else at rows.
     """
 
     elongation: Samples
     pull: Samples
     lost: Samples | None = None
+    t: Samples | None = None
+    speed: Samples | None = None
 
 
 class Work(NamedTuple):
@@ -59,18 +62,37 @@ def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
     return np.array(ranges), np.array(counts, dtype=np.float64)
 
 
+def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
+    """Return the ``way`` of a device at times ``t`` with the extremes between them of the cubics by its ``speed``."""
+    h = np.diff(t)
+    rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
+    h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]
+    first, last = h * speed[rows], h * speed[rows + 1]
+    # the rate is first + 2 linear s + square s², and has one zero between its ends, whose signs differ
+    square, linear = 3.0 * (first + last - 2.0 * travel), 3.0 * travel - 2.0 * first - last
+    larger = -(linear + np.copysign(np.sqrt(np.maximum(linear**2 - square * first, 0.0)), linear))
+    s = first / larger
+    outside = ~((s >= 0.0) & (s <= 1.0))
+    s[outside] = larger[outside] / square[outside]
+    turns = start + s * travel + s * (1.0 - s) * ((1.0 - s) * (first - travel) + s * (travel - last))
+    return np.insert(way, rows + 1, turns)
+
+
 def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Work:
     """Return the work of all devices; half cycles count from ``least_stroke`` [m] up, from end to end.
 
     Travel and half cycles of a damper are its own, without its brace.
     """
     devices = [device for device in base.restraints for _ in places(pier, device)]
-    elongation, pull, lost = courses
+    elongation, pull, lost, t, speed = courses
     per_lambda = pier.gravity * pier.size / pier.half_width**2  # stiffness over the mass [1/s²] of λ = 1
     braces = [per_lambda * device.brace if isinstance(device, Damper) else math.inf for device in devices]
     way = elongation - pull / np.array(braces)
-    halves = []
-    for course in way.T:
+    halves, travels = [], []
+    for j, course in enumerate(way.T):
+        if t is not None and speed is not None and braces[j] == math.inf:
+            course = with_turns(t, course, speed[:, j])
+        travels.append(np.abs(np.diff(course)).sum())
         ranges, counts = rainflow(course)
         halves.append(counts[ranges >= least_stroke].sum())
     strain = np.full(len(devices), math.nan)
@@ -78,9 +100,8 @@ def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Wo
         if isinstance(device, Tendon) and device.strength < math.inf:
             most = device.psi * pier.gravity + device.lam * per_lambda * elongation[:, j].max()
             strain[j] = max(most, 0.0) / (device.strength * pier.gravity)
-    steps = np.diff(way, axis=0)
-    taken = (0.5 * (pull[1:] + pull[:-1]) * steps).sum(axis=0) if lost is None else lost[-1] - lost[0]
-    return Work(np.abs(steps).sum(axis=0), taken, np.array(halves), strain)
+    taken = (0.5 * (pull[1:] + pull[:-1]) * np.diff(way, axis=0)).sum(axis=0) if lost is None else lost[-1] - lost[0]
+    return Work(np.array(travels), taken, np.array(halves), strain)
 
 
 def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:

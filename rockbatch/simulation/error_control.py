@@ -27,6 +27,17 @@ CHANCE = 4.0
 """Error of what need not agree, over what halving the step still changed: the peak within a motion, and demands on devices."""
 
 
+ERRORS = (
+    "theta_max_error",
+    "theta_res_error",
+    "settlement_error",
+    "deflection_max_error",
+    "top_drift_max_error",
+    "devices_error",
+)
+"""Fields of an Outcome that hold the errors of what a run came to."""
+
+
 def run_to_tolerance(pier: Pier, base: Base, motion: Motion, tolerance: float, quiet_s: float = 2.0) -> Outcome:
     """Run with step halving; see :func:`run_all_to_tolerance`."""
     outcome = run_all_to_tolerance([Run(pier, base, motion)], tolerance, quiet_s, Stop())[0]
@@ -171,7 +182,7 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
 
 
 def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: str) -> Outcome:
-    """Return the finest of a run's ``levels``, with its values, as failed."""
+    """Return the finest of a run's ``levels``, with its values, as failed: it claims no error."""
     finest = levels[-1].outcome
     if finest.status == "failed":
         return finest
@@ -194,4 +205,4 @@ def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: 
     reason = (
         f"not settled: halving the step still changed {change}; at {finest.substeps} substeps: {finest.status}{more}"
     )
-    return finest.changed(status="failed", reason=reason, note="")
+    return finest.changed(status="failed", reason=reason, note="", **dict.fromkeys(ERRORS))

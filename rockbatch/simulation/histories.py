@@ -202,7 +202,8 @@ def with_observed(
 
     These are, if ``ledger``, the energy balance at its end, with the greatest residual on the way; and the greatest forces,
     friction counted while N is above the share ``least_normal`` of the weight, and the work of devices, half cycles from
-    ``least_stroke`` [m] up, unless these are None; with their ``error`` by a run of twice the step unless the run is chaotic.
+    ``least_stroke`` [m] up, unless these are None; with their ``error`` by a run of twice the step unless the run failed or is
+    chaotic.
     """
     if not run.base.restraints:
         least_stroke = None
@@ -216,7 +217,7 @@ def with_observed(
     peaks, note = (None, "") if least_normal is None else peak_forces(run, rows, least_normal)
     work = None if least_stroke is None else restraints.device_work(run.pier, run.base, rows, least_stroke)
     outcome, coarse_work = outcome.noted(note), None
-    halves = error and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note
+    halves = error and _claims_errors(outcome)
     if halves and (peaks or work):
         del rows  # a history of every step may be large
         rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
@@ -230,13 +231,18 @@ def with_observed(
     return outcome.changed(forces=peaks)
 
 
+def _claims_errors(outcome: Outcome) -> bool:
+    """Return whether what is observed of a run may claim an error, by a run of twice its step."""
+    return outcome.status != "failed" and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note
+
+
 def forces_in_sections(
     run: Run, outcome: Outcome, quiet_s: float, heights: Sequence[float], *, error: bool, wait: bool = True
 ) -> list[Section]:
     """Return the greatest forces in sections of a run whose outcome is known, with their ``error`` as other forces have it."""
     rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
     sections = sections_of(run, rows, heights)
-    if not error or outcome.substeps % 2 or CHAOTIC in outcome.note:
+    if not (error and _claims_errors(outcome)):
         return sections
     del rows  # a history of every step may be large
     rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)

@@ -162,7 +162,6 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
         gravity=rigid.gravity,
         alpha=rigid.alpha,
         p=rigid.p,
-        restitution=rigid.restitution / pier.restitution if pier.restitution > 0.0 else 0.0,
         guided=rigid.guided,
         rest=rigid.rest,
         deck=0.0,
@@ -175,7 +174,6 @@ def flexible_block(pier: Pier, base: RigidBase) -> FlexibleBlock:
         top_shape=shape_at(pier, pier.top),
         tipping=_tipping(rigid, mode, frequency),
         flight_step=0.5 * FREQUENCY_STEP / _vibration(pier, base, rigid.inertia + rigid.height**2),
-        momentum=float(base.flexural_impact == "momentum"),
     )
 
 

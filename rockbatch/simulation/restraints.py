@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -65,8 +66,8 @@ def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
 
 
 @entry
-def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[no-untyped-def]
-    """Write elongation [m], force [N/kg] and stored energy [J/kg] of each device at each row, all of shape (rows, devices).
+def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: ignore[no-untyped-def]
+    """Write elongation [m], its rate, force [N/kg] and stored energy [J/kg] of each device at each row, shape (rows, devices).
 
     A force is positive in tension; that of friction is 0 below the speed ``moves`` [m/s].
     """
@@ -78,24 +79,34 @@ def _follow(m, devices, rows, moves, elongation, pull, energy):  # type: ignore[
             gap = gap_of(m, law, pose, y)
             direction = math.copysign(1.0, gap.speed) if abs(gap.speed) > moves else STICKS
             pull[i, j] = recorded_force(law, gap, state, direction)
-            elongation[i, j], energy[i, j] = gap.elongation, stored_in(law, gap.elongation, state)
+            elongation[i, j], speed[i, j] = gap.elongation, gap.speed
+            energy[i, j] = stored_in(law, gap.elongation, state)
 
 
-def _followed(pier: Pier, base: Base, rows: np.recarray) -> tuple[Samples, Samples, Samples]:
-    """Return elongation, force and stored energy of each device at each row; see :func:`_follow`."""
+class _Followed(NamedTuple):
+    """What devices go through, at each row; see :func:`_follow`."""
+
+    elongation: Samples
+    speed: Samples
+    pull: Samples
+    energy: Samples
+
+
+def _followed(pier: Pier, base: Base, rows: np.recarray) -> _Followed:
+    """Return what each device goes through, at each row."""
     devices = recorded(pier, base, rows)
-    elongation, pull, energy = (np.zeros((len(rows), len(devices.elements))) for _ in range(3))
+    found = _Followed(*(np.zeros((len(rows), len(devices.elements))) for _ in _Followed._fields))
     moves = AT_REST * pier.size * pier.alpha * pier.p
-    _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), elongation, pull, energy)
-    return elongation, pull, energy
+    _follow(model(pier, base), devices, apart(base, rows)[0], float(moves), *found)
+    return found
 
 
 def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     """Return the force [N/kg] and elongation [m] of every device at every row."""
-    elongation, pull, _ = _followed(pier, base, rows)
+    found = _followed(pier, base, rows)
     table = {"t": rows.t}
     for j, name in enumerate(names(pier, base)):
-        table |= {f"{name} elongation": elongation[:, j], f"{name} force": pull[:, j]}
+        table |= {f"{name} elongation": found.elongation[:, j], f"{name} force": found.pull[:, j]}
     return pd.DataFrame(table)
 
 
@@ -104,19 +115,20 @@ def deck_pulls(pier: Pier, base: Base, rows: np.recarray) -> list[tuple[float, S
     laws = elements(pier, base)
     if all(law.height == 0.0 for law in laws):
         return []
-    pull = _followed(pier, base, rows)[1]
+    pull = _followed(pier, base, rows).pull
     return [(law.height, law.way * pull[:, j]) for j, law in enumerate(laws) if law.height != 0.0]
 
 
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:
     """Return the work of the devices of a run whose ``rows`` are every step; half cycles from ``least_stroke`` [m] up."""
-    elongation, pull, _ = _followed(pier, base, rows)
-    return greatest_of(pier, base, work_of(pier, base, Courses(elongation, pull, rows.lost), least_stroke))
+    found = _followed(pier, base, rows)
+    courses = Courses(found.elongation, found.pull, rows.lost, rows.t, found.speed)
+    return greatest_of(pier, base, work_of(pier, base, courses, least_stroke))
 
 
 def stored(pier: Pier, base: Base, rows: np.recarray) -> Samples:
     """Return the energy [J/kg] that all tendons give back until they are slack, relative to the start."""
-    energy = _followed(pier, base, rows)[2].sum(axis=1)
+    energy = _followed(pier, base, rows).energy.sum(axis=1)
     return energy - energy[0]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.core.kernel import entry
-from rockbatch.core.observe.peaks import RecordedRun
+from rockbatch.core.observe.peaks import Place, RecordedRun, under_devices_within
 from rockbatch.core.observe.rows import contact_of, ground_at, ground_within, state_of, step_between, within
 from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
@@ -19,6 +19,7 @@ from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import ground_of, model
 from rockbatch.simulation.outcome import Section
 from rockbatch.simulation.restraints import apart, deck_pulls
+from rockbatch.simulation.restraints import recorded as recorded_devices
 from rockbatch.simulation.runs import Run
 
 
@@ -72,7 +73,7 @@ class InSection(NamedTuple):
 @entry
 def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
     """Write the Motion at each share of the step to the row of this number; at share 1 that of the row itself."""
-    rows, pulls, _, ground, dt = run
+    rows, pulls, devices, ground, dt = run
     for j in range(len(numbers)):
         i, s = numbers[j], shares[j]
         pull, line = Pull(pulls[i, 0], pulls[i, 1]), out[j]
@@ -84,8 +85,7 @@ def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
             before = Pull(pulls[i - 1, 0], pulls[i - 1, 1])
             step = step_between(with_pull(m, before), under, rows[i - 1], rows[i], ground, dt)
             y, shaking = within(m, step, s), ground_within(step, s)
-            force, moment = pull.force - before.force, pull.moment - before.moment
-            under = with_pull(m, Pull(before.force + s * force, before.moment + s * moment))
+            under = under_devices_within(devices, m, pulls, Place(i, step, s), y)
         k = rates(under, y, contact, shaking)
         line.theta, line.omega, line.v_acceleration, line.turning = y.theta, y.omega, k.v_rate, k.omega
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
@@ -94,14 +94,15 @@ def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
 def recorded(run: Run, rows: np.recarray) -> Recorded:
     """Return a run whose history at every step is ``rows``."""
     plain, pulls = apart(run.base, rows)
-    whole = RecordedRun(plain, pulls, None, ground_of(run.motion), float(run.motion.dt))
+    devices = recorded_devices(run.pier, run.base, rows) if run.base.restraints else None
+    whole = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
     return Recorded(run, rows, whole, deck_pulls(run.pier, run.base, rows))
 
 
 def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     """Return the accelerations at each of ``shares`` of the step to the row of this number.
 
-    Forces of devices are linear within a step.
+    Within a step devices pull by their laws; what those on the deck push in the pier's part above is linear there.
     """
     pier, base = of.run.pier, of.run.base
     motion = np.recarray(len(numbers), MOTION)
@@ -195,7 +196,8 @@ MOST_TURNS = 20
 _SIZED = {
     "shear": Sized(("shear",), "force"),
     "moment": Sized(("moment",), "moment"),
-    "axial force": Sized(("axial_least", "axial_greatest"), "force"),
+    "least axial force": Sized(("axial_least",), "force"),
+    "greatest axial force": Sized(("axial_greatest",), "force"),
 }
 
 

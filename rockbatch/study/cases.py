@@ -20,7 +20,7 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, least_eta
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, least_eta, wrong_blow
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
@@ -29,7 +29,7 @@ from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
-from rockbatch.toml.kinds import choice, positive, text, within
+from rockbatch.toml.kinds import KindError, Other, choice, positive, text, within
 from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -51,6 +51,14 @@ _CALLED = {
 _ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
 _ON_ROCK = {"base": tuple(name for name, base in _BASES.items() if not base.on_springs)}
 _YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
+
+
+def _blow(value: Any) -> str:
+    if problem := wrong_blow(str(value)):
+        raise KindError(problem, whole=True)
+    return str(value)
+
+
 BASE_KEYS = {
     "restitution": Key(within(BOUNDS["restitution"]), "0.9",
         "Factor on the angular velocity at an impact; default: Housner's, from the geometry.", many=True,
@@ -96,9 +104,9 @@ BASE_KEYS = {
         many=True, only=_ON_ROCK),
     "flexural_damping": Key(within(BOUNDS["flexural_damping"]), "0.05",
         "Damping ratio of that mode, of the pier fixed at its base.", many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
-    "flexural_impact": Key(choice(*WORDS["flexural_impact"]), '"momentum"',
-        'What the mode keeps in an impact: its "momentum", as the foot is stopped before the shaft takes part; or the "rate" of '
-        "its deflection, with `restitution` as of a rigid block.", many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
+    "flexural_impact": Key(Other('"momentum"', _blow, {"enum": ["momentum"]}), '"momentum"',
+        "What a blow keeps, the momentum of the mode: the only rule, so that the key has no effect and may be left out.",
+        many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
     "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
         "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True),
 }  # fmt: skip
@@ -194,14 +202,14 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in ("restraints", "confirm"):  # their own keys say them
+    for name in ("restraints", "confirm", "flexural_impact"):  # their own keys say them
         applying.pop(name, None)
     if "zeta" in applying:
         applying.pop("epsilon", None)
     if not base.has_exponent:
         applying.pop("n", None)
     if not base.bends:
-        for key in ("shaft", "flexural_damping", "flexural_impact"):
+        for key in ("shaft", "flexural_damping"):
             applying.pop(key, None)
     return Case(case.name, pier, base, pier_values | applying)
 

@@ -196,7 +196,9 @@ def _pier(values: dict[str, Any], parts: int, confirmed: Collection[str]) -> Pie
     else:
         pier = constructed(Pier, "alpha", "p", "mu", "mass_t")
         if "top_m" in common:
-            Pier.from_size(pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=(*confirmed, "size_m"))
+            Pier.from_size(
+                pier.alpha, pier.size, pier.mu, pier.gravity, top_m=pier.top_m, confirm=(*confirmed, "size_m")
+            )
     if "columns" in values:
         return Pier.frame(pier, values["columns"], values["deck_mass_t"], confirm=confirmed)
     return pier

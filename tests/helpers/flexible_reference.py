@@ -34,8 +34,6 @@ class Points:
     frequency: float
     damping_ratio: float
     gravity: float
-    restitution: float  # over that which keeps the angular momentum
-    keeps_momentum: bool
 
 
 def points_of(parts, top, **numbers):
@@ -101,27 +99,19 @@ def _moment(of, side, q, rates, ground):
     return side * (across[1] @ inertial + up[1] @ (m * (-of.gravity - ground[1]))) / m.sum()
 
 
-def _blow(of, key, corner, q, rates, restitution):
+def _blow(of, key, corner, q, rates):
     """Return θ̇ and u̇ behind a blow at ``corner``."""
     _, _, _, across, up = _places(of, key, q)
     along, rise = rates @ across, rates @ up
     _, _, _, across, up = _places(of, corner, q)
     m, across, up = of.mass, across[1:], up[1:]
     matrix, momentum = (across * m) @ across.T + (up * m) @ up.T, across @ (m * along) + up @ (m * rise)
-    energy = 0.5 * np.sum(m * (along**2 + rise**2))
-    if not of.keeps_momentum:
-        carried = np.array([restitution * (momentum[0] - matrix[0, 1] * rates[2]) / matrix[0, 0], rates[2]])
-        if 0.5 * carried @ matrix @ carried <= energy:
-            return carried
     return np.linalg.solve(matrix, momentum)
 
 
-def kept_as_both_stop(of, key, q, rates):
-    """Return what u̇ gains of θ̇ as both corners stop a pier that turned about its ``key``, if to carry u̇ over creates energy."""
-    _, _, _, across, up = _places(of, key, q)
-    creates = of.mass @ (of.shape**2 * rates[2] ** 2 - (rates @ across) ** 2 - (rates @ up) ** 2) > 0.0
-    keeps = of.keeps_momentum or creates
-    return (of.mass * of.shape) @ of.z / (of.mass @ of.shape**2) if keeps else 0.0
+def kept_as_both_stop(of):
+    """Return what u̇ gains of θ̇ as both corners stop, so that the momentum of the mode is kept."""
+    return (of.mass * of.shape) @ of.z / (of.mass @ of.shape**2)
 
 
 def run(of, ground, dt, theta=0.0, until=None, hop=HOP):
@@ -200,16 +190,15 @@ def run(of, ground, dt, theta=0.0, until=None, hop=HOP):
                 down = "none"
             else:
                 landing = -key if down == "one" else (-1.0 if happened == 0 else 1.0)
-                omega, u_rate = _blow(of, key, landing, state[:3], state[3:], of.restitution if down == "one" else 1.0)
+                omega, u_rate = _blow(of, key, landing, state[:3], state[3:])
                 if down == "one":
                     state[1] = 0.0
-                height, turned_about = state[1], key
+                height = state[1]
                 key, down = landing, "one"
                 state = np.array([0.0, height, state[2], 0.0, omega, u_rate])
                 if height == 0.0 and landing * omega <= STILL:
                     before = found.y[:, -1]
-                    kept = kept_as_both_stop(of, turned_about, before[:3], before[3:])
-                    state = np.array([0.0, 0.0, before[2], 0.0, 0.0, before[5] + kept * before[4]])
+                    state = np.array([0.0, 0.0, before[2], 0.0, 0.0, before[5] + kept_as_both_stop(of) * before[4]])
                     key, down = 0.0, "both"
         out.append((end, *state[:3]))
         if abs(state[1]) > np.pi / 2:

@@ -1,10 +1,13 @@
 """Cases whose shaft bends: keys of the study, their messages, columns, histories and checks of a run."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from studies import study_text, write_study
 
 import rockbatch as rb
+from rockbatch.commands.cli import main
 
 pytestmark = pytest.mark.usefixtures("no_report")
 
@@ -27,7 +30,11 @@ def messages(tmp_path, **tables):
          'shaft = "elastic": flexural_period_s is missing'),
         ({"pier": {"alpha": 0.15, "p": 0.5, "mu": 4.0, "flexural_period_s": 0.9}, "cases": [BENDS]},
          'shaft = "elastic": mu = 4 does not say how the mass is spread'),
-        ({"cases": [BENDS | {"restitution": 0.9}]}, "restitution = 0.9: what a blow takes follows from"),
+        ({"cases": [BENDS | {"restitution": 0.9}]}, "restitution = 0.9: what a blow takes of a shaft that bends"),
+        ({"cases": [BENDS | {"flexural_impact": "rate"}]},
+         'flexural_impact = "rate": to carry the rate of the deflection over would create energy'),
+        ({"cases": [BENDS | {"flexural_impact": "rates"}]},
+         'flexural_impact = "rates": a blow keeps the "momentum" of the mode'),
         ({"cases": [{"name": "soft", "base": "elastic", "beta": 60.0, "shaft": "elastic"}]}, "shaft"),
         ({"cases": [ROCK | {"flexural_damping": 0.02}]}, "flexural_damping"),
         ({"cases": [BENDS | {"flexural_damping": 1.5}]}, "must be within 0..1"),
@@ -43,13 +50,41 @@ def test_keys_of_a_shaft_that_bends_are_columns_of_those_that_do(tmp_path):
     case = BENDS | {
         "shaft": ["rigid", "elastic"],
         "flexural_damping": [0.02, 0.05],
-        "flexural_impact": ["rate", "momentum"],
     }
     cases = rb.load_study(write_study(tmp_path, study_text(pier=SHAFT, cases=[case]))).cases
-    assert len(cases) == 8
+    assert len(cases) == 4
     for each in cases:
-        keys = ("shaft", "flexural_damping", "flexural_impact") if each.base.bends else ()
+        keys = ("shaft", "flexural_damping") if each.base.bends else ()
         assert each.columns == {key: getattr(each.base, key) for key in keys}
+
+
+@pytest.mark.parametrize("impact", ["momentum", ["momentum"]])
+def test_the_momentum_of_the_mode_is_accepted_with_a_remark_and_changes_nothing(tmp_path, impact):
+    (plain,) = rb.load_study(write_study(tmp_path, study_text(pier=SHAFT, cases=[BENDS]))).cases
+    stated = write_study(tmp_path, study_text(pier=SHAFT, cases=[BENDS | {"flexural_impact": impact}]))
+    with pytest.warns(DeprecationWarning, match='flexural_impact = "momentum" has no effect.*leave it out'):
+        (case,) = rb.load_study(stated).cases
+    assert case == plain
+
+
+def test_the_command_says_once_that_the_key_has_no_effect(tmp_path, capsys):
+    cases = [
+        BENDS | {"name": f"bends {zeta}", "flexural_damping": zeta, "flexural_impact": "momentum"}
+        for zeta in (0.02, 0.05)
+    ]
+    study = write_study(tmp_path, study_text(pier=SHAFT, cases=cases))
+    assert main(["statics", str(study)]) == 0
+    assert capsys.readouterr().err.count('flexural_impact = "momentum" has no effect') == 1
+
+
+def test_python_takes_the_rule_of_a_blow_as_a_study_does():
+    with pytest.warns(DeprecationWarning, match="leave it out"):
+        base = rb.RigidBase(shaft="elastic", flexural_impact="momentum")
+    assert base == rb.RigidBase(shaft="elastic") == replace(base)
+    with pytest.raises(
+        rb.InputError, match='flexural_impact = "rate": to carry the rate of the deflection over would create'
+    ):
+        rb.RigidBase(shaft="elastic", flexural_impact="rate")
 
 
 @pytest.mark.slow  # the kernel of an elastic shaft

@@ -30,6 +30,7 @@ from rockbatch.core.types import (
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, RigidBase, Tendon
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
+from rockbatch.simulation.histories import written
 
 MODEL = block(PIER, RigidBase())
 STILL = Ground(0.0, 0.0, 0.0, 0.0)
@@ -235,7 +236,10 @@ def test_the_mirror_image_flies_alike_to_the_bit(name, substeps):
 
 
 def test_random_flights_are_those_of_the_independent_reference(outcomes, references):
-    """Counts, times, heights and peaks of cases that stand, with the steps that a tolerance of 1e-6 α takes."""
+    """Counts, times, heights and peaks of cases that stand, with the steps that a tolerance of 1e-6 α takes.
+
+    The reference counts a flight anew at each landing behind which the ground would have to hold the pier; it is one flight.
+    """
     compared = 0
     for case in outcomes.cases(30, only="flight"):
         case, expected, _ = references.get(case)
@@ -243,7 +247,10 @@ def test_random_flights_are_those_of_the_independent_reference(outcomes, referen
             continue
         found = run_to_tolerance(case.pier, case.base, case.motion, 1e-6)
         assert found.status == "ok"
-        assert found.flights == expected.flights
+        rows = written(Run(case.pier, case.base, case.motion), found, 2.0, every_step=False)
+        aloft = rows.left + rows.right == 0.0
+        goes_on = np.isin(rows.kind[1:], (IMPACT_LEFT, IMPACT_RIGHT)) & aloft[1:] & aloft[:-1]
+        assert found.flights + goes_on.sum() == expected.flights
         assert found.flight_duration == pytest.approx(expected.flight_duration, abs=1e-6 / case.pier.p)
         assert found.flight_height == pytest.approx(expected.flight_height, abs=1e-6 * case.pier.half_width)
         assert found.theta_max == pytest.approx(expected.theta_max, abs=1e-6 * case.pier.alpha)

@@ -17,7 +17,7 @@ from rockbatch.core.block.equations import (
 from rockbatch.core.block.model import Block, Rocking, Stance
 from rockbatch.core.devices.events import leave_rest
 from rockbatch.core.devices.laws import CLOSES, OPENS
-from rockbatch.core.devices.pull import about_to_turn
+from rockbatch.core.devices.pull import about_to_turn, loaded_soon
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import hook, inlined, kernel
 from rockbatch.core.roots import NO_ACCELERATION, surely
@@ -77,12 +77,14 @@ def _lift_rate(m, devices, now, side):
 
 
 @kernel
-def _change_of_normal(m, y, k, contact, ground):
-    """Return the rate of N/M [m/s³] of a block that rocks, from a moment later."""
+def _change_of_normal(m, devices, now):
+    """Return the rate of N/M [m/s³] of a block that rocks, from a moment later, with that of the devices' forces."""
+    y, k, contact, supports, ground = now
     near = NEARBY / m.p
-    soon, there = constrained(m, along(y, k, near), contact), later(ground, near)
-    k_soon = rates(m, soon, contact, there)
-    return (normal_force(m, soon, k_soon, there.vertical) - normal_force(m, y, k, ground.vertical)) / near
+    soon, there = Moment(constrained(m, along(y, k, near), contact), contact, supports), later(ground, near)
+    under = loaded_soon(devices, m, Moment(y, contact, supports), soon, ground, near)
+    k_soon = rates(under, soon.y, contact, there)
+    return (normal_force(under, soon.y, k_soon, there.vertical) - normal_force(m, y, k, ground.vertical)) / near
 
 
 @inlined
@@ -90,8 +92,9 @@ def _height(m, height, velocity, acceleration):
     """Return the height [m] of a pivot in flight, and its rate; one that has just left the ground, to rounding, has left it."""
     rest = m.rest
     length = rest * rest / (NO_ACCELERATION * m.gravity)
-    if abs(velocity) <= rest and abs(height) <= length and acceleration >= -1e-9 * m.gravity:
-        return length, rest
+    rises = velocity > rest or (velocity >= -rest and acceleration >= -1e-9 * m.gravity)
+    if rises and abs(height) <= length:
+        return length, max(velocity, rest)
     return height, surely(velocity, acceleration, rest)
 
 
@@ -126,7 +129,7 @@ def event_functions_of(m, devices, now):
             omega = math.copysign(max(abs(omega), HARDLY) if omega * turning > 0.0 else HARDLY, turning)
         normal, normal_rate = normal_force(m, y, k, ground.vertical), 0.0
         if normal < NEAR_FLIGHT * m.gravity:
-            normal_rate = _change_of_normal(m, y, k, contact, ground)
+            normal_rate = _change_of_normal(m, devices, now)
         normal, normal_rate = _at_once(normal, normal_rate, NO_ACCELERATION * m.gravity)
         if side > 0.0:
             return Signals(side * y.theta, normal, 1.0, 1.0), Signals(omega, normal_rate, 0.0, 0.0)
@@ -207,6 +210,20 @@ def transition(m, devices, now, which, ground, dt):
         return Transition(Moment(y, contact, supports), kind, impacts, 0.0, 0.0)
     y, contact, kind = lift_off(m, devices, y, -pivot, ground)
     return Transition(Moment(y, contact, supports), kind, 0.0, 1.0, 0.0)
+
+
+def released(m, now, ground):
+    """Return the Moment ``now`` behind an impact: where the ground would have to hold the block down, it is in the air."""
+    y, contact, supports = now
+    side = side_of(contact)
+    if side == 0.0:
+        return now
+    if normal_force(m, y, rates(m, y, contact, ground), ground.vertical) >= -NO_ACCELERATION * m.gravity:
+        return now
+    return Moment(y, Stance(0.0, 0.0, side, side), supports)
+
+
+system.released.of(Block)(released)
 
 
 @kernel

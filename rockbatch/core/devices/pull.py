@@ -225,6 +225,24 @@ def _loaded(devices, m, now, ground):
 
 
 @hook
+def loaded_soon(devices, m, now, soon, ground, near):
+    """Return the pier ``m`` under its devices in the Moment ``soon``, ``near`` [s] after ``now``, the Moment of their stage."""
+
+
+@loaded_soon.of(type(None))
+def _alone_soon(devices, m, now, soon, ground, near):
+    return m
+
+
+@loaded_soon.of(Devices)
+def _loaded_soon(devices, m, now, soon, ground, near):
+    under_devices(m, devices, now, devices.stage, ground)
+    for i in range(len(devices.stage)):
+        devices.stage[i] += near * devices.rates[BESIDE, i]
+    return under_devices(m, devices, soon, devices.stage, later(ground, near))[0]
+
+
+@hook
 def about_to_turn(devices, m, y, contact, sense):
     """Return the pier ``m`` at rest under its devices, were it to have the ``contact`` that comes.
 

@@ -4,12 +4,11 @@ from rockbatch.core import system
 from rockbatch.core.block.equations import clearances, constrained, key_of, on_pivot, on_side, side_of
 from rockbatch.core.block.events import (
     NEARBY,
-    NEGLIGIBLE,
     RESTING,
-    bounces,
     event_functions_of,
     lift_off,
     lift_rate,
+    released,
     within_bounce,
 )
 from rockbatch.core.block.model import Stance
@@ -29,7 +28,6 @@ from rockbatch.core.types import (
     IMPACT_LEFT,
     IMPACT_RIGHT,
     LEFT,
-    REST,
     RIGHT,
     TAKE_OFF,
     Moment,
@@ -37,6 +35,7 @@ from rockbatch.core.types import (
 )
 
 system.event_functions.of(FlexibleBlock)(event_functions_of)
+system.released.of(FlexibleBlock)(released)
 
 
 @system.longest_step.of(FlexibleBlock)
@@ -63,8 +62,8 @@ def transition(m, devices, now, which, ground, dt):
     if side == pivot:
         return Transition(Moment(y, Stance(0.0, 0.0, side, side), supports), TAKE_OFF, 0.0, 0.0, 0.0)
     if side != 0.0:
-        y, contact, kind, remaining = _impact(m, devices, y, side, ground, dt)
-        return Transition(Moment(y, contact, supports), kind, 1.0, 0.0, remaining)
+        y, contact, kind = _impact(m, y, side)
+        return Transition(Moment(y, contact, supports), kind, 1.0, 0.0, 0.0)
     if airborne(m, contact):
         y, contact, kind = _landing(m, y, contact, pivot)
         topples = abs(y.theta) >= m.alpha and kind != IMPACT_BOTH
@@ -75,12 +74,10 @@ def transition(m, devices, now, which, ground, dt):
 
 
 @kernel
-def _after_blow(m, y, key, rise, pivot, restitution):
+def _after_blow(m, y, key, rise, pivot):
     """Return θ̇ and u̇ behind a blow at ``pivot``; until then the base turned about its ``key`` and that rose at ``rise`` [m/s].
 
-    The blow has no moment about the pivot, so that the angular momentum about it is kept; and none on the mode, whose momentum
-    is kept, or whose rate where a stiff shaft takes part in the blow: then θ̇ is multiplied by ``restitution`` besides. Carrying
-    the rate over can create energy: then the momentum is kept, with which none is.
+    The blow has no moment about the pivot and does no work on the mode, so that the momenta of both are kept.
     """
     sine, cosine = sine_and_cosine(y.theta)
     about, b = masses_about(m, y.u, pivot), m.half_width
@@ -89,53 +86,30 @@ def _after_blow(m, y, key, rise, pivot, restitution):
     )
     bending = m.second * y.u_rate + m.coupling * y.omega - m.first * sine * rise
     turning = m.coupling * y.u_rate + across * y.omega - rise * (m.height * sine - about.offset * cosine)
-    if m.momentum == 0.0:
-        omega = restitution * (turning - m.coupling * y.u_rate) / about.turning
-        if 0.5 * about.turning * omega * omega + m.coupling * y.u_rate * omega <= _besides_mode(m, y, key, rise):
-            return omega, y.u_rate
     determinant = m.second * about.turning - m.coupling * m.coupling
     omega = (m.second * turning - m.coupling * bending) / determinant
     return omega, (about.turning * bending - m.coupling * turning) / determinant
 
 
 @kernel
-def _besides_mode(m, y, key, rise):
-    """Return the kinetic energy over the mass, less that of the mode alone; the base turns about its ``key``, which rises."""
-    sine, cosine = sine_and_cosine(y.theta)
-    about = masses_about(m, y.u, key)
-    energy = 0.5 * about.turning * y.omega * y.omega + m.coupling * y.u_rate * y.omega + 0.5 * rise * rise
-    return energy + rise * ((about.offset * cosine - m.height * sine) * y.omega - m.first * sine * y.u_rate)
+def _flat(m, y):
+    """Return the state as both pivots stop at once: only the mode moves on, with its momentum."""
+    return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + m.coupling / m.second * y.omega)
 
 
 @kernel
-def _flat(m, y, key, rise):
-    """Return the state as both pivots stop at once: only the mode moves on.
-
-    It does so with its momentum, or with its rate where that creates no energy.
-    """
-    carries = m.momentum == 0.0 and _besides_mode(m, y, key, rise) >= 0.0
-    kept = 0.0 if carries else m.coupling / m.second * y.omega
-    return Flexing(0.0, 0.0, 0.0, 0.0, y.u, y.u_rate + kept)
-
-
-@kernel
-def _impact(m, devices, y, side, ground, dt):
-    """Return state, stance, kind and the time [s] left to rest, as the base passes through θ = 0.
+def _impact(m, y, side):
+    """Return state, stance and kind as the base passes through θ = 0.
 
     Where the pier would not turn on about the new pivot, both stay down.
     """
     y = Flexing(0.0, 0.0, y.v_rate, y.omega, y.u, y.u_rate)
-    omega, u_rate = _after_blow(m, y, side, 0.0, -side, m.restitution)
+    omega, u_rate = _after_blow(m, y, side, 0.0, -side)
     if -side * omega <= 0.0:
-        return _flat(m, y, side, 0.0), RESTING, IMPACT_BOTH, 0.0
-    landed = Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate)
-    if m.momentum == 0.0:
-        still = Flexing(0.0, 0.0, 0.0, 0.0, y.u, u_rate)
-        height, remaining = bounces(m, devices, still, omega, omega / y.omega, ground)
-        if height < NEGLIGIBLE * m.alpha and remaining < dt:
-            return _flat(m, y, side, 0.0), RESTING, REST, remaining
+        return _flat(m, y), RESTING, IMPACT_BOTH
     stance = on_side(-side)
-    return constrained(m, landed, stance), stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT, 0.0
+    landed = constrained(m, Flexing(0.0, 0.0, 0.0, omega, y.u, u_rate), stance)
+    return landed, stance, IMPACT_LEFT if side == RIGHT else IMPACT_RIGHT
 
 
 @kernel
@@ -146,8 +120,8 @@ def _landing(m, y, contact, pivot):
     key = key_of(m, contact)
     rise = y.v_rate - on_pivot(m, y.theta, key)[1] * y.omega
     if abs(other) <= m.rest * m.rest / (NO_ACCELERATION * m.gravity) and other_velocity < -m.rest:
-        return _flat(m, y, key, rise), RESTING, IMPACT_BOTH
-    omega, u_rate = _after_blow(m, y, key, rise, pivot, 1.0)
+        return _flat(m, y), RESTING, IMPACT_BOTH
+    omega, u_rate = _after_blow(m, y, key, rise, pivot)
     stance = on_side(pivot)
     landed = constrained(m, Flexing(y.v, y.theta, 0.0, omega, y.u, u_rate), stance)
     return landed, stance, IMPACT_LEFT if pivot == LEFT else IMPACT_RIGHT

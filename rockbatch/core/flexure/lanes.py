@@ -45,9 +45,9 @@ def _model(traits, lanes, i):
     """Return the FlexibleBlock of lane ``i``."""
     m = get(lanes.model, i, Numbers)
     return FlexibleBlock(
-        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.restitution, m.guided, m.rest, m.deck, m.first, m.second,
+        m.half_width, m.height, m.inertia, m.gravity, m.alpha, m.p, m.guided, m.rest, m.deck, m.first, m.second,
         m.coupling, m.frequency, m.damping, m.top, m.top_shape, m.tipping, m.flight_step,
-        m.momentum, traits.pull, True,
+        traits.pull, True,
     )  # fmt: skip
 
 

@@ -17,7 +17,6 @@ class FlexibleBlock(NamedTuple):
     gravity: float  # g [m/s²]
     alpha: float  # α [rad]
     p: float  # [rad/s]
-    restitution: float  # e over Housner's, by which the angular velocity behind an impact is multiplied
     guided: float  # 1: flight goes on, 0: it ends the run
     rest: float  # velocity that counts as none [m/s]
     deck: float  # 0: no frame
@@ -30,7 +29,6 @@ class FlexibleBlock(NamedTuple):
     top_shape: float  # φ there
     tipping: float  # rotation beyond which the pier overturns slowly, below α as its shaft leans out [rad]
     flight_step: float  # longest step in flight, when the mode vibrates fastest [s]
-    momentum: float  # 1: the mode's momentum is kept in an impact, 0: the rate of its deflection
     pull: Pull | None = None  # of dampers and tendons; None: there are none
     finite: bool = True
 

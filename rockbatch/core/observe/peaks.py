@@ -142,16 +142,16 @@ def _by_laws(m, devices, place, y):
 
 
 @hook
-def _under_devices(devices, m, pulls, place, y):
+def under_devices_within(devices, m, pulls, place, y):
     """Return the pier under the pull of its devices in state ``y`` at a Place."""
 
 
-@_under_devices.of(type(None))
+@under_devices_within.of(type(None))
 def _without_devices(devices, m, pulls, place, y):
     return with_pull(m, Pull(0.0, 0.0))
 
 
-@_under_devices.of(RecordedDevices)
+@under_devices_within.of(RecordedDevices)
 def _with_devices(devices, m, pulls, place, y):
     """Use the devices' laws, and what friction adds to them at both ends, linear between."""
     i, step, s = place
@@ -237,7 +237,7 @@ class Stretch(NamedTuple):
 def _moment(of, s):
     """Return the Forces at the share ``s`` of a Stretch."""
     y, ground, place = within(of.m, of.step, s), ground_within(of.step, s), Place(of.i, of.step, s)
-    under = _under_devices(of.devices, of.m, of.pulls, place, y)
+    under = under_devices_within(of.devices, of.m, of.pulls, place, y)
     forces = forces_at(under, of.body, Moment(y, of.step.contact, of.supports), ground)
     return _at_base_within(of.devices, of.m, forces, place, y)
 
