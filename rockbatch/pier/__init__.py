@@ -30,6 +30,7 @@ from rockbatch.pier.bending import mode_of as mode_of
 from rockbatch.pier.bending import shape_at as shape_at
 from rockbatch.pier.block import Pier as Pier
 from rockbatch.pier.block import described as described
+from rockbatch.pier.landing import landing_force as landing_force
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
 from rockbatch.pier.places import offsets as offsets

@@ -21,6 +21,9 @@ from rockbatch.pier.sizes import (
     unlikely_sizes,
 )
 
+ROUNDING = 1e-9
+"""Share of a height that is rounding."""
+
 
 @checked
 @dataclass(frozen=True)
@@ -335,6 +338,26 @@ class Pier(InNotebook):
         return max(0.0, 1.0 - loss * math.sin(self.alpha) ** 2)
 
     @property
+    def shaft_share(self) -> float:
+        """Return the share of the mass that is the shaft's, or the columns', and not that of what they carry at their end.
+
+        Of parts the deck is what has no length, and is not below the end of those that have one. Without parts the mass is spread
+        as that of a uniform shaft under a mass: with r times that mass, M h²/I0 = μ cos²α = 3 + 12/(r² + 4r).
+        """
+        if self.deck_over_columns is not None:
+            return 1.0 / (1.0 + self.deck_over_columns)
+        if self.parts is not None:
+            ends = [part.height_m + 0.5 * part.length_m for part in self.parts if part.length_m]
+            end = max(ends or [part.height_m for part in self.parts]) * (1.0 - ROUNDING)
+            carried = math.fsum(part.mass_t for part in self.parts if not part.length_m and part.height_m >= end)
+            return 1.0 - carried / math.fsum(part.mass_t for part in self.parts)
+        excess = self.mu * math.cos(self.alpha) ** 2 - 3.0
+        if excess <= 0.0:
+            return 1.0
+        ratio = 2.0 * (math.sqrt(1.0 + 3.0 / excess) - 1.0)
+        return ratio / (1.0 + ratio)
+
+    @property
     def least_beta(self) -> float:
         """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
@@ -367,6 +390,7 @@ def described(pier: Pier) -> dict[str, float]:
         "size_m": pier.size,
         "half_width_m": pier.half_width,
         "height_m": pier.height,
+        "shaft_share": pier.shaft_share,
         **{name: value for name, value in given.items() if value is not None},
         **({"initial_rotation_rad": pier.initial_rotation_rad} if pier.initial_rotation_rad else {}),
     }

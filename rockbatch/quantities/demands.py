@@ -70,6 +70,8 @@ class Demand:
         Device that the pier has to have.
     reached : function or None
         Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
+    landing, bending : bool
+        True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
     """
 
     name: str
@@ -87,6 +89,8 @@ class Demand:
     weighed: bool = False
     device: str = ""
     reached: Evaluate | None = None
+    landing: bool = False
+    bending: bool = False
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
@@ -155,10 +159,20 @@ def axial(sign: float) -> Evaluate:
 
 
 def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
-    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise."""
+    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
+
+    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it.
+    """
     unit = "kN m" if name.endswith("kNm") else "kN"
     return Demand(
-        name, meaning, evaluate or largest((name,), share="sections_error"), unit, needs="sections", weighed=True
+        name,
+        meaning,
+        evaluate or largest((name,), share="sections_error"),
+        unit,
+        needs="sections",
+        weighed=True,
+        landing=True,
+        bending=evaluate is None,
     )
 
 

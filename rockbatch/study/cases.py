@@ -92,6 +92,10 @@ BASE_KEYS = {
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True),
+    "contact_stiffness_kN_m": Key(within(BOUNDS["contact_stiffness_kN_m"]), "5.0e6",
+        "Stiffness of the ground under one foot, by which runs with `forces = true` estimate the force of their hardest landing: "
+        "the column `landing_force_kN`, an orientation that no check takes; it does not affect any run.", many=True,
+        only=_ON_ROCK),
     "shaft": Key(choice(*WORDS["shaft"]), '"rigid"',
         'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
         many=True, only=_ON_ROCK),
@@ -311,6 +315,8 @@ def _half_weight(pier: Pier) -> float:
 _USUAL = {
     "stiffness_kN_m": _Usual(lambda pier, value: 1000.0 * _half_weight(pier) / value, LEAST_DEFLECTION_MM, math.inf,
         "the pier's weight presses the supports in by {:.2g} mm only, where sound rock gives some 0.1 mm"),
+    "contact_stiffness_kN_m": _Usual(lambda pier, value: 1000.0 * _half_weight(pier) / value, LEAST_DEFLECTION_MM, math.inf,
+        "the pier's weight presses the ground in by {:.2g} mm only, where sound rock gives some 0.1 mm"),
     "yield_kN": _Usual(eta_of, 0.0, MOST_ETA, "{:.3g} times what the support carries at rest, where 2 to 20 times is usual"),
     "area_m2": _Usual(lambda pier, value: _half_weight(pier) / value, LIGHTEST, HEAVIEST,
         "the pier's weight presses {:.2g} kPa on it, where footings have 100 to 1000 kPa"),
