@@ -7,6 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from check_samples import PIER, RIGID, case, folder, in_sections, judged, runs, verdict
+from studies import RIGID as ROCK
+from studies import SINE, study_text, write_study
 
 from rockbatch.checks import Rule, as_table, judge
 from rockbatch.checks.answer import answer
@@ -14,6 +16,7 @@ from rockbatch.checks.checking import verdicts
 from rockbatch.checks.omissions import BENDING, IMPULSES, LANDINGS, LANDINGS_OF_FRAME, MODES, OMISSIONS
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
+from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS
@@ -220,6 +223,21 @@ def test_results_of_an_earlier_version_have_a_heavy_shaft(tmp_path):
     text = '[[check]]\nname = "shear"\ndemand = "base_shear_kN"\nat_most = 4000.0\nreason = "keys"\n'
     (found,) = verdicts(folder(tmp_path / "old", table, [old], text))
     assert (found.verdict, found.omits) == ("pass", BENDING)
+
+
+@pytest.mark.parametrize(("amplitudes", "decided"), [((0.03, 0.05), "pass"), ((0.03, 0.5), "not decided")])
+def test_a_study_is_decided_on_rigid_ground_only_if_its_pier_never_lands(tmp_path, no_report, amplitudes, decided):
+    """A pier of 4 m × 30 m lifts off at 0.13 g."""
+    pier = {"width_m": 4.0, "height_m": 30.0, "mass_t": 1000.0}
+    pulses = [SINE | {"name": f"{amplitude}", "amplitude_g": amplitude} for amplitude in amplitudes]
+    checks = [
+        {"name": demand, "demand": demand, "at_most": 1e6, "reason": "keys", "confirm": ["at_most"]} | place
+        for demand, place in (("base_shear_kN", {}), ("section_moment_kNm", {"at_m": 15.0}), ("omega_max_over_p", {}))
+    ]
+    output = {"forces": True, "sections": 3, "histories": "none"}
+    path = write_study(tmp_path, study_text(pier=pier, pulses=pulses, cases=(ROCK,), output=output, check=checks))
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == (decided != "pass")
+    assert [one.verdict for one in read_verdicts(tmp_path / "out")] == [decided, decided, "pass"]
 
 
 STATISTICS = {

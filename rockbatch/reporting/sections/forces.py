@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks.omissions import FACTORS
 from rockbatch.common.lazy import pd
-from rockbatch.quantities.cases import bends, is_frame, lands_by_impulse
+from rockbatch.quantities.cases import bends, has_light_shaft, is_frame, lands_by_impulse
 from rockbatch.quantities.catalogue import report_columns
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.finished import Finished
@@ -46,7 +47,8 @@ def section(finished: Finished) -> Markup:
         frames=any(is_frame(case) for case in finished.info["cases"]),
         bounds=bool(cut_short.any()),
         landings=bool((impulsive & (finished.runs["impacts"] > 0).to_numpy()).any()),
-        modes=any(bends(case) for case in finished.info["cases"]),
+        modes=any(bends(case) for case in finished.info["cases"]), factors=FACTORS,
+        heavy=any(not bends(case) and not has_light_shaft(case) for case in finished.info["cases"]),
     )  # fmt: skip
 
 
