@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 import rockbatch as rb
+from rockbatch.common.errors import InputError
 from rockbatch.pier import landing_force
 
 RECORDS = Path(__file__).parents[1] / "motions" / "near_fault"
@@ -42,7 +43,7 @@ class Pair(NamedTuple):
 
 
 def pairs(seed: int, number: int) -> Iterator[Pair | None]:
-    """Yield the quotients of each pair; None for one that does not land, or overturns, on either base."""
+    """Yield the quotients of each pair; None for one that does not land, overturns or takes too many steps on either base."""
     rng = np.random.default_rng(seed)
     motions = rb.read_motions(RECORDS).motions
     for _ in range(number):
@@ -54,7 +55,10 @@ def pairs(seed: int, number: int) -> Iterator[Pair | None]:
         assert pier.mass_t is not None
         stiffness = 0.5 * pier.mass_t * pier.gravity / float(np.exp(rng.uniform(math.log(2e-4), math.log(1e-2))))
         feet = rb.ElasticBase.from_stiffness(pier, stiffness, zeta=float(rng.uniform(0.02, 0.1)))
-        yield compared(pier, stiffness, feet, motion)
+        try:
+            yield compared(pier, stiffness, feet, motion)
+        except InputError:
+            yield None
 
 
 def random_pier(rng: np.random.Generator) -> rb.Pier:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from rockbatch.pier.bases import IMPULSIVE, RATCHETING
+from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.restraints import what_of
 
 Case = Mapping[str, Any]
@@ -89,7 +90,11 @@ LIGHT_SHAFT = 1.0 / 6.0
 
 def has_light_shaft(case: Case) -> bool:
     """Return whether the shaft of a case is known to be light beside what it carries."""
-    return float(case["pier"].get("shaft_share", 1.0)) < LIGHT_SHAFT
+    pier = case["pier"]
+    share = pier.get("shaft_share")
+    if share is None:  # without parts
+        share = share_of_shaft(pier["alpha"], pier["mu"], pier.get("deck_over_columns"))
+    return float(share) < LIGHT_SHAFT
 
 
 def lands_by_impulse(case: Case) -> bool:
