@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
+from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
@@ -180,7 +181,7 @@ class _Cases:
         if closest is not None:
             place = f"{self.case_of(closest)}, {closest.check}" if len(self.every) > 1 else closest.check
             details = (f"Closest to its limit: {place} at {wording.percent(closest.ratio)}.",)
-        details = (*details, *self._cut_short(names), *self._left_out())
+        details = (*details, *self._cut_short(names), *self._omitted(names), *self._left_out())
         verdict = NOT_DECIDED if self.unchecked or self.stations.unusable else PASS
         if len(names) == len(self.every):
             return Line(verdict, f"Every check passes in {self._among(names)}", "", details)
@@ -214,6 +215,16 @@ class _Cases:
         """Return which of these cases have runs that do not end standing, in a sentence."""
         ended = [name for name in names if name in self.runs and self.runs[name].ended]
         return (f"Not every run ends standing: {self._with_ends(ended)}.",) if ended else ()
+
+    def _omitted(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return what checks leave out that these cases pass, a sentence each."""
+        passed = [(name, verdict.check) for verdict in self._of(names, PASS) for name in verdict.omitted]
+        checks = grouped(passed, lambda pair: pair[0])
+        return tuple(
+            f"{', '.join(dict.fromkeys(check for _, check in checks[name]))}: {omission.remark}."
+            for name, omission in OMISSIONS.items()
+            if name in checks
+        )
 
     def _left_out(self) -> tuple[str, ...]:
         """Return the stations that are left out by name, in a sentence."""
@@ -252,12 +263,25 @@ class _Cases:
         if not names:
             return Line(NOT_DECIDED, "Left undecided", f"{idle}, in cases that fail anyway", ()) if idle else None
         verdicts = self._of(names, NOT_DECIDED)
-        details = [self._doubt(verdict) for verdict in verdicts[:MOST_CHECKS]]
-        if len(verdicts) > MOST_CHECKS:
-            details.append(f"and {len(verdicts) - MOST_CHECKS} more.")
+        details = self._open(verdicts)
+        others = [verdict for verdict in verdicts if not verdict.left_open]
+        details += [self._doubt(verdict) for verdict in others[:MOST_CHECKS]]
+        if len(others) > MOST_CHECKS:
+            details.append(f"and {len(others) - MOST_CHECKS} more.")
         if idle:
             details.append(f"{idle}: not decided in cases that fail anyway.")
         return Line(NOT_DECIDED, _capital(f"{self._among(names)} cannot be decided"), _few(names), tuple(details))
+
+    def _open(self, verdicts: Sequence[Verdict]) -> list[str]:
+        """Return a sentence for each thing that checks leave out, so that their demands have no upper bound."""
+        by_cause = grouped((verdict for verdict in verdicts if verdict.left_open), lambda verdict: verdict.left_open)
+        sentences = []
+        for name, of_cause in by_cause.items():
+            cases = list(dict.fromkeys(map(self.case_of, of_cause)))
+            place = f" in {_few(cases) or f'{len(cases)} cases'}" if len(by_cause) > 1 else ""
+            checks = ", ".join(dict.fromkeys(verdict.check for verdict in of_cause))
+            sentences.append(f"{checks}{place}: {OMISSIONS[name].remark}.")
+        return sentences
 
     def _doubt(self, verdict: Verdict) -> str:
         case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""

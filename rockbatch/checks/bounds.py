@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.checks.omissions import open_landings
 from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.quantities.arrays import Rows, Texts
-from rockbatch.quantities.cases import Case, creeps
+from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
 from rockbatch.quantities.statistics import Values
 from rockbatch.results.rows import NOT_RUN
@@ -100,7 +101,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.counts("overturned") == "infinite":
         high = np.where(noted(runs, OVERTURNS), np.inf, high)
-    unknown = np.zeros(len(runs), dtype=bool)
+    unknown = open_landings(demand, runs, case) & np.isfinite(value)
     for name in USUAL:
         ended, kind = status == name, rule.counts(name)
         if kind == "infinite":
@@ -118,7 +119,10 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
         reached, error = demand.reached(runs, case)
         known = unknown & (status == "failed") & ~np.isnan(error)
         low, estimated = np.where(known, np.maximum(reached - error, 0.0), low), estimated or bool(known.any())
-    return Bounds(np.where(unknown, low, value), low, np.where(unknown, np.inf, high), estimated), counting
+    value, high = np.where(unknown, low, value), np.where(unknown, np.inf, high)
+    if demand.landing and bends(case):
+        low, high = np.where(np.isfinite(low), 0.0, low), np.full(len(runs), np.inf)
+    return Bounds(value, low, high, estimated), counting
 
 
 def chaotic(rule: Rule, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:

@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.checks.bounds import (
     SCATTER,
@@ -21,6 +22,7 @@ from rockbatch.checks.bounds import (
     of_runs,
     on_both_axes,
 )
+from rockbatch.checks.omissions import OMISSIONS, omissions
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
@@ -229,11 +231,14 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
     count = "component" if unknown else none.count
-    verdict, reason = _decide(rule, low, high, count, n)
+    verdict, few = _decide(rule, low, high, count, n)
+    omitted = [name for name in _omitted(rule, axes, of_axes) if verdict != PASS or OMISSIONS[name].decides]
+    open_by = math.isinf(high) and not all(OMISSIONS[name].decides for name in omitted)
     remark = STATISTICS[rule.statistic or "max"].remark
     deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
-        reason,
+        few or ("" if verdict != NOT_DECIDED or open_by else _between(low, high)),
+        *(OMISSIONS[name].remark for name in omitted),
         _far(rule, value) if verdict == PASS else "",
         _on_each([bounds for bounds, _ in of_axes], axes, deciding),
         remark(bounds.high) if remark and n else "",
@@ -255,7 +260,18 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
         verdict=verdict,
         count=count,
         note="; ".join(filter(None, notes)),
+        omits=", ".join(omitted),
     )
+
+
+def _omitted(rule: Rule, axes: Sequence[Axis], of_axes: Sequence[tuple[Bounds, npt.NDArray[np.bool_]]]) -> list[str]:
+    """Return what the demand leaves out in runs that count, on any axis, the gravest first."""
+    every = {
+        name
+        for axis, (_, counts) in zip(axes, of_axes, strict=True)
+        for name in omissions(DEMANDS[rule.demand], axis.suite.where(counts), axis.case)
+    }
+    return [name for name in OMISSIONS if name in every]
 
 
 def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | None) -> str:
@@ -314,7 +330,7 @@ def _statistic(rule: Rule, values: Values) -> float:
 
 
 def _decide(rule: Rule, low: float, high: float, count: str = "", records: int | None = None) -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and why it is not decided; ``records`` for a statistic of some."""
+    """Return the verdict on a demand within these bounds, and the remark on too few ``records``, for a statistic of some."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
@@ -323,9 +339,12 @@ def _decide(rule: Rule, low: float, high: float, count: str = "", records: int |
         return FAIL, few
     if few:
         return NOT_DECIDED, few
-    if within:
-        return PASS, ""
-    return NOT_DECIDED, f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
+    return (PASS if within else NOT_DECIDED), ""
+
+
+def _between(low: float, high: float) -> str:
+    """Return the remark that a limit is within the bounds of its demand."""
+    return f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
 
 
 def _too_few(rule: Rule, count: str, records: int) -> str:

@@ -147,7 +147,7 @@ def _cell(verdict: Verdict, column: Column) -> Cell:
         return Cell(verdict, "", "")
     if verdict.is_ban:
         return Cell(verdict, wording.demanded(verdict), "")
-    bound = "≥\u00a0" if math.isinf(verdict.high) and math.isfinite(verdict.value) else ""
+    bound = "≥\u00a0" if verdict.is_lower_bound else ""
     value = _number(verdict.value * column.factor, verdict.limit * column.factor)
     place = "" if column.at else wording.at(verdict.at_m)
     return Cell(verdict, bound + value + place, f"{bound}{wording.percent(verdict.ratio)}")

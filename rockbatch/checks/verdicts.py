@@ -8,6 +8,7 @@ from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from rockbatch.checks.omissions import MODES, OMISSIONS
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
@@ -62,6 +63,8 @@ class Verdict:
         Demand of that run; NaN without one.
     at_m : float
         Height above the pivots at which the demand is read [m]: of drift, or of a section; NaN of others.
+    omits : str
+        What the demand leaves out, the gravest first: names of :data:`rockbatch.checks.omissions.OMISSIONS`; empty for nothing.
     """
 
     check: str
@@ -93,6 +96,22 @@ class Verdict:
     polarity: str = ""
     governing: float = math.nan
     at_m: float = math.nan
+    omits: str = ""
+
+    @property
+    def omitted(self) -> list[str]:
+        """Return the names of what the demand leaves out, the gravest first."""
+        return self.omits.split(", ") if self.omits else []
+
+    @property
+    def left_open(self) -> str:
+        """Return the name of what leaves the upper bound of the demand open; empty if nothing does."""
+        return next((name for name in self.omitted if not OMISSIONS[name].decides), "")
+
+    @property
+    def is_lower_bound(self) -> bool:
+        """True if the demand may be anything above its value, and is no less."""
+        return math.isinf(self.high) and math.isfinite(self.value) and MODES not in self.omitted
 
     @property
     def is_ban(self) -> bool:
@@ -155,6 +174,8 @@ def _from_row(row: Mapping[str, str]) -> Verdict:
     for name, words in _WORDS.items():
         if values.get(name, "") not in words:
             raise ValueError(f"{name} = {values[name]!r}")
+    if values.get("omits") and not {*values["omits"].split(", ")} <= OMISSIONS.keys():
+        raise ValueError(f"omits = {values['omits']!r}")
     return Verdict(columns={name: _value(text) for name, text in row.items() if name not in _KINDS and text}, **values)
 
 

@@ -48,11 +48,6 @@ def count_by_check(verdicts: Iterable[Verdict]) -> dict[str, dict[str, int]]:
     return {name: count_of(same) for name, same in grouped(verdicts, lambda verdict: verdict.check).items()}
 
 
-def _is_open(verdict: Verdict) -> bool:
-    """Return True if the demand may be anything above its value."""
-    return math.isinf(verdict.high) and math.isfinite(verdict.value)
-
-
 def number(value: float, neighbour: float = math.nan, least: int = 4) -> str:
     """Return a value in ``least`` significant digits, in more if it would look the same as a limit that it is not."""
     if not math.isfinite(value):
@@ -76,7 +71,7 @@ def demanded(verdict: Verdict) -> str:
     if math.isnan(value):
         return ""
     if not verdict.is_ban:
-        return f"≥\u00a0{number(value)}" if _is_open(verdict) else number(value, verdict.limit)
+        return f"≥\u00a0{number(value)}" if verdict.is_lower_bound else number(value, verdict.limit)
     if value > 0:
         return "some"
     return "none" if verdict.high <= 0 else "not known"
@@ -95,7 +90,7 @@ def ratio(verdict: Verdict) -> str:
         return ""
     if math.isinf(verdict.ratio):
         return "∞"
-    if _is_open(verdict):
+    if verdict.is_lower_bound:
         return f"≥\u00a0{verdict.ratio:.2f}"
     return f"{verdict.ratio:.4f}" if 0.995 <= verdict.ratio < 1.005 and verdict.ratio != 1 else f"{verdict.ratio:.2f}"
 
@@ -114,7 +109,7 @@ def margin(verdict: Verdict) -> str:
         return ""
     if math.isinf(verdict.margin):
         return "-∞" if verdict.margin < 0 else "∞"
-    return f"≤\u00a0{verdict.margin:.3g}" if _is_open(verdict) else f"{verdict.margin:.3g}"
+    return f"≤\u00a0{verdict.margin:.3g}" if verdict.is_lower_bound else f"{verdict.margin:.3g}"
 
 
 class Notes:

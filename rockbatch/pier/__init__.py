@@ -31,6 +31,7 @@ from rockbatch.pier.dampers import DamperKind as DamperKind
 from rockbatch.pier.devices import doubt as doubt
 from rockbatch.pier.devices import fields_of as fields_of
 from rockbatch.pier.devices import unlikely_devices as unlikely_devices
+from rockbatch.pier.landing import landing_force as landing_force
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
 from rockbatch.pier.places import offsets as offsets

@@ -66,6 +66,7 @@ BETA = Bounds(LEAST, MOST, why=lambda beta: f"must be {MOST:g} at most" if beta 
 BOUNDS = {
     "restitution": Bounds(0.0, 1.0, why="must be within 0..1 (leave it out for Housner's value)"),
     "friction": Bounds(LEAST, MOST, ", the coefficient of the interface"),
+    "contact_stiffness_kN_m": Bounds(LEAST, MOST, " [kN/m], the stiffness of the ground under a foot"),
     "flight_limit_mm": Bounds(LEAST, MOST, " [mm], a height of flight"),
     "area_m2": Bounds(LEAST, MOST, " [m²], the area of one support"),
     "flexural_damping": Bounds(
@@ -179,6 +180,8 @@ class RigidBase(_Traits):
     With ``shaft = "elastic"`` the pier bends in one mode, of the period :attr:`Pier.flexural_period_s` and the damping ratio
     ``flexural_damping``. A blow keeps the momentum of the mode, from which all else follows, so that ``restitution`` does not
     apply (THEORY.md, A shaft that bends); ``flexural_impact = "momentum"``, which said so, has no effect.
+    ``contact_stiffness_kN_m``, if given, is the stiffness of the ground under one foot [kN/m], by which the column
+    ``landing_force_kN`` estimates what the hardest landing presses; it does not affect the run (THEORY.md, Forces).
 
     Examples
     --------
@@ -195,6 +198,7 @@ class RigidBase(_Traits):
     shaft: Shaft = field(default="rigid", kw_only=True)
     flexural_damping: float = field(default=0.05, kw_only=True)
     flexural_impact: InitVar[str | None] = field(default=None, kw_only=True)
+    contact_stiffness_kN_m: float | None = field(default=None, kw_only=True)  # noqa: N815 (the study's key)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     name = "rigid"
@@ -225,6 +229,8 @@ class RigidBase(_Traits):
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         if self.bends:
             values |= {name: getattr(self, name) for name in ("shaft", "flexural_damping")}
+        if self.contact_stiffness_kN_m is not None:
+            values["contact_stiffness_kN_m"] = self.contact_stiffness_kN_m
         return values | _interface(self) | described_restraints(self.restraints)
 
 
@@ -372,6 +378,9 @@ class YieldingBase(ElasticBase):
 
 Base = RigidBase | ElasticBase | YieldingBase
 
+IMPULSIVE = (RigidBase.name,)
+"""Bases that do not give, on which every landing is an impulse."""
+
 
 def _interface(base: Base) -> dict[str, float]:
     """Return friction and area of the interface by the keys of run.json, if they are known."""
@@ -481,6 +490,8 @@ def problems(pier: Pier, base: Base) -> list[str]:
     wrong += wrong_restraints(pier, base.restraints)
     if base.bends:
         wrong += _wrong_bending(pier, base)
+    if isinstance(base, RigidBase) and base.contact_stiffness_kN_m is not None:
+        wrong += _wrong_contact(pier, base, f"contact_stiffness_kN_m = {base.contact_stiffness_kN_m:g}")
     if base.on_springs and not wrong:
         wrong += wrong_on_springs(pier, base.restraints)
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
@@ -503,6 +514,18 @@ def _wrong_bending(pier: Pier, base: Base) -> list[str]:
             f"restitution = {base.restitution:g}: what a blow takes of a shaft that bends follows from the momentum of its mode; "
             "leave it out"
         )
+    return wrong
+
+
+def _wrong_contact(pier: Pier, base: RigidBase, key: str) -> list[str]:
+    """Return why the force of a landing foot cannot be estimated, each message at the ``key``."""
+    wrong = []
+    if pier.mass_t is None:
+        wrong.append(f"{key}: is of a pier whose mass is known; write mass_t in [pier], or leave it out")
+    if pier.deck_over_columns is not None:
+        wrong.append(f"{key}: how the columns of a frame share a landing is not known; leave it out")
+    if base.bends:
+        wrong.append(f'{key}: is of a rigid shaft; leave it out, or write shaft = "rigid"')
     return wrong
 
 

@@ -24,6 +24,9 @@ from rockbatch.pier.sizes import (
     unusual,
 )
 
+ROUNDING = 1e-9
+"""Share of a height that is rounding."""
+
 
 @checked
 @dataclass(frozen=True)
@@ -362,9 +365,36 @@ class Pier(InNotebook):
         return max(0.0, 1.0 - loss * math.sin(self.alpha) ** 2)
 
     @property
+    def shaft_share(self) -> float:
+        """Return the share of the mass that is the shaft's, or the columns', and not that of what they carry at their end.
+
+        Of parts the deck is what has no length, and is not below the end of those that have one.
+        """
+        if self.parts is None:
+            return share_of_shaft(self.alpha, self.mu, self.deck_over_columns)
+        ends = [part.height_m + 0.5 * part.length_m for part in self.parts if part.length_m]
+        end = max(ends or [part.height_m for part in self.parts]) * (1.0 - ROUNDING)
+        carried = math.fsum(part.mass_t for part in self.parts if not part.length_m and part.height_m >= end)
+        return 1.0 - carried / math.fsum(part.mass_t for part in self.parts)
+
+    @property
     def least_beta(self) -> float:
         """Return β = ω_v/p below which the pier topples on its springs under its own weight (g h < ω_v² b²)."""
         return math.sqrt((1 + self.mu) * math.cos(self.alpha) / self.mu) / math.sin(self.alpha)
+
+
+def share_of_shaft(alpha: float, mu: float, deck_over_columns: float | None = None) -> float:
+    """Return :attr:`Pier.shaft_share` of a pier without parts, as that of a uniform shaft under a mass, or of a frame.
+
+    With r times that mass the shaft has M h²/I0 = μ cos²α = 3 + 12/(r² + 4r).
+    """
+    if deck_over_columns is not None:
+        return 1.0 / (1.0 + deck_over_columns)
+    excess = mu * math.cos(alpha) ** 2 - 3.0
+    if excess <= 0.0:
+        return 1.0
+    ratio = 2.0 * (math.sqrt(1.0 + 3.0 / excess) - 1.0)
+    return ratio / (1.0 + ratio)
 
 
 def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") -> list[str]:
@@ -383,7 +413,7 @@ def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") ->
 
 
 def described(pier: Pier) -> dict[str, float]:
-    """Return a pier by the names and units of run.json; mass, γ, deck, period only if it has them, θ0 unless it is 0.
+    """Return a pier by the names and units of run.json; mass, γ, deck, period, shaft only if it has them, θ0 unless it is 0.
 
     ``top_m`` is the height at which drift is read, whether it was given or not.
     """
@@ -400,5 +430,6 @@ def described(pier: Pier) -> dict[str, float]:
         "highest_m": pier.highest,
         "top_m": pier.top,
         **{name: value for name, value in given.items() if value is not None},
+        **({} if pier.parts is None else {"shaft_share": pier.shaft_share}),
         **({"initial_rotation_rad": pier.initial_rotation_rad} if pier.initial_rotation_rad else {}),
     }

@@ -67,6 +67,12 @@ SUPPORTS = {
         math.inf,
         "the pier's weight presses the supports in by {:.2g} mm only, where sound rock gives some 0.1 mm",
     ),
+    "contact_stiffness_kN_m": Support(
+        lambda pier, value: 1000.0 * _half_weight(pier) / value,
+        LEAST_DEFLECTION_MM,
+        math.inf,
+        "the pier's weight presses the ground in by {:.2g} mm only, where sound rock gives some 0.1 mm",
+    ),
     "yield_kN": Support(
         eta_of, 0.0, MOST_ETA, "{:.3g} times what the support carries at rest, where 2 to 20 times is usual"
     ),

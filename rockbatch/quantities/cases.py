@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from rockbatch.pier.bases import RATCHETING
+from rockbatch.pier.bases import IMPULSIVE, RATCHETING
+from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.restraints import what_of
 
 Case = Mapping[str, Any]
@@ -81,3 +82,31 @@ def devices(case: Case) -> Iterable[Mapping[str, Any]]:
 def bends(case: Case) -> bool:
     """Return whether the shaft of a case bends."""
     return bool(case.get("parameters", {}).get("shaft") == "elastic")
+
+
+LIGHT_SHAFT = 1.0 / 6.0
+"""Share of the mass below which a shaft is light: it has less than a fifth of the mass that it carries."""
+
+
+def has_light_shaft(case: Case) -> bool:
+    """Return whether the shaft of a case is known to be light beside what it carries."""
+    pier = case["pier"]
+    share = pier.get("shaft_share")
+    if share is None:  # without parts
+        share = share_of_shaft(pier["alpha"], pier["mu"], pier.get("deck_over_columns"))
+    return float(share) < LIGHT_SHAFT
+
+
+def lands_by_impulse(case: Case) -> bool:
+    """Return whether a landing is an impulse, of which no force comes, since the ground does not give."""
+    return case["base"] in IMPULSIVE
+
+
+def stops_by_impulse(case: Case) -> bool:
+    """Return whether an impulse takes a part of every landing on springs, by ε."""
+    return float(case["parameters"].get("epsilon", 1.0)) < 1.0
+
+
+def is_frame(case: Case) -> bool:
+    """Return whether a case is a rocking frame, which stands on rigid ground only."""
+    return "deck_over_columns" in case["pier"]

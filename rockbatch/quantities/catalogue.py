@@ -137,11 +137,18 @@ def _force(
 
 
 def _in_kilonewtons(
-    name: str, field: str, unit: str, head: str, per: Callable[[Pier], float | None], limit: Limit, behind: str = ""
+    name: str,
+    field: str,
+    unit: str,
+    head: str,
+    per: Callable[[Pier], float | None],
+    limit: Limit,
+    behind: str = "",
+    **entered: bool,
 ) -> Quantity:
     """Return the same as the quantity before, for piers whose mass is known."""
     words = f"the same in {in_print(unit)}, if mass_t is given"
-    more: dict[str, Any] = {"sometimes": True, "weighed": True, "limits": (limit,) if limit.words else ()}
+    more: dict[str, Any] = {"sometimes": True, "weighed": True, "limits": (limit,) if limit.words else (), **entered}
     return _force(name, words, field, unit, f"{head} [{in_print(unit)}]", ".0f", per=per, behind=behind, **more)
 
 
@@ -164,6 +171,7 @@ def _over_mass(
     first, second = f"{name}_{ENDINGS[unit]}", f"{name}_{ENDINGS[_TIMES_MASS[unit]]}"
     limit = Limit(words=words)
     head = f"{symbol}/M [{in_print(unit)}]"
+    entered = {name: facts[name] for name in ("landing", "bending") if name in facts}
     return (
         _force(
             first,
@@ -177,7 +185,7 @@ def _over_mass(
             limits=(Limit(),),
             **facts,
         ),
-        _in_kilonewtons(second, field, _TIMES_MASS[unit], symbol, lambda pier: pier.mass_t, limit, first),
+        _in_kilonewtons(second, field, _TIMES_MASS[unit], symbol, lambda pier: pier.mass_t, limit, first, **entered),
     )
 
 
@@ -534,21 +542,29 @@ _GAP, _GAP_MORE = (
 _SPEED = "greatest speed at which the heel gap opens or closes"
 
 _FORCES = (
-    *_over_mass("base_shear", "greatest base shear V", "base_shear", "m/s^2", "V", more=", without the impulses of impacts"),
-    *_over_mass("normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise"),
+    *_over_mass(
+        "base_shear", "greatest base shear V", "base_shear", "m/s^2", "V", more=", without the impulses of impacts", landing=True,
+        bending=True,
+    ),
+    *_over_mass(
+        "normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise", landing=True,
+    ),
     _force(
         "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,
-        limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given",
+        limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given", landing=True,
+        bending=True,
     ),
-    _force("pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE),
+    _force(
+        "pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE, landing=True,
+    ),
     _force(
         "pivot_force_right", _PIVOT.format("each"), "pivot_right", "1", "support R/(Mg/2)", ".3f", more=_PIVOT_MORE,
-        limits=_greater("pivot_force", _PIVOT),
+        limits=_greater("pivot_force", _PIVOT), landing=True,
     ),
-    _in_kilonewtons("pivot_force_left_kN", "pivot_left", "kN", "support L", _half_weight, Limit()),
+    _in_kilonewtons("pivot_force_left_kN", "pivot_left", "kN", "support L", _half_weight, Limit(), landing=True),
     _in_kilonewtons(
         "pivot_force_right_kN", "pivot_right", "kN", "support R", _half_weight,
-        _greater("pivot_force/_kN", _PIVOT.removesuffix(" over half the weight"))[0],
+        _greater("pivot_force/_kN", _PIVOT.removesuffix(" over half the weight"))[0], landing=True,
     ),
     _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000, more=_GAP_MORE),
     _force(
@@ -563,6 +579,7 @@ _FORCES = (
     _force(
         "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck", "deck_acceleration", "m/s^2",
         "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
+        landing=True, bending=True,
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
@@ -584,7 +601,7 @@ _FORCES = (
     _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),)),
     *_over_mass(
         "key_shear", "greatest base shear on shear keys", "key_shear", "m/s^2", "V of keys",
-        more=": V while N is below that share, as in flight", sometimes=True,
+        more=": V while N is below that share, as in flight", sometimes=True, landing=True, bending=True,
     ),
     _force(
         "flight_longest_s", "duration of the longest flight", "flight_longest", "s",
@@ -599,9 +616,33 @@ _FORCES = (
         "; of the vertical forces of supports, dampers and tendons; for a frame the sum over the columns, each about its own "
         "middle",
         "base_shear_kN",
+        landing=True,
     ),
 )  # fmt: skip
 """Forces and motions for design, until the run ends or the pier leans beyond α for good."""
+
+
+def _estimates_landings(study: Any) -> bool:
+    return study.output.forces and any(
+        "contact_stiffness_kN_m" in case.base.parameters(case.pier) for case in study.cases
+    )
+
+
+_LANDING_FORCE = replace(
+    _force(
+        "landing_force_kN",
+        "greatest force of a foot at the hardest impact, by contact_stiffness_kN_m of the case",
+        "landing_force",
+        "kN",
+        "landing foot [kN]",
+        ".0f",
+        per=lambda pier: pier.mass_t,
+        sometimes=True,
+        weighed=True,
+        more=": an orientation within some 30 %, of which no check is made",
+    ),
+    requested=_estimates_landings,
+)
 
 
 def _energy(term: str, form: str = ".4f") -> Quantity:
@@ -689,6 +730,7 @@ OPTIONAL = (
     ),
     *_WORK,
     *_OF_BENDING,
+    _LANDING_FORCE,
 )  # fmt: skip
 """Quantities at the end of a table, on request of the study."""
 

@@ -72,6 +72,8 @@ class Demand:
         Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
     height : function or None
         Of a case: the height above the pivots at which it is read [m].
+    landing, bending : bool
+        True if the blow of a landing, or the bending of the shaft, enters it (THEORY.md, Forces).
     """
 
     name: str
@@ -90,6 +92,8 @@ class Demand:
     device: str = ""
     reached: Evaluate | None = None
     height: Lever | None = None
+    landing: bool = False
+    bending: bool = False
 
     def applies_to(self, case: Case) -> bool:
         """Return True if it applies to the base of a case."""
@@ -158,10 +162,20 @@ def axial(sign: float) -> Evaluate:
 
 
 def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
-    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise."""
+    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
+
+    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it.
+    """
     unit = "kN m" if name.endswith("kNm") else "kN"
     return Demand(
-        name, meaning, evaluate or largest((name,), share="sections_error"), unit, needs="sections", weighed=True
+        name,
+        meaning,
+        evaluate or largest((name,), share="sections_error"),
+        unit,
+        needs="sections",
+        weighed=True,
+        landing=True,
+        bending=evaluate is None,
     )
 
 

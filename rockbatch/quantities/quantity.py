@@ -133,6 +133,10 @@ class Quantity:
         True if it takes the mass of the pier.
     requested : function or None
         True for a study that brings it otherwise.
+    landing : bool
+        True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
+    bending : bool
+        True if the bending of the shaft enters it, which a rigid shaft leaves out.
     """
 
     name: str
@@ -154,6 +158,8 @@ class Quantity:
     device: str = ""
     weighed: bool = False
     requested: Callable[[Any], bool] | None = None
+    landing: bool = False
+    bending: bool = False
 
     @property
     def meaning(self) -> str:
@@ -193,7 +199,7 @@ class Quantity:
         return Demand(
             name, limit.words or self.words, evaluate, limit.unit or in_print(self.unit), self.bases, residual=self.stood,
             other_law=limit.other_law, ceiling=limit.ceiling, needs=self.needs, weighed=self.weighed, device=self.device,
-            reached=limit.reached, height=limit.height,
+            reached=limit.reached, height=limit.height, landing=self.landing, bending=self.bending,
         )  # fmt: skip
 
     @property

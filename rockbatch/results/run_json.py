@@ -64,7 +64,15 @@ SHAPE = {
             "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float)
             | {
                 name: Maybe(_NUMBER)
-                for name in ("mass_t", "top_m", "highest_m", "deck_height_m", "deck_over_columns", "flexural_period_s")
+                for name in (
+                    "mass_t",
+                    "top_m",
+                    "highest_m",
+                    "deck_height_m",
+                    "deck_over_columns",
+                    "flexural_period_s",
+                    "shaft_share",
+                )
             },
             "base": ("rigid", "elastic", "yielding"),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}

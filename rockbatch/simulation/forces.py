@@ -14,7 +14,7 @@ from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Pier, RigidBase, YieldingBase, shape_at
+from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force, shape_at
 from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
 from rockbatch.simulation.outcome import PeakForces
@@ -166,7 +166,10 @@ def _hardest(run: Run, events: np.recarray, landings: Impacts) -> dict[str, floa
     if len(landings.after) == 0:
         return {}
     hardest = int(landings.speed.argmax())
-    peaks = {"landing_velocity": float(landings.speed[hardest]), "impulse": float(landings.vertical[hardest])}
+    speed = float(landings.speed[hardest])
+    peaks = {"landing_velocity": speed, "impulse": float(landings.vertical[hardest])}
+    if isinstance(run.base, RigidBase) and run.base.contact_stiffness_kN_m is not None:
+        peaks["landing_force"] = landing_force(run.pier, run.base.contact_stiffness_kN_m, speed)
     pressed = landings.vertical > 0.0
     if pressed.any():
         shares = np.abs(landings.horizontal[pressed]) / landings.vertical[pressed]

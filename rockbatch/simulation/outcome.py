@@ -60,6 +60,8 @@ class PeakForces:
         The longest flight that was followed [s].
     error : float or None
         By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
+    landing_force : float or None
+        Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
     """
 
     base_shear: float
@@ -82,6 +84,7 @@ class PeakForces:
     key_shear: float | None = None
     flight_longest: float | None = None
     error: float | None = None
+    landing_force: float | None = None
 
     def mirrored(self) -> "PeakForces":
         """Return the demands of the mirror image."""

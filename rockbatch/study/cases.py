@@ -99,6 +99,10 @@ BASE_KEYS = {
     "friction": Key(within(BOUNDS["friction"]), "0.5",
         "Coefficient of friction of the interface, for runs with `forces = true` under `[output]`: those that would slide "
         "say so.", many=True, usual=USUAL["friction"]),
+    "contact_stiffness_kN_m": Key(within(BOUNDS["contact_stiffness_kN_m"]), "5.0e6",
+        "Stiffness of the ground under one foot, by which runs with `forces = true` estimate the force of their hardest landing: "
+        "the column `landing_force_kN`, an orientation that no check takes; it does not affect any run.", many=True,
+        only=_ON_ROCK),
     "shaft": Key(choice(*WORDS["shaft"]), '"rigid"',
         'Whether the shaft bends: "elastic" follows one mode of the period `flexural_period_s` of `[pier]` beside the rotation.',
         many=True, only=_ON_ROCK),

@@ -316,7 +316,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         )
     _complain_about_sections(file, [pier for pier, _ in piers], output, any(case.base.bends for case in cases))
     if not output.forces:
-        _complain_about_friction(file)
+        _complain_without_forces(file)
     along = along_the_axis(cases)
     if len(along) < len(cases) and isinstance(motion_spec.target, SpectrumTarget):
         motion_spec = replace(motion_spec, target=replace(motion_spec.target, both=True))
@@ -389,15 +389,19 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-def _complain_about_friction(file: TomlFile) -> None:
-    """Note friction in a study without forces, which cost a second run with every step."""
+_OF_FORCES = {
+    "friction": "nothing to hold it against; write forces = true under [output], which computes the friction demand",
+    "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
+}
+"""Keys of a [[case]] that only forces use, and what is missing without them."""
+
+
+def _complain_without_forces(file: TomlFile) -> None:
+    """Note keys that only forces use in a study without, which cost a second run with every step."""
     for table in file.tables("case", title="name"):
-        if "friction" in table.data:
-            table.complain(
-                "friction: nothing to hold it against; write forces = true under [output], which computes the friction "
-                "demand, or leave it out",
-                "friction",
-            )
+        for key, problem in _OF_FORCES.items():
+            if key in table.data:
+                table.complain(f"{key}: {problem}, or leave it out", key)
 
 
 def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:

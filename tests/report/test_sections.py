@@ -8,7 +8,7 @@ from importlib import import_module
 import pandas as pd
 import pytest
 from report_page import Page
-from report_samples import FOUNDATIONS, case_entry, write_results
+from report_samples import FIG7, FOUNDATIONS, case_entry, write_results
 from studies import study_text, write_study
 
 import rockbatch.reporting.sections
@@ -214,6 +214,16 @@ def test_the_friction_of_all_runs_is_claimed_of_those_that_were_seen_through(tmp
     write_results(tmp_path, cases=cases, changes={(record, "1"): {"status": status} for record in ("ERZ-NS", "SYL360")})
     pd.read_csv(tmp_path / "peaks.csv").assign(friction_demand=0.2).to_csv(tmp_path / "peaks.csv", index=False)
     assert words in Page(section_of(tmp_path, forces)).text
+
+
+@pytest.mark.parametrize(("impacts", "said"), [(3, True), (0, False)])
+def test_forces_on_rigid_ground_are_said_to_leave_landings_out_where_a_run_lands(tmp_path, impacts, said):
+    """Of springs, whose runs land in any case, nothing is said."""
+    write_results(tmp_path, changes={(record, "rigid"): {"impacts": impacts} for record, _ in FIG7})
+    pd.read_csv(tmp_path / "peaks.csv").assign(base_shear_m_s2=0.2).to_csv(tmp_path / "peaks.csv", index=False)
+    text = Page(section_of(tmp_path, forces)).text
+    assert ("On rigid ground a landing is an impulse without a force" in text) == said
+    assert "single mode" not in text
 
 
 def test_the_greatest_is_claimed_of_the_runs_that_end_standing_and_a_missing_row_is_none_that_stands(tmp_path):

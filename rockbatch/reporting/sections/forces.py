@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks.omissions import FACTORS
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.cases import bends, has_light_shaft, is_frame, lands_by_impulse
 from rockbatch.quantities.catalogue import report_columns
 from rockbatch.quantities.quantity import Quantity
 from rockbatch.reporting.finished import Finished
@@ -31,8 +33,9 @@ def section(finished: Finished) -> Markup:
         return [finished.case_of(run), *(on_scale(column.name, run[column.name]) for column in shown)]
 
     heads = [Head("record"), Head("case"), *map(head, shown)]
-    places = zip(finished.runs["series"], finished.runs["pier"], strict=True)
+    places = list(zip(finished.runs["series"], finished.runs["pier"], strict=True))
     available = np.array([finished.cases[pair]["parameters"].get("friction", np.inf) for pair in places])
+    impulsive = np.array([lands_by_impulse(finished.cases[pair]) for pair in places])
     demands = finished.runs.reindex(columns=["friction_demand", "impact_friction_demand"]).max(axis=1).to_numpy()
     cut_short = finished.runs["status"].isin(CUT_SHORT).to_numpy()
     known = np.isfinite(available) & ~np.isnan(demands) & ~cut_short
@@ -41,8 +44,11 @@ def section(finished: Finished) -> Markup:
         every_run=every_run(finished, heads, cells, "Forces of every run"),
         interfaces=bool(np.isfinite(available).any()), slides=int((demands > available).sum()),
         known=int(known.sum()), on_interfaces=int(np.isfinite(available).sum()) + finished.not_run,
-        frames=any("deck_over_columns" in case["pier"] for case in finished.info["cases"]),
+        frames=any(is_frame(case) for case in finished.info["cases"]),
         bounds=bool(cut_short.any()),
+        landings=bool((impulsive & (finished.runs["impacts"] > 0).to_numpy()).any()),
+        modes=any(bends(case) for case in finished.info["cases"]), factors=FACTORS,
+        heavy=any(not bends(case) and not has_light_shaft(case) for case in finished.info["cases"]),
     )  # fmt: skip
 
 

@@ -1,0 +1,281 @@
+"""Forces that leave landings or the modes of a shaft out decide no check that they could pass, and the others as before."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from check_samples import PIER, RIGID, case, folder, in_sections, judged, runs, verdict
+from studies import RIGID as ROCK
+from studies import SINE, study_text, write_study
+
+from rockbatch.checks import Rule, as_table, judge
+from rockbatch.checks.answer import answer
+from rockbatch.checks.checking import verdicts
+from rockbatch.checks.omissions import BENDING, IMPULSES, LANDINGS, LANDINGS_OF_FRAME, MODES, OMISSIONS
+from rockbatch.checks.scorecard import scorecard
+from rockbatch.checks.verdicts import read_verdicts, write_verdicts
+from rockbatch.commands.cli import main
+from rockbatch.common.errors import InputError
+from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, YieldingBase
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.results.run_json import describe_case
+from rockbatch.study import Case
+
+ENTERED = {
+    *("base_shear_m_s2", "base_shear_kN", "key_shear_m_s2", "key_shear_kN", "friction_demand"),
+    *("normal_force_m_s2", "normal_force_kN", "pivot_force", "pivot_force_kN", "base_moment_m2_s2", "base_moment_kNm"),
+    *("deck_acceleration_m_s2", "deck_acceleration_g"),
+    *("section_shear_kN", "section_moment_kNm", "section_axial_kN", "section_tension_kN"),
+}
+"""Forces that the blow of a landing on stiff feet enters, by THEORY.md, Forces: written down again."""
+DAMPED = case("damped", ElasticBase(beta=50.0, zeta=0.05))
+BENT = case("bent", RigidBase(shaft="elastic"))
+LIGHT = Pier.with_deck(width_m=8.0, height_m=30.0, mass_t=150.0, deck_mass_t=1000.0, confirm=("mass_t", "deck_mass_t"))
+SHEAR = {"base_shear_kN": 3000.0, "base_shear_m_s2": 1.0, "forces_error": 0.01}
+
+
+def of_pier(pier, base=RIGID):
+    """A case of another pier."""
+    return describe_case(Case("other", pier, base, {}))
+
+
+def columns_of(demand, value):
+    """Cells of peaks.csv by which ``demand`` is ``value``, whatever its columns are called."""
+    if DEMANDS[demand].needs == "sections":
+        return {}
+    sides = {"pivot_force": ("pivot_force_left", "pivot_force_right"),
+             "pivot_force_kN": ("pivot_force_left_kN", "pivot_force_right_kN")}  # fmt: skip
+    columns = sides.get(demand, (demand.replace("deck_acceleration_g", "deck_acceleration_m_s2"),))
+    return {name: value * (9.81 if demand == "deck_acceleration_g" else 1.0) for name in columns} | {
+        "base_shear_m_s2": 1.0
+    }
+
+
+@pytest.mark.parametrize("demand", sorted(ENTERED))
+@pytest.mark.parametrize(("impacts", "verdict", "high"), [(0, "pass", 40000.0), (1, "not decided", math.inf)])
+def test_a_force_on_rigid_ground_passes_only_if_the_pier_never_lands(demand, impacts, verdict, high):
+    table = runs([0.3], name="rigid", **columns_of(demand, 3000.0) | {"impacts": impacts})
+    found = judged(table, one=RIGID, demand=demand, at_most=50000.0 if impacts else 1e9)
+    assert (found.verdict, LANDINGS in found.omitted) == (verdict, bool(impacts))
+    assert found.high == math.inf if impacts else found.high <= high
+    on_springs = judged(table.assign(case="damped"), one=DAMPED, demand=demand, at_most=50000.0)
+    assert (on_springs.verdict, LANDINGS in on_springs.omitted) == ("pass", False)
+
+
+def test_the_blow_of_a_landing_enters_these_forces_and_no_other_demand():
+    assert {name for name, demand in DEMANDS.items() if demand.landing} == ENTERED
+    axial = {"section_axial_kN", "section_tension_kN"}
+    upright = {
+        "normal_force_m_s2",
+        "normal_force_kN",
+        "pivot_force",
+        "pivot_force_kN",
+        "base_moment_m2_s2",
+        "base_moment_kNm",
+    }
+    assert {name for name, demand in DEMANDS.items() if demand.bending} == ENTERED - axial - upright
+
+
+@pytest.mark.parametrize(
+    "name", ["landing_velocity_m_s", "impulse_kN_s", "impact_friction_demand", "stop_force_over_weight"]
+)
+def test_what_is_finite_in_a_landing_is_decided_on_rigid_ground(name):
+    stopped = case("rigid", RigidBase(restraints=(Stop(0.1, 20.0),)))
+    table = runs([0.3], name="rigid", impacts=5, **{name: 0.5}, **SHEAR)
+    assert judged(table, one=stopped, demand=name, at_most=0.6).verdict == "pass"
+
+
+def test_a_force_beyond_its_limit_without_the_landings_fails_and_says_that_they_are_left_out():
+    table = runs([0.3], name="rigid", impacts=4, **SHEAR)
+    beyond, within_error = (judged(table, one=RIGID, demand="base_shear_kN", at_most=most) for most in (2900.0, 2980.0))
+    assert (beyond.verdict, beyond.omitted) == ("fail", [LANDINGS, BENDING])
+    assert (within_error.verdict, within_error.low) == ("not decided", pytest.approx(2970.0))
+    assert OMISSIONS[LANDINGS].remark in beyond.note
+
+
+def test_a_count_or_a_median_is_decided_where_runs_without_landings_suffice():
+    table = runs([0.3] * 5, name="rigid", impacts=[0, 0, 0, 3, 0], **SHEAR)
+    ask = {"one": RIGID, "demand": "base_shear_kN", "at_most": 4000.0}
+    assert judged(table, statistic="median", **ask).verdict == "pass"
+    assert judged(table, statistic="max", **ask).verdict == "not decided"
+    counts = [judged(table, statistic="count", above=4000.0, **ask | {"at_most": most}) for most in (1, 0)]
+    assert [(found.verdict, found.low, found.high) for found in counts] == [("pass", 0, 1), ("not decided", 0, 1)]
+    assert [LANDINGS in found.omitted for found in counts] == [False, True]
+
+
+def test_one_axis_that_lands_leaves_the_demand_of_both_open():
+    along = runs([0.1], name="rigid", impacts=0, **SHEAR)
+    across = runs([0.1], name="rigid across", impacts=2, **SHEAR)
+    cases = [RIGID, describe_case(Case("rigid across", PIER, RigidBase(), {}, across_of="rigid"))]
+    for way in ("greater", "srss", "100_30"):
+        rule = Rule("shear", "base_shear_kN", at_most=9000.0, both_axes=way)
+        (found,) = judge([rule], pd.concat([along, across]), cases)
+        assert (found.verdict, LANDINGS in found.omitted) == ("not decided", True)
+        (still,) = judge([rule], pd.concat([along, across.assign(impacts=0)]), cases)
+        assert still.verdict == "pass"
+
+
+def test_runs_left_out_leave_nothing_open():
+    table = runs([0.3, 0.4], name="rigid", impacts=[0, 6], **SHEAR).assign(status=["ok", "overturned"])
+    found = judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0, overturned="left out")
+    assert (found.verdict, found.omitted) == ("pass", [BENDING])
+    kept = judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0, overturned="value")
+    assert (kept.verdict, kept.omitted) == ("not decided", [LANDINGS, BENDING])
+
+
+def test_the_landings_of_a_frame_cannot_be_told_to_go_on_springs():
+    frame = Pier.frame(Pier.rectangle(1.6, 9.6, mass_t=60.0), 3, 1000.0)
+    found = judged(
+        runs([0.3], name="other", impacts=4, **SHEAR),
+        one=of_pier(frame, RigidBase()),
+        demand="base_shear_kN",
+        at_most=1e4,
+    )
+    assert found.omitted == [LANDINGS_OF_FRAME]  # a light shaft: no bending
+    assert 'base = "elastic"' not in found.note
+
+
+def test_forces_of_a_single_mode_decide_nothing_either_way_and_show_their_number():
+    table = runs([0.3], name="bent", impacts=0, **SHEAR)
+    for most, ratio in ((2000.0, 1.5), (6000.0, 0.5)):
+        found = judged(table, one=BENT, demand="base_shear_kN", at_most=most)
+        assert (found.verdict, found.low, found.value, found.high) == ("not decided", 0.0, 3000.0, math.inf)
+        assert (found.ratio, found.omitted, found.is_lower_bound) == (ratio, [MODES], False)
+    overturned = judged(table.assign(status="overturned"), one=BENT, demand="base_shear_kN", at_most=6000.0)
+    assert overturned.verdict == "fail"
+    assert judged(table, one=BENT, demand="theta_max_over_alpha", at_most=0.5).verdict == "pass"
+
+
+@pytest.mark.parametrize(
+    "base", [RigidBase(), ElasticBase(beta=50.0, zeta=0.05), YieldingBase(beta=50.0, zeta=0.05, eta=3.0)]
+)
+def test_a_heavy_rigid_shaft_says_that_bending_is_left_out_and_a_light_one_does_not(base):
+    table = runs([0.3], name="other", impacts=0, **SHEAR)
+    heavy, light = (
+        judged(table, one=of_pier(pier, base), demand="base_shear_kN", at_most=4000.0) for pier in (PIER, LIGHT)
+    )
+    assert (heavy.verdict, heavy.omits, light.verdict, light.omits) == ("pass", BENDING, "pass", "")
+    assert "1.6 to 2.9 times" in heavy.note
+    place, sections = in_sections(table, "section_shear_kN")
+    rules = [Rule(name, name, 5e4, **place) for name in ("section_shear_kN", "section_moment_kNm", "section_axial_kN")]
+    found = judge(rules, table, [of_pier(PIER, base)], sections=sections)
+    assert [one.omits for one in found] == [BENDING, BENDING, ""]
+
+
+def test_springs_with_epsilon_say_that_an_impulse_is_left_out():
+    ask = {"demand": "pivot_force", "at_most": 3.0}
+    table = runs([0.3], name="pads", impacts=3, pivot_force_left=2.0, pivot_force_right=2.0, base_shear_m_s2=1.0)
+    assert judged(table, one=case(base=ElasticBase(beta=50.0, epsilon=0.05)), **ask).omitted == [IMPULSES]
+    assert judged(table, one=case(base=ElasticBase(beta=50.0, epsilon=1.0)), **ask).omitted == []
+    assert judged(table, one=case(base=ElasticBase(beta=50.0, zeta=0.05)), **ask).omitted == []
+    assert judged(table.assign(impacts=0), one=case(base=ElasticBase(beta=50.0)), **ask).omitted == []
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.19, 0.21, 1.0, 7.0])
+def test_the_share_of_the_shaft_is_that_of_its_parts_and_that_which_mu_tells(ratio):
+    deck = 1000.0
+    pier = Pier.of_parts(4.0, [Part(ratio * deck, 20.0, ratio * deck * 40.0**2 / 12.0, 40.0), Part(deck, 40.0, 0.0, 0.0)],
+                         confirm=("width_m", "mass_t"))  # fmt: skip
+    assert pier.shaft_share == pytest.approx(ratio / (1.0 + ratio))
+    assert replace(pier, parts=None).shaft_share == pytest.approx(ratio / (1.0 + ratio))
+    assert describe_case(Case("other", pier, RigidBase(), {}))["pier"]["shaft_share"] == pier.shaft_share
+
+
+def test_a_mass_within_the_height_is_of_the_shaft_and_a_rectangle_is_all_shaft():
+    parts = [Part(100.0, 10.0, 4000.0, 20.0), Part(500.0, 12.0, 0.0, 0.0), Part(400.0, 21.0, 0.0, 0.0)]
+    assert Pier.of_parts(4.0, parts, confirm=("width_m", "mass_t")).shaft_share == pytest.approx(0.6)
+    assert Pier.rectangle(4.0, 20.0).shaft_share == Pier(alpha=0.13, p=0.38).shaft_share == 1.0
+    column = Pier.rectangle(1.6, 9.6, mass_t=60.0)
+    assert Pier.frame(column, 3, 900.0).shaft_share == pytest.approx(180.0 / 1080.0)
+
+
+def test_the_first_screen_says_what_an_undecided_and_a_green_check_leave_out():
+    omitting = verdict("rock", "not decided", check="shear", high=math.inf, value=0.2, omits="landings, bending")
+    also = verdict("rock", "not decided", check="foot", high=math.inf, value=0.2, omits="landings")
+    passing = verdict("feet", "pass", check="shear", omits="bending")
+    lines = answer([omitting, also, passing], (), lambda one: one.case, lambda one: one.record)
+    words = {line.verdict: " ".join(line.details) for line in lines}
+    assert f"shear, foot: {OMISSIONS[LANDINGS].remark}." in words["not decided"]
+    assert words["not decided"].count("landings") == 1
+    assert f"shear: {OMISSIONS[BENDING].remark}." in words["pass"]
+    card = scorecard([omitting, also, passing], lambda one: one.case)
+    rock = next(row for row in card.rows if row.name == "rock")
+    assert (rock.verdict, {cell.percent for cell in rock.cells}) == ("not decided", {"≥\u00a050\u00a0%"})
+
+
+def test_what_is_left_out_is_a_column_of_the_verdicts_and_no_other_word_is_read(tmp_path):
+    table = runs([0.3], name="rigid", impacts=4, **SHEAR)
+    found = [judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0)]
+    path = write_verdicts(tmp_path, found)
+    assert [one.omitted for one in read_verdicts(tmp_path)] == [[LANDINGS, BENDING]]
+    assert as_table(found)["omits"].tolist() == ["landings, bending"]
+    path.write_text(path.read_text().replace("landings, bending", "nothing"))
+    with pytest.raises(InputError, match="damaged"):
+        read_verdicts(tmp_path)
+
+
+@pytest.mark.parametrize(("pier", "omits"), [(LIGHT, ""), (PIER, BENDING)])
+def test_results_of_an_earlier_version_have_the_shaft_that_mu_tells(tmp_path, pier, omits):
+    old = of_pier(pier, ElasticBase(beta=50.0, zeta=0.05))
+    old["pier"].pop("shaft_share", None)
+    table = runs([0.3], name="other", impacts=4, **SHEAR)
+    text = '[[check]]\nname = "shear"\ndemand = "base_shear_kN"\nat_most = 4000.0\nreason = "keys"\n'
+    (found,) = verdicts(folder(tmp_path / "old", table, [old], text))
+    assert (found.verdict, found.omits) == ("pass", omits)
+
+
+@pytest.mark.parametrize(("amplitudes", "decided"), [((0.03, 0.05), "pass"), ((0.03, 0.5), "not decided")])
+def test_a_study_is_decided_on_rigid_ground_only_if_its_pier_never_lands(tmp_path, no_report, amplitudes, decided):
+    """A pier of 4 m × 30 m lifts off at 0.13 g."""
+    pier = {"width_m": 4.0, "height_m": 30.0, "mass_t": 1000.0}
+    pulses = [SINE | {"name": f"{amplitude}", "amplitude_g": amplitude} for amplitude in amplitudes]
+    checks = [
+        {"name": demand, "demand": demand, "at_most": 1e6, "reason": "keys", "confirm": ["at_most"]} | place
+        for demand, place in (("base_shear_kN", {}), ("section_moment_kNm", {"at_m": 15.0}), ("omega_max_over_p", {}))
+    ]
+    output = {"forces": True, "sections": 3, "histories": "none"}
+    path = write_study(tmp_path, study_text(pier=pier, pulses=pulses, cases=(ROCK,), output=output, check=checks))
+    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == (decided != "pass")
+    assert [one.verdict for one in read_verdicts(tmp_path / "out")] == [decided, decided, "pass"]
+
+
+STATISTICS = {
+    "max": lambda values: max(values), "mean": lambda values: sum(values) / len(values),
+    "median": lambda values: float(np.sort(values)[len(values) // 2]),  # of an odd number
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_random_checks_are_decided_only_where_a_separate_judge_finds_no_force_left_out(seed):
+    """The judge here knows rows only: a run that landed on rigid ground may have any greater force, one mode any at all."""
+    rng = np.random.default_rng(seed)
+    base = [RigidBase(), RigidBase(shaft="elastic"), RigidBase(restraints=(Damper("hysteretic", f=0.1, yield_m=0.005),)),
+            ElasticBase(beta=60.0, zeta=0.05), YieldingBase(beta=60.0, eta=3.0, epsilon=0.2)][int(rng.integers(5))]  # fmt: skip
+    demand = str(
+        rng.choice(["base_shear_kN", "theta_max_over_alpha", "key_shear_kN", "omega_max_over_p", "friction_demand"])
+    )
+    n, statistic = 2 * int(rng.integers(1, 5)) + 1, str(rng.choice(list(STATISTICS)))
+    values, errors = rng.uniform(0.1, 0.9, n), rng.uniform(0.0, 0.05)
+    impacts = rng.integers(0, 4, n) * rng.integers(0, 2, n)
+    limit, theta = float(rng.uniform(0.1, 0.9)), demand == "theta_max_over_alpha"
+    cells = (
+        {"theta_max_error": errors * values}
+        if theta
+        else {demand: values, "forces_error": errors, "base_shear_m_s2": 1.0}
+    )
+    table = runs(values, name="one", impacts=impacts, **cells)
+    found = judged(table, one=case("one", base), demand=demand, at_most=limit, statistic=statistic)
+
+    forced = demand in ENTERED
+    lows = [0.0 if forced and base.bends else value * (1.0 - errors) for value in values]
+    highs = [
+        math.inf if forced and (base.bends or (isinstance(base, RigidBase) and landed)) else value * (1.0 + errors)
+        for value, landed in zip(values, impacts, strict=True)
+    ]
+    low, high = (STATISTICS[statistic](bounds) for bounds in (lows, highs))
+    expected = "fail" if low > limit else "pass" if high <= limit else "not decided"
+    assert (found.verdict, found.low, found.high) == (expected, pytest.approx(low), pytest.approx(high))
+    if expected == "not decided" and math.isinf(high):
+        assert found.left_open in (LANDINGS, MODES)
