@@ -697,6 +697,54 @@ def test_epsilon_beside_zeta_is_reported_once_with_its_line(tmp_path):
         study_of(tmp_path, PIER, PULSE, case("beta = 40", "zeta = 5", base="elastic"))
 
 
+def test_a_list_of_impacts_has_epsilon_for_landing_only(tmp_path):
+    listed = case("beta = 40", "eta = 2.5", "epsilon = [0.05, 0.1]", 'impact = ["landing", "housner"]')
+    study = study_of(tmp_path, PIER, PULSE, listed)
+    assert [(only.base.impact, only.base.epsilon) for only in study.cases] == [
+        ("landing", 0.05), ("housner", 0.0), ("landing", 0.1),
+    ]  # fmt: skip
+    assert [only.columns for only in study.cases] == [
+        {"epsilon": 0.05, "impact": "landing"}, {"impact": "housner"}, {"epsilon": 0.1, "impact": "landing"},
+    ]  # fmt: skip
+    (only,) = study_of(tmp_path, PIER, PULSE, case("beta = 40", 'impact = "housner"', base="elastic")).cases
+    assert only.base == ElasticBase(40.0, impact="housner")
+
+
+@pytest.mark.parametrize(
+    ("base", "keys", "told"),
+    [
+        (
+            "elastic",
+            ('impact = "housner"', "epsilon = 0.1"),
+            'epsilon = 0.1: does not apply to impact = "housner"; leave it out',
+        ),
+        (
+            "elastic",
+            ('impact = "housner"', "epsilon = 0"),
+            'epsilon = 0: does not apply to impact = "housner"; leave it out',
+        ),
+        (
+            "elastic",
+            ('impact = "housner"', "zeta = 0.05"),
+            'impact = "housner": zeta is given too, and a damped support',
+        ),
+        (
+            "elastic",
+            ('impact = "landing"', "zeta = 0.05"),
+            'impact = "landing": zeta is given too, and a damped support',
+        ),
+        (
+            "rigid",
+            ('impact = "housner"',),
+            'impact = "housner": does not apply to base = "rigid"; leave it out, or write base',
+        ),
+    ],
+)
+def test_an_impact_is_refused_where_it_or_epsilon_has_no_effect(tmp_path, base, keys, told):
+    stiff = ("beta = 40",) if base == "elastic" else ()
+    assert told in problem_of(tmp_path, PIER, PULSE, case(*stiff, *keys, base=base))
+
+
 HEAVY = "[pier]\nwidth_m = 4.0\nheight_m = 30.0\nmass_t = 2000.0\n"
 
 
