@@ -70,8 +70,9 @@ BASE_KEYS = {
         "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True,
         only=_ON_SPRINGS | {"impact": WITH_EPSILON}),
     "impact": Key(choice(*WORDS["impact"], called=_CALLED["impact"]), '"landing"',
-        'What a landing does: "landing", an impulse at that pivot, by `epsilon`; or "housner", Housner\'s e on the angular '
-        "velocity while the other pivot keeps its velocity, for which the supports would have to pull.", many=True, only=_ON_SPRINGS),
+        'What a landing does: "landing", an impulse at that pivot, by `epsilon`; or "housner", Housner\'s e on the '
+        "angular velocity while the other pivot keeps its velocity, for which the supports would have to pull.",
+        many=True, only=_ON_SPRINGS),
     "zeta": Key(within(BOUNDS["zeta"]), "0.05",
         "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`.",
         many=True, only=_ON_SPRINGS),

@@ -604,12 +604,15 @@ def test_every_study_that_comes_along_is_sound_and_explains_itself(path):
 )
 def test_figures_5_and_6_have_the_paper_s_parameters(name, alpha, bases, wave, varied):
     study = load_study(CONFIGS / f"{name}.toml")
-    expected = [RigidBase(flight="stop"), *(YieldingBase(beta, 0.1, flight="stop", eta=eta) for beta, eta in bases)]
+    expected = [RigidBase(flight="stop")]
+    for beta, eta in bases:
+        by_e = YieldingBase(beta, flight="stop", eta=eta, impact="housner")
+        expected += [YieldingBase(beta, 0.1, flight="stop", eta=eta), by_e]
     assert [each.base for each in study.cases] == expected
     assert {each.pier for each in study.cases} == {Pier(alpha, 1.0)}
     (pulse,) = study.motions.pulses
     assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == wave
-    assert study.varied == (varied,)
+    assert study.varied == (varied, "impact")
 
 
 def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
