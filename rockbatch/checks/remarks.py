@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from rockbatch.checks.responses import Worst
 from rockbatch.common.grouping import grouped
-from rockbatch.quantities.cases import Case
+from rockbatch.quantities.cases import Case, asks_tension
 
 MOST_NAMES = 3
 
@@ -21,6 +21,17 @@ def weak_supports(cases: Sequence[Case]) -> str:
     load = "weight and prestress" if any(map(_prestress, weak)) else "weight"
     named = _named(weak, cases)
     return f"{named}: the supports yield before the pier can step, lift-off is not reached: one bears {borne} % of the {load}"
+
+
+def pulled_supports(cases: Sequence[Case]) -> str:
+    """Return a sentence on cases whose impacts ask a support for a pull; empty for none."""
+    pulled = [case for case in cases if asks_tension(case)]
+    if not pulled:
+        return ""
+    return (
+        f"{_named(pulled, cases)}: to multiply the angular velocity by Housner's e and keep the other pivot's velocity, a "
+        "support would have to pull at every impact, which one without tension cannot"
+    )
 
 
 def undamped_settlement(worst: Sequence[Worst]) -> str:

@@ -10,7 +10,7 @@ from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
 from rockbatch.checks.checking import verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
-from rockbatch.checks.remarks import undamped_settlement, weak_supports
+from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
@@ -97,7 +97,7 @@ def answered(verdicts: Sequence[Verdict], saved: Saved) -> str:
             worst, results.runs, cases, lambda case: results.named_case(case["case"], case["columns"], varied)
         )
     lines = [table, ""] if table else []
-    lines += [filled(words) for words in (weak_supports(saved.info["cases"]),) if words]
+    lines += [filled(words) for words in (weak_supports(cases), pulled_supports(cases)) if words]
     stations = stations_of(saved.info)
     for line in answer(
         verdicts, at_scales, case_of, lambda verdict: labels.get(verdict.record, verdict.record), suites, stations

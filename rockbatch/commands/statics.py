@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.checks.remarks import weak_supports
+from rockbatch.checks.remarks import pulled_supports, weak_supports
 from rockbatch.commands.streams import in_width, say, show
 from rockbatch.commands.summary import flexible, named
 from rockbatch.common.files import csv_text, write_output
@@ -26,8 +26,9 @@ def main(arguments: argparse.Namespace) -> int:
     """Print the statics sheets of a study, and write them if asked."""
     study = load_study(arguments.file, motions=Motion("none", 0.01, np.zeros(2)))
     sheets = [(case, statics(case.pier, case.base)) for case in study.cases]
-    if weak := weak_supports([describe_case(case) for case in study.cases]):
-        show(f"{weak}\n")
+    described = [describe_case(case) for case in study.cases]
+    for remark in filter(None, (weak_supports(described), pulled_supports(described))):
+        show(f"{remark}\n")
     show(table(sheets))
     if len(sheets) <= MOST_CASES:
         for case, sheet in sheets:

@@ -2,6 +2,7 @@
 
 from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
+from rockbatch.pier.bases import WITH_EPSILON as WITH_EPSILON
 from rockbatch.pier.bases import WITH_EXPONENT as WITH_EXPONENT
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase

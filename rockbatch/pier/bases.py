@@ -36,6 +36,7 @@ FLIGHT_LIMIT_MM = 5.0
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
 SpringLaw = Literal["bouc-wen", "epp", "hardening"]
+Impact = Literal["landing", "housner"]
 Shaft = Literal["rigid", "elastic"]
 
 WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
@@ -43,6 +44,12 @@ WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
 
 RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
 """Laws with cyclic settlement (ratcheting): their springs settle a little with every cycle below their yield force."""
+
+WITH_EPSILON: tuple[Impact, ...] = ("landing",)
+"""Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
+
+ASKING_TENSION: tuple[Impact, ...] = ("housner",)
+"""Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact)."""
 
 OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
 """For each law that ratchets one that does not: the settlement lies between both (THEORY.md, Results of a run)."""
@@ -81,6 +88,7 @@ BOUNDS = {
 
 WORDS: dict[str, tuple[str, ...]] = {
     "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw), "shaft": get_args(Shaft),
+    "impact": get_args(Impact),
 }  # fmt: skip
 """Possible words of the fields of bases."""
 
@@ -150,6 +158,16 @@ class _Traits(InNotebook):
     @property
     def has_exponent(self) -> bool:
         """Return whether the springs' law has an exponent n."""
+        return False
+
+    @property
+    def has_epsilon(self) -> bool:
+        """Return whether impacts have a restitution ε of the landing pivot."""
+        return False
+
+    @property
+    def asks_tension(self) -> bool:
+        """Return whether impacts ask a support for a pull, which one without tension cannot give."""
         return False
 
     @property
@@ -260,6 +278,9 @@ class ElasticBase(_Traits):
         Devices between the pier and the ground, other than its springs (THEORY.md, Dampers and tendons).
     area_m2 : float, optional
         Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
+    impact : "landing" or "housner"
+        An impulse at the landing pivot, by ε; or Housner's e on the angular velocity, while the other pivot keeps its velocity,
+        for which the supports would have to pull (THEORY.md, Impact). The latter has no ε.
     confirm : sequence of str
         Fields that are right though unusual: "friction", "beta", …
 
@@ -280,6 +301,7 @@ class ElasticBase(_Traits):
     restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
     flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
     area_m2: float | None = field(default=None, kw_only=True)
+    impact: Impact = field(default="landing", kw_only=True)
     confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
 
     name = "elastic"
@@ -290,13 +312,28 @@ class ElasticBase(_Traits):
 
     def _wrong_together(self) -> list[str]:
         wrong = BETA.problems("beta", self.beta)
-        if self.zeta is not None and self.epsilon != 0:
-            wrong.append(f"epsilon = {self.epsilon:g}: {EPSILON_AND_ZETA}")
+        if self.zeta is not None:
+            wrong += [f"epsilon = {self.epsilon:g}: {EPSILON_AND_ZETA}"] * (self.epsilon != 0)
+            wrong += [f'impact = "{self.impact}": {EPSILON_AND_ZETA}'] * (self.impact != "landing")
+        elif self.impact not in WITH_EPSILON and self.epsilon != 0:
+            wrong.append(f'epsilon = {self.epsilon:g}: has no effect with impact = "{self.impact}"; leave it out')
         return wrong
+
+    @property
+    def has_epsilon(self) -> bool:
+        """Return whether ``epsilon`` applies: not to damped supports, nor to impacts by Housner's e."""
+        return self.zeta is None and self.impact in WITH_EPSILON
+
+    @property
+    def asks_tension(self) -> bool:
+        """Return whether impacts ask a support for a pull: those by Housner's e do."""
+        return self.impact in ASKING_TENSION
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""
-        landing = {"epsilon": self.epsilon} if self.zeta is None else {"zeta": self.zeta}
+        landing: dict[str, Any] = {"impact": self.impact} if self.zeta is None else {"zeta": self.zeta}
+        if self.has_epsilon:
+            landing["epsilon"] = self.epsilon
         values: dict[str, Any] = {"beta": self.beta, **landing, "kinematics": self.kinematics}
         values |= {"flight": self.flight, "flight_limit_mm": self.flight_limit_mm}
         values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from rockbatch.pier.bases import IMPULSIVE, RATCHETING
+from rockbatch.pier.bases import ASKING_TENSION, IMPULSIVE, RATCHETING
 from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.restraints import what_of
 
@@ -61,6 +61,11 @@ def per_gravity(case: Case) -> float:
 def creeps(case: Case) -> bool:
     """Return True if the springs of a case settle cyclically, so that another law gives its settlement a range."""
     return case["parameters"].get("spring") in RATCHETING
+
+
+def asks_tension(case: Case) -> bool:
+    """Return True if the impacts of a case ask a support for a pull."""
+    return case["parameters"].get("impact") in ASKING_TENSION
 
 
 def has_device(case: Case, device: str) -> bool:

@@ -33,7 +33,7 @@ MOST_VALUES = 6
 """Most values of one input that are shown."""
 PIER = ("alpha", "p", "mu", "gravity", "size_m", "mass_t", "top_m")
 BASE = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "spring", "n", "kinematics", "flight", "flight_limit_mm",
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "impact", "epsilon", "spring", "n", "kinematics", "flight", "flight_limit_mm",
     "restitution",
 )  # fmt: skip
 NUMERICS = {"tolerance": "tolerance", "substeps": "steps per sample", "quiet_s": "time at rest after the record [s]"}

@@ -47,8 +47,8 @@ device's exponent."""
 _OF_DEVICE = re.compile(r"(damper|tendon|stop|deck_spring)_(\d+)_(.+)")
 
 BASE_KEYS = (
-    "beta", "stiffness_kN_m", "eta", "yield_kN", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution",
-    "flight_limit_mm", "friction", "area_m2",
+    "beta", "stiffness_kN_m", "eta", "yield_kN", "impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight",
+    "restitution", "flight_limit_mm", "friction", "area_m2",
 )  # fmt: skip
 SAME = {"beta": "stiffness_kN_m", "eta": "yield_kN"}
 """Equivalent keys, without and with units: a foundation is described by the one that its study gives."""

@@ -14,7 +14,7 @@ from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.model import ELASTIC, LAWS, Springs
+from rockbatch.core.springs.model import ELASTIC, IMPACTS, LAWS, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
@@ -109,6 +109,8 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         stiffness=float(omega_v**2 / (eta * pier.gravity)),
         yield_force=force,
         epsilon=float(base.epsilon if base.zeta is None else 1.0),
+        impact=IMPACTS[base.impact],
+        restitution=float(pier.restitution),
         damping=float((base.zeta or 0.0) * omega_v),
         law=law,
         guided=float(base.flight == "guided"),

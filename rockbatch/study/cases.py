@@ -9,6 +9,7 @@ from rockbatch.common.errors import remedy
 from rockbatch.common.showing import shown
 from rockbatch.common.units import rounded_up
 from rockbatch.pier import (
+    WITH_EPSILON,
     WITH_EXPONENT,
     Base,
     ElasticBase,
@@ -43,6 +44,7 @@ _CALLED = {
     "spring": names({
         "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic", "bouc-wen": "smooth",
     }),
+    "impact": names({"landing": "impulse"}),
     "kinematics": names({
         "first-order": "small smallrotations linear linearised linearized 1storder",
         "finite": "large largerotations nonlinear exact full",
@@ -72,7 +74,12 @@ BASE_KEYS = {
     "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
         only=_ON_SPRINGS, usual=PIER["mass_t"].usual),
     "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
-        "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True, only=_ON_SPRINGS),
+        "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True,
+        only=_ON_SPRINGS | {"impact": WITH_EPSILON}),
+    "impact": Key(choice(*WORDS["impact"], called=_CALLED["impact"]), '"landing"',
+        'What a landing does: "landing", an impulse at that pivot, by `epsilon`; or "housner", Housner\'s e on the '
+        "angular velocity while the other pivot keeps its velocity, for which the supports would have to pull.",
+        many=True, only=_ON_SPRINGS),
     "zeta": Key(within(BOUNDS["zeta"]), "0.05",
         "Damping ratio ζ of the vertical vibration, by a dashpot parallel to each spring; instead of `epsilon`.",
         many=True, only=_ON_SPRINGS),
@@ -139,6 +146,7 @@ CASE = Section(("case",), (
     Clash(("beta", "stiffness_kN_m"), "beta and stiffness_kN_m are given, which fix the same; keep one", at="stiffness_kN_m"),
     Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
     Clash(("epsilon", "zeta"), f"epsilon = {{value}}: {EPSILON_AND_ZETA}"),
+    Clash(("impact", "zeta"), f"impact = {{value}}: {EPSILON_AND_ZETA}"),
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
@@ -196,7 +204,8 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     of_base = {name: values[name] for name in BASE_KEYS if name in values}
     of_base |= {"restraints": devices, "confirm": tuple(USUAL)}  # what is unusual is noted where it is read
     if "zeta" in of_base:
-        of_base.pop("epsilon", None)  # that they clash is noted already
+        for name in ("epsilon", "impact"):  # that they clash is noted already
+            of_base.pop(name, None)
     base, wrong = _base(case.base, of_base, pier)
     wrong += problems(pier, base)
     of_devices = {problem for device in devices for problem in wrong_device(pier, device)}
@@ -208,8 +217,10 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
     for name in ("restraints", "confirm", "flexural_impact"):  # their own keys say them
         applying.pop(name, None)
-    if "zeta" in applying:
+    if not base.has_epsilon:
         applying.pop("epsilon", None)
+    if "zeta" in applying:
+        applying.pop("impact", None)
     if not base.has_exponent:
         applying.pop("n", None)
     if not base.bends:
@@ -239,11 +250,13 @@ def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[
 
 
 def _without_repeats(all_of_them: Iterable[Chosen]) -> Iterator[Chosen]:
-    """Yield all choices, without n if the spring has none, and without the repetitions that this leaves."""
+    """Yield all choices, without n or ε if spring or impact has none, and without the repetitions that this leaves."""
     visited = set()
     for chosen in all_of_them:
         if "spring" in chosen and chosen["spring"].value not in WITH_EXPONENT:
             chosen.pop("n", None)
+        if "impact" in chosen and chosen["impact"].value not in WITH_EPSILON:
+            chosen.pop("epsilon", None)
         identity = tuple(chosen.items())
         if identity not in visited:
             visited.add(identity)

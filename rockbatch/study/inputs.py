@@ -74,10 +74,13 @@ def varied(case: Case, values: Mapping[str, Any]) -> Case:
 
 
 def values_of(case: Case) -> dict[str, Any]:
-    """Return the values of all quantities that a case may vary; ε, or ζ if that is given instead."""
+    """Return the values of all quantities that a case may vary; ε where it applies, ζ if it is given."""
     pier = {name: getattr(case.pier, name) for name in OF_PIER}
     base = {field.name: getattr(case.base, field.name) for field in fields(case.base)}
-    base.pop("zeta" if base.get("zeta") is None else "epsilon", None)
+    if base.get("zeta") is None:
+        base.pop("zeta", None)
+    if not case.base.has_epsilon:
+        base.pop("epsilon", None)
     derived = in_kilonewtons(case.pier, case.base) | values_of_devices(case.pier, case.base.restraints)
     # To the digits in which studies are written, so that a range may end at the study's own value
     return pier | base | {name: float(f"{value:.12g}") for name, value in derived.items()}
@@ -112,6 +115,8 @@ def why_no_case(name: str, study: Study) -> str:
         return "it goes with a pier of known mass (mass_t) on springs"
     if name in ("epsilon", "zeta") and any(case.base.on_springs for case in study.cases):
         return (
-            "it goes with springs that have one; write zeta in the case" if name == "zeta" else "zeta takes its place"
+            "it goes with springs that have one; write zeta in the case"
+            if name == "zeta"
+            else 'zeta or impact = "housner" takes its place'
         )
     return "no case of the study has it"

@@ -8,7 +8,7 @@ from report_page import Page
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.checks.remarks import undamped_settlement, weak_supports
+from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import in_words, worst_of_all, worst_of_cases
 from rockbatch.commands.cli import main
 from rockbatch.pier import YieldingBase
@@ -41,6 +41,21 @@ def test_weak_cases_are_named_once_with_their_values_where_others_of_the_name_ar
     many = [case("pads", YieldingBase(beta=50.0, eta=1.5), k=k) for k in range(40)]
     assert weak_supports(many).startswith("pads: ")
     assert "40 of 41 cases: the supports yield" in weak_supports([*many, case(eta=2.5)])
+
+
+def test_cases_whose_impacts_pull_at_a_support_are_named_and_only_they(tmp_path, capsys):
+    pulls, pushes = (case(impact, rb.ElasticBase(50.0, impact=impact)) for impact in ("housner", "landing"))
+    assert pulled_supports([RIGID, pushes, case("damped", WEAK)]) == ""
+    sentence = pulled_supports([pushes, pulls])
+    assert sentence.startswith("housner: ")
+    assert "a support would have to pull at every impact" in sentence
+    saved = folder(tmp_path / "out", runs(name="housner"), [pulls])
+    assert sentence in Page(write_report(saved, []).read_text(encoding="utf-8")).text
+    bare = {"name": "housner", "base": "elastic", "beta": 50, "impact": "housner"}
+    study = write_study(tmp_path, study_text(cases=(bare,)))
+    for command in (["statics", str(study)], ["run", str(study), "--out", str(tmp_path / "run")]):
+        assert main(command) == 0
+        assert sentence in re.sub(r"\s+", " ", capsys.readouterr().out)
 
 
 def test_settlement_without_damping_is_qualified_and_only_that():

@@ -54,9 +54,10 @@ def test_a_pier_beyond_the_capacity_of_its_yielding_supports_is_followed_until_i
         ElasticBase(50.0, 0.2),
         YieldingBase(50.0, 0.2, eta=1.5, spring="epp"),
         YieldingBase(50.0, 0.2, eta=1.5, spring="hardening"),
+        ElasticBase(50.0, impact="housner"),
         RigidBase(),
     ],
-    ids=["elastic", "epp", "hardening", "rigid"],
+    ids=["elastic", "epp", "hardening", "housner", "rigid"],
 )
 def test_how_long_a_run_is_asked_to_go_on_does_not_change_what_it_says(base):
     """Amplitudes on either side of overturning: outcome and peak are those of a run that is followed five times longer."""

@@ -27,6 +27,8 @@ def crowd(kinds):
         pier, base, motion = hard_case(seed, npts=60 + 17 * (seed % 11))
         if seed % 4 == 0 and isinstance(base, YieldingBase):
             base = replace(base, spring="hardening", n=base.n if base.has_exponent else 5.0)
+        if seed % 3 == 0 and base.has_epsilon:
+            base = replace(base, epsilon=0.0, impact="housner")
         runs.append(Run(pier, base, replace(motion, dt=(0.005, 0.01, 0.004)[seed % 3])))
     return runs, [4 + 4 * (seed % 4) for seed in range(3 * LANES)]
 

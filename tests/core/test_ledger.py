@@ -25,6 +25,7 @@ BASES = {
     "bouc-wen": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2),
     "epp, finite": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="epp", kinematics="finite"),
     "hardening": rb.YieldingBase(50, 0.1, flight="guided", eta=2.2, spring="hardening"),
+    "bouc-wen, housner": rb.YieldingBase(50, flight="guided", eta=2.2, impact="housner"),
     "bouc-wen, finite, epsilon 0": rb.YieldingBase(50, 0.0, flight="guided", eta=2.2, kinematics="finite"),
 }
 

@@ -213,6 +213,7 @@ class TwoSprings:
         self.finite = base.kinematics == "finite"
         self.guided = base.flight == "guided"
         self.eps = base.epsilon
+        self.e = max(0.0, 1.0 - 2.0 * self.b**2 / (self.inertia + r * r)) if base.impact == "housner" else None
         self.zeta = base.zeta or 0.0
         self.c = self.zeta * self.omega_v  # C/M
         if self.zeta:
@@ -421,7 +422,9 @@ class TwoSprings:
             and self.pivot(other, y) - self.rest[other] < 1e-13 * self.dy
             and self.rate(other, y) < 0.0
         )
-        if both:  # two impulses: both pivots' velocities, hence v̇ and θ̇, are multiplied by ε
+        if self.e is not None:
+            self._turn_less(i, both)
+        elif both:  # two impulses: both pivots' velocities, hence v̇ and θ̇, are multiplied by ε
             y[VD] *= self.eps
             y[OM] *= self.eps
         else:
@@ -446,6 +449,28 @@ class TwoSprings:
         for k in (i, other) if both else (i,):
             if abs(self.rate(k, y)) <= 1e-13 * self.omega_v * self.dy:
                 self._settle(t, k, ah, av)
+            elif self.rate(k, y) > 0.0:
+                self._lift(t, k)
+
+    def _turn_less(self, i: int, both: bool) -> None:
+        """Multiply θ̇ by Housner's e; the other pivot keeps its velocity where it stands on its support, else v̇ is kept."""
+        y, other, full = self.y, 1 - i, self.h * math.cos(self.y[TH]) if self.finite else self.h
+
+        def energy(lever: float) -> float:
+            return 0.5 * y[VD] ** 2 + 0.5 * (self.inertia + lever**2) * y[OM] ** 2
+
+        before, stands = self.rate(other, y), self.mode[other] != "free"
+        lever = self.lever(self.mode, y)[0] if self.finite else full
+        self.constraint += energy(full) - energy(lever)
+        was = energy(full)
+        y[OM] *= self.e
+        if stands:
+            y[VD] += before - self.rate(other, y)
+        self.impact_loss += was - energy(full)
+        for k in (i, other) if both else (i,):
+            self.mode[k] = "load"
+        lever = self.lever(self.mode, y)[0] if self.finite else full
+        self.constraint += energy(lever) - energy(full)
 
     def _branch(self, i: int) -> str:
         rising = bool(self.zeta) and self.rate(i, self.y) > 0.0

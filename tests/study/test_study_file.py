@@ -604,12 +604,15 @@ def test_every_study_that_comes_along_is_sound_and_explains_itself(path):
 )
 def test_figures_5_and_6_have_the_paper_s_parameters(name, alpha, bases, wave, varied):
     study = load_study(CONFIGS / f"{name}.toml")
-    expected = [RigidBase(flight="stop"), *(YieldingBase(beta, 0.1, flight="stop", eta=eta) for beta, eta in bases)]
+    expected = [RigidBase(flight="stop")]
+    for beta, eta in bases:
+        by_e = YieldingBase(beta, flight="stop", eta=eta, impact="housner")
+        expected += [YieldingBase(beta, 0.1, flight="stop", eta=eta), by_e]
     assert [each.base for each in study.cases] == expected
     assert {each.pier for each in study.cases} == {Pier(alpha, 1.0)}
     (pulse,) = study.motions.pulses
     assert (pulse.shape, pulse.amplitude_g, pulse.period_s) == wave
-    assert study.varied == (varied,)
+    assert study.varied == (varied, "impact")
 
 
 def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
@@ -695,6 +698,54 @@ def test_epsilon_beside_zeta_is_reported_once_with_its_line(tmp_path):
     assert "epsilon = 0.1: zeta is given too" in told
     with pytest.raises(InputError, match="zeta = 5: damping of the supports"):
         study_of(tmp_path, PIER, PULSE, case("beta = 40", "zeta = 5", base="elastic"))
+
+
+def test_a_list_of_impacts_has_epsilon_for_landing_only(tmp_path):
+    listed = case("beta = 40", "eta = 2.5", "epsilon = [0.05, 0.1]", 'impact = ["landing", "housner"]')
+    study = study_of(tmp_path, PIER, PULSE, listed)
+    assert [(only.base.impact, only.base.epsilon) for only in study.cases] == [
+        ("landing", 0.05), ("housner", 0.0), ("landing", 0.1),
+    ]  # fmt: skip
+    assert [only.columns for only in study.cases] == [
+        {"epsilon": 0.05, "impact": "landing"}, {"impact": "housner"}, {"epsilon": 0.1, "impact": "landing"},
+    ]  # fmt: skip
+    (only,) = study_of(tmp_path, PIER, PULSE, case("beta = 40", 'impact = "housner"', base="elastic")).cases
+    assert only.base == ElasticBase(40.0, impact="housner")
+
+
+@pytest.mark.parametrize(
+    ("base", "keys", "told"),
+    [
+        (
+            "elastic",
+            ('impact = "housner"', "epsilon = 0.1"),
+            'epsilon = 0.1: does not apply to impact = "housner"; leave it out',
+        ),
+        (
+            "elastic",
+            ('impact = "housner"', "epsilon = 0"),
+            'epsilon = 0: does not apply to impact = "housner"; leave it out',
+        ),
+        (
+            "elastic",
+            ('impact = "housner"', "zeta = 0.05"),
+            'impact = "housner": zeta is given too, and a damped support',
+        ),
+        (
+            "elastic",
+            ('impact = "landing"', "zeta = 0.05"),
+            'impact = "landing": zeta is given too, and a damped support',
+        ),
+        (
+            "rigid",
+            ('impact = "housner"',),
+            'impact = "housner": does not apply to base = "rigid"; leave it out, or write base',
+        ),
+    ],
+)
+def test_an_impact_is_refused_where_it_or_epsilon_has_no_effect(tmp_path, base, keys, told):
+    stiff = ("beta = 40",) if base == "elastic" else ()
+    assert told in problem_of(tmp_path, PIER, PULSE, case(*stiff, *keys, base=base))
 
 
 HEAVY = "[pier]\nwidth_m = 4.0\nheight_m = 30.0\nmass_t = 2000.0\n"

@@ -168,7 +168,7 @@ def test_landing_impulse_of_the_rigid_limit_is_housners_restitution():
     """Rotating about the right pivot, landing on the left with ε = 0: θ̇⁺/θ̇⁻ = 1 − 2μ/(1+μ) sin²α. Algebra: 1e-14."""
     m = springs(FIG5, ElasticBase(50.0, 0.0, "finite", "guided"))
     before = State(0.0, 0.0, m.half_width * -0.3, -0.3, 0.0, 0.0)  # v̇_R = v̇ − b θ̇ = 0
-    after = land(m, before, LEFT)
+    after, _ = land(m, before, LEFT, Contact(0.0, 1.0, 0.0, 0.0, 0.0))
     assert before.v_rate - m.half_width * before.omega == 0.0
     assert after.omega / before.omega == pytest.approx(FIG5.restitution, rel=1e-14)
 

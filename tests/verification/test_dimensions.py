@@ -23,15 +23,27 @@ from rockbatch.core.flexure import events as flexure_events
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
 from rockbatch.core.observe import forces
 from rockbatch.core.springs import equations, events, impact, laws, recovery
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, Geometry, Springs, State, Supports
-from rockbatch.core.types import Ground, Instant, Moment, Pull
+from rockbatch.core.springs.model import (
+    BOUC_WEN,
+    ELASTIC,
+    EPP,
+    HARDENING,
+    HOUSNER,
+    LANDING,
+    Contact,
+    Geometry,
+    Springs,
+    State,
+    Supports,
+)
+from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, Ground, Instant, Moment, Pull
 
 U = pint.UnitRegistry()
 M, S, RAD, ONE = U.metre, U.second, U.radian, U.dimensionless
 SPEED, ACCELERATION, JERK = M / S, M / S**2, M / S**3
 
 UNITS = {  # of the fields, by the tuples' own comments
-    Springs: (M, M, M**2, ACCELERATION, M, 1 / M, ACCELERATION, ONE, 1 / S),
+    Springs: (M, M, M**2, ACCELERATION, M, 1 / M, ACCELERATION, ONE, ONE, ONE, 1 / S),
     State: (M, RAD, SPEED, RAD / S, ONE, ONE),
     Ground: (ACCELERATION, JERK, ACCELERATION, JERK),
     Geometry: (M,) * 12,
@@ -84,7 +96,7 @@ UNITS = {  # of the fields, by the tuples' own comments
 }
 RATES = (SPEED, RAD / S, ACCELERATION, RAD / S**2, 1 / S, 1 / S)
 
-PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1, 1.9)
+PIER = (1.5, 7.2, 18.0, 9.81, 0.01, 100.0, 14.7, 0.1, LANDING, 0.9, 1.9)
 MOVING = (-0.004, 0.02, -0.01, 0.15, -0.3, -0.6)
 SHAKING = (2.0, -30.0, -1.0, 12.0)
 BLOCK = (1.5, 7.2, 18.0, 9.81, 0.2, 1.0, 0.9, 0.3, 1.0, 0.0138, 1e-12, 0.3)
@@ -168,8 +180,9 @@ def quantities(kind, values, wrong=None):
     ]
 
 
-def pier(finite, law=BOUC_WEN, wrong=None, damped=None):
-    return Springs(*quantities(Springs, PIER, wrong), law, 1.0, 1e-12 * SPEED, None, finite, damped)
+def pier(finite, law=BOUC_WEN, wrong=None, damped=None, landing=LANDING):
+    numbers = Springs(*quantities(Springs, PIER, wrong), law, 1.0, 1e-12 * SPEED, None, finite, damped)
+    return numbers._replace(impact=landing)
 
 
 def state(wrong=None):
@@ -216,10 +229,16 @@ def test_a_step_ends_in_a_state(finite, damped, contact):
 
 
 @KINEMATICS
-def test_a_landing_ends_in_a_state(finite):
-    for side in (-1, 1):
-        assert_units(impact.land(pier(finite), state(), side), UNITS[State])
-    assert_units(impact.land_flat(pier(finite), state()), UNITS[State])
+@pytest.mark.parametrize("landing", [LANDING, HOUSNER], ids=["landing", "housner"])
+def test_a_landing_ends_in_a_state_and_takes_an_energy(finite, landing):
+    m = pier(finite, landing=landing)
+    for side, kind in ((-1, IMPACT_LEFT), (1, IMPACT_RIGHT)):
+        for contact in (BOTH, Contact(0.0, 0.0, 0.0, 0.0, 0)):
+            landed, velocity = impact.land(m, state(), side, contact)
+            assert_units(landed, UNITS[State])
+            assert_units([velocity, impact.loss(m, state(), contact, kind)], [SPEED, SPEED**2])
+    assert_units(impact.land_flat(m, state()), UNITS[State])
+    assert_units([impact.loss(m, state(), BOTH, IMPACT_BOTH)], [SPEED**2])
 
 
 @pytest.mark.parametrize("n", [1.0, 2.5, 5.0])
@@ -368,7 +387,8 @@ def step_and_land(m, y, shaking):
     start = Instant(y, k1, BOTH, WAITING, shaking)
     rk4.rk4(m, None, start, 0.001 * S)
     system.event_functions(m, None, start)
-    impact.land(m, y, 1)
+    impact.land(m, y, 1, BOTH)
+    impact.land(m._replace(impact=HOUSNER), y, 1, BOTH)
     laws.plastic_work(m, -0.2 * ONE, -0.6 * ONE, 0.001 * M)
 
 
@@ -393,7 +413,7 @@ def test_right_units_are_not_refused():
 
 
 @KINEMATICS
-@pytest.mark.parametrize("field", Springs._fields[:9])
+@pytest.mark.parametrize("field", [name for name in Springs._fields[:11] if name != "impact"])
 def test_a_pier_with_one_wrong_unit_is_refused(finite, field):
     with pytest.raises(pint.DimensionalityError):
         step_and_land(pier(finite, wrong=field, damped=field == "damping" or None), state(), ground())

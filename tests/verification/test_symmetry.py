@@ -17,6 +17,10 @@ BASES = [
     pytest.param(YieldingBase(50, 0.1, "finite", "guided", eta=2.2, spring="epp"), id="epp-finite-guided"),
     pytest.param(YieldingBase(50, eta=2.2, spring="hardening", zeta=0.05), id="hardening-damped"),
     pytest.param(ElasticBase(50, 0.0, "finite"), id="elastic-epsilon0"),
+    pytest.param(YieldingBase(50, eta=2.2, impact="housner"), id="housner"),
+    pytest.param(
+        YieldingBase(50, kinematics="finite", eta=2.2, spring="epp", impact="housner"), id="housner-epp-finite"
+    ),
     pytest.param(RigidBase(), id="rigid"),
 ]
 

@@ -140,7 +140,12 @@ def _check(table: Table, spec: ReleaseSpec, study: Study) -> None:
             "measured" if spec.measured else "amplitude_rad",
         )
     for case in study.cases:
-        if (spec.fits(case) == "restitution") == case.base.on_springs:
+        if case.base.asks_tension:
+            table.complain(
+                f'case "{case.name}" has impact = "housner", whose e follows from the pier: nothing is left to be fitted; '
+                'write impact = "landing" or zeta'
+            )
+        elif (spec.fits(case) == "restitution") == case.base.on_springs:
             instead = "epsilon or zeta" if case.base.on_springs else "restitution"
             table.complain(
                 f'fit = "{spec.fit}": case "{case.name}" has {instead} instead; write that, or leave it out', "fit"

@@ -14,6 +14,7 @@ from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.rows import contact_of, ground_within, state_of, step_between, within
 from rockbatch.core.springs.equations import accelerations_at, geometry
+from rockbatch.core.springs.impact import loss
 from rockbatch.core.springs.model import Contact
 from rockbatch.core.springs.recovery import forces
 from rockbatch.core.system import ground_power, rates
@@ -84,19 +85,6 @@ def _recovered(m, contact, y, y_end):
 
 
 @kernel
-def _impact_loss(m, before, kind):
-    """Return ½ (1 − ε²) v̇_i²/(1 + a²/I) of a landing; of both pivots at once, 1 − ε² of the kinetic energy."""
-    at = geometry(m, before.theta)
-    inertia = m.inertia + at.lever * at.lever
-    lost = 0.5 * (1.0 - m.epsilon * m.epsilon)
-    if kind == IMPACT_BOTH:
-        return lost * (before.v_rate * before.v_rate + inertia * before.omega * before.omega)
-    arm = at.arm_left if kind == IMPACT_LEFT else at.arm_right
-    velocity = before.v_rate + arm * before.omega
-    return lost * velocity * velocity / (1.0 + arm * arm / inertia)
-
-
-@kernel
 def _pulled(m, pulls, i):
     """Return the pier at the start, in the middle and at the end of the step to row ``i``."""
     first, last = pulls[i - 1], pulls[i]
@@ -132,7 +120,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
         if kind > 0:  # the other side of an event
             at = geometry(m, y.theta)
             if kind in (IMPACT_LEFT, IMPACT_RIGHT, IMPACT_BOTH):
-                impact += _impact_loss(m, y, kind)
+                impact += loss(m, y, contact_of(m, rows[i - 1]), kind)
             if m.finite is not None:
                 was, now = _lever(at, contact_of(m, rows[i - 1])), _lever(at, contact)
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)

@@ -16,6 +16,7 @@ from rockbatch.core.springs.free_vibration import (
     Drift,
     Load,
     further,
+    growth,
     lean_on,
     peak_is_final,
     rocking_period,
@@ -59,9 +60,10 @@ class Waiting(NamedTuple):
     load: float  # what the supports carry at rest, the weight and what tendons add to it [m/s²]
     stored: float  # energy that tendons may give back, beyond what they do at that load [J/kg]
     period: float  # of rocking in full contact [s]
+    growth: float  # factor by which impacts may raise the energy while the pier is waited for
     further_right: float  # what is foreseen of the base's tilt, a Drift
     further_left: float
-    growth: float
+    further_growth: float
 
 
 @kernel
@@ -79,7 +81,8 @@ def set_deadline(lanes, i, m, run):
     waiting.midway[i] = waiting.midway_tilt[i] = math.inf
     waiting.load[i], waiting.stored[i] = run.gravity + run.prestress, 0.0
     waiting.period[i] = rocking_period(m)
-    waiting.further_right[i] = waiting.further_left[i] = waiting.growth[i] = 0.0
+    waiting.further_right[i] = waiting.further_left[i] = waiting.further_growth[i] = 0.0
+    waiting.growth[i] = growth(m, (waiting.longest[i] - waiting.earliest[i]) * run.dt)
 
 
 @kernel
@@ -138,8 +141,9 @@ def _peak_is_final(lanes, i, m, now, devices):
     waiting = lanes.waiting
     calm = devices is None and _stands(lanes, i, now.contact)
     on_base = Moment(now.y, now.contact, _base_and_yield_points(m, now))
-    drift = Drift(waiting.further_right[i], waiting.further_left[i], waiting.growth[i])
-    return peak_is_final(m, on_base, Load(waiting.load[i], waiting.stored[i]), lanes.peak.theta[i], calm, drift)
+    drift = Drift(waiting.further_right[i], waiting.further_left[i], waiting.further_growth[i])
+    load = Load(waiting.load[i], waiting.stored[i], waiting.growth[i])
+    return peak_is_final(m, on_base, load, lanes.peak.theta[i], calm, drift)
 
 
 @kernel
@@ -170,7 +174,7 @@ def _foresee(lanes, i, m):
     last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
     sinking = max(0.0, -(last_left + last_right), -(first_left + first_right))
     drift = further(m, max(0.0, first, last), max(0.0, -first, -last), sinking)
-    waiting.further_right[i], waiting.further_left[i], waiting.growth[i] = drift.right, drift.left, drift.growth
+    waiting.further_right[i], waiting.further_left[i], waiting.further_growth[i] = drift.right, drift.left, drift.growth
 
 
 @kernel

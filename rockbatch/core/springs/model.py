@@ -12,8 +12,15 @@ BOUC_WEN = 1.0
 EPP = 2.0
 HARDENING = 3.0
 
+# Impacts: what a landing does to the velocities
+LANDING = 0.0
+HOUSNER = 1.0
+
 LAWS = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
 """Constitutive models of yielding springs by the names that users write."""
+
+IMPACTS = {"landing": LANDING, "housner": HOUSNER}
+"""Impacts by the names that users write."""
 
 
 class Springs(NamedTuple):
@@ -31,6 +38,8 @@ class Springs(NamedTuple):
     stiffness: float  # K/F_y = 1/δ_y [1/m]
     yield_force: float  # F_y/M [m/s²]
     epsilon: float  # restitution of the landing pivot; 1 for damped supports, whose dashpots lose the energy
+    impact: float  # LANDING, by epsilon, or HOUSNER, by restitution
+    restitution: float  # Housner's e, by which θ̇ is multiplied
     damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
     law: float  # ELASTIC, BOUC_WEN, EPP or HARDENING
     guided: float  # 1: flight goes on, 0: it ends the run
@@ -71,7 +80,8 @@ def model_in(traits, lanes, i):
     m = get(lanes.model, i, Numbers)
     return Springs(
         m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.damping, m.law, m.guided, m.rest, _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
+        m.impact, m.restitution, m.damping, m.law, m.guided, m.rest,
+        _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
     )  # fmt: skip
 
 

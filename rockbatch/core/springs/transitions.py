@@ -170,7 +170,6 @@ def _landing(m, now, ground):
     if m.damped is not None:
         return _damped_landing(m, now, ground)
     at = geometry(m, y.theta)
-    velocity = y.v_rate + at.arm_left * y.omega
     loaded = branch_when_pressed(m.law)
     other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
     if other_free:
@@ -178,14 +177,17 @@ def _landing(m, now, ground):
         if abs(gap) <= 1e-10 * m.yield_deflection and y.v_rate + at.arm_right * y.omega < -m.rest:
             landed = land_flat(m, y)
             both = Contact(1.0, 1.0, loaded, loaded, 0.0)
-            if abs(m.epsilon * velocity) <= m.rest:
+            if abs(landed.v_rate + at.arm_left * landed.omega) <= m.rest:
                 both = settle(m, landed, both, LEFT, ground)
+            if abs(landed.v_rate + at.arm_right * landed.omega) <= m.rest:
                 both = settle(m, landed, both, RIGHT, ground)
             return Moment(landed, both, supports), IMPACT_BOTH
-    landed = land(m, y, LEFT)
+    landed, velocity = land(m, y, LEFT, contact)
     contact, supports = _right_after_impulse(m, landed, contact, supports, at)
-    if abs(m.epsilon * velocity) > m.rest:
+    if velocity < -m.rest:
         return Moment(landed, touching(contact, LEFT, loaded), supports), IMPACT_LEFT
+    if velocity > m.rest:  # Housner's e has lifted it again
+        return Moment(landed, contact, _left_moved(supports, y.v + at.lift_left)), IMPACT_LEFT
     after = settle(m, landed, contact, LEFT, ground)
     return Moment(landed, after, _left_moved(supports, y.v + at.lift_left)), IMPACT_LEFT
 

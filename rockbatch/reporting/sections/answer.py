@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.checks import wording
-from rockbatch.checks.remarks import undamped_settlement, weak_supports
+from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_words, standing
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
@@ -186,8 +186,9 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
         yield f"{verdicts.statistics_in_words(finished)} "
         if axes := wording.both_axes(finished.verdicts):
             yield f"{axes} "
-    if undamped := undamped_settlement(finished.worst):
-        yield f"{undamped}. "
+    for remark in (undamped_settlement(finished.worst), pulled_supports(finished.info["cases"])):
+        if remark:
+            yield f"{remark}. "
     yield _error(finished)
     noted = int((finished.runs.loc[finished.runs["status"] == "ok", "note"] != "").sum())
     if noted:

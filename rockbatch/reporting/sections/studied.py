@@ -148,6 +148,10 @@ def _foundations(finished: Finished) -> Markup:
         Head("β", ".5g", note="vertical over rocking frequency parameter"),
         Head("η", ".5g", note="yield over static deflection: capacity of a support over its static load"),
         *(Head(symbol(key), ",.0f", note) for key, note in in_kilonewtons.items()),
+        Head(
+            "impact",
+            note="landing: an impulse at the landing pivot, by ε; housner: Housner's e on the angular velocity",
+        ),
         Head("ε", note="restitution of the landing pivot's velocity"),
         Head("ζ", note="damping of the supports, as a share of critical damping of the vertical vibration"),
         Head("spring"),
@@ -159,7 +163,7 @@ def _foundations(finished: Finished) -> Markup:
         Head(join(sub("δ", "s"), " [mm]"), ".2f", "static deflection"),
         Head(join(sub("δ", "y"), " [mm]"), ".2f", "yield deflection"),
     ]
-    keys = ("epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
+    keys = ("impact", "epsilon", "zeta", "spring", "n", "kinematics", "flight", "restitution", "omega_v")
     names = ("beta", "eta", *in_kilonewtons, *keys)
     rows = []
     for case in finished.info["cases"]:

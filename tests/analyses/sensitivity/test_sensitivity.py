@@ -281,7 +281,8 @@ TWO = TIED | {"damper": [{"kind": "friction", "f": 0.05, "at": "left"}, {"kind":
     ({"beta": [20.0, 60.0]}, {}, "beta", "beta: no case of the study has it"),
     ({"zeta": [0.0, 0.1]}, {"cases": (PADS,)}, "zeta",
      "zeta: it goes with springs that have one; write zeta in the case; leave it out"),
-    ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon", "epsilon: zeta takes its place; leave it out"),
+    ({"epsilon": [0.0, 0.1]}, {"cases": (DAMPED,)}, "epsilon",
+     'epsilon: zeta or impact = "housner" takes its place; leave it out'),
 ])  # fmt: skip
 def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp_path, uniform, more, line, words):
     path = written(tmp_path, varying(uniform, **more))
