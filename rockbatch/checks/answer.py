@@ -262,7 +262,7 @@ class _Cases:
     def _doubt(self, verdict: Verdict) -> str:
         case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
         limit = "" if verdict.is_ban else f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip()
-        cause = f"left open by {self.record_of(verdict)}" if verdict.record else ""
+        cause = f"left open by {self.record_of(verdict)}" if verdict.record and wording.is_left_open(verdict) else ""
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
 
     def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:

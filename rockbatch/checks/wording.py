@@ -166,11 +166,16 @@ def run(verdict: Verdict) -> str:
     return f"{station}{verdict.record} ({verdict.polarity})"
 
 
+def is_left_open(verdict: Verdict) -> bool:
+    """Return whether the demand may lie on either side of the limit."""
+    return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+
+
 def governing(verdict: Verdict) -> str:
     """Return the run that governs, has the largest of several demands or leaves the demand open, with its own demand."""
     if not verdict.record:
         return ""
-    left_open = verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+    left_open = is_left_open(verdict)
     alone = verdict.is_ban or verdict.governing == verdict.value
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
     if verdict.is_ban:

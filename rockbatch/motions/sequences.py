@@ -272,7 +272,7 @@ def _described(parts: Sequence[Motion], name: str, whole: Motion) -> Motion:
         source=files("source"),
         vertical_source=files("vertical_source"),
         findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
-        station=" + ".join(part.of_station for part in parts),
+        station=" + ".join(sorted({part.of_station for part in parts})),  # in whatever order, and however often
         origin=UNKNOWN_ORIGIN,
         lacks_vertical=any(part.lacks_vertical for part in parts),
         **{key: common(key) for key in ("azimuth", "magnitude", "distance_km", "processed")},
