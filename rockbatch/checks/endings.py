@@ -17,22 +17,25 @@ from rockbatch.common.notes import OVERTURNS
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.rows import counts_as
-from rockbatch.study.rules import USUAL, Rule
+from rockbatch.study.rules import Rule
 
 
 class Ending(NamedTuple):
-    """What a record with such a run does, in the singular and the plural."""
+    """What a record with such a run does, in the singular and the plural, and the event that a check on its number is about."""
 
     singular: str
     plural: str
+    event: str
 
 
+MAY_OVERTURN = "may overturn"
 ENDINGS = {
-    "overturned": Ending("overturns the pier, or may", "overturn the pier, or may"),
-    "flight": Ending("has a run that flight ended", "have runs that flight ended"),
-    "failed": Ending("has a run that failed or is missing", "have runs that failed or are missing"),
+    "overturned": Ending("overturns the pier", "overturn the pier", "overturned"),
+    MAY_OVERTURN: Ending("may overturn the pier", "may overturn the pier", "overturned"),
+    "flight": Ending("has a run that flight ended", "have runs that flight ended", "flight"),
+    "failed": Ending("has a run that failed or is missing", "have runs that failed or are missing", "failed"),
 }
-"""By the statuses that checks have ways to count, which are events that checks may limit, too."""
+"""Statuses of runs that do not end standing, and that of one that stands, and would not under a motion a hair stronger."""
 _SAYS_ALL = "asce7-16"
 """Statistic that says of every ending how many records may have it."""
 
@@ -44,7 +47,8 @@ def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) ->
     """
     applying = [rule for rule, verdict in judged if verdict.verdict != DOES_NOT_APPLY]
     ended = {
-        status: [_ended(suite, status) & ~_allowed(suite, status, applying) for suite in suites] for status in USUAL
+        name: [_ended(suite, name) & ~_allowed(suite, kind.event, applying) for suite in suites]
+        for name, kind in ENDINGS.items()
     }
     if not any(runs.any() for of_status in ended.values() for runs in of_status):
         return [verdict for _, verdict in judged]
@@ -58,18 +62,18 @@ def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) ->
     ]
 
 
-def _ended(suite: Rows, status: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run that ended so, shape (n,), or may under a motion a hair stronger."""
-    ended = suite.texts("status") == status
-    return ended | noted(suite, OVERTURNS) if status == "overturned" else ended
+def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
+    """Return True for each run that ended so, shape (n,)."""
+    status = suite.texts("status")
+    return noted(suite, OVERTURNS) & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
-def _allowed(suite: Rows, status: str, rules: Sequence[Rule]) -> npt.NDArray[np.bool_]:
-    """Return True for each run that a check counts which says how many records may end so, shape (n,)."""
+def _allowed(suite: Rows, event: str, rules: Sequence[Rule]) -> npt.NDArray[np.bool_]:
+    """Return True for each run that a check counts that says how many records may end so, shape (n,)."""
     polarity = suite.texts("polarity")
     allowed = np.zeros(len(suite), dtype=bool)
     for rule in rules:
-        if rule.demand == status or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run):
+        if rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run):
             allowed |= True if rule.polarity is None else polarity == rule.polarity
     return allowed
 
@@ -79,19 +83,20 @@ def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequen
     names = [counts_as(suite, verdict.count)[0] for suite in suites]
     total = len({*np.concatenate(names)})
     parts = list(_numbers(ended, names))
-    statuses = " or ".join(f'"{status}"' for status, _ in parts)
+    events = " and ".join(dict.fromkeys(f'"{ENDINGS[name].event}"' for name, _ in parts))
     words = ", ".join(
-        f"{number} of {total} {verdict.count}s {ENDINGS[status].singular if number == 1 else ENDINGS[status].plural}"
-        for status, number in parts
+        f"{number} of {total} {verdict.count}s {ENDINGS[name].singular if number == 1 else ENDINGS[name].plural}"
+        for name, number in parts
     )
-    return f'{words}, and no check says how many may: demand = {statuses}, statistic = "count"'
+    remedy = f'add a [[check]] with demand = {events} and statistic = "count"'
+    return f"{words}, and no check says how many may: {remedy}"
 
 
 def _numbers(
     ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]], names: Sequence[npt.NDArray[np.object_]]
 ) -> Iterator[tuple[str, int]]:
-    """Yield each status with the number of records with such runs, if there are any."""
-    for status, of_suites in ended.items():
-        records = {name for runs, of_runs in zip(of_suites, names, strict=True) for name in of_runs[runs]}
+    """Yield each ending with the number of records with such runs, if there are any."""
+    for name, of_suites in ended.items():
+        records = {record for runs, of_runs in zip(of_suites, names, strict=True) for record in of_runs[runs]}
         if records:
-            yield status, len(records)
+            yield name, len(records)

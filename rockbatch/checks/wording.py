@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
@@ -17,6 +17,13 @@ SUITE = "the suite"
 REPEATED = 3
 MOST = 30
 """Verdicts that are all printed; more are summed up, and the worst of them printed."""
+
+
+def name_of(verdict: Verdict) -> str:
+    """Return the name of its check; of a condition on the suite beside its mean spectrum, with the condition."""
+    if verdict.case or verdict.demand == MEAN_OVER_TARGET:
+        return verdict.check
+    return f"{verdict.check} ({verdict.words})"
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:

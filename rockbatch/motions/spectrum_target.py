@@ -12,7 +12,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.design_spectra import Spectrum
 from rockbatch.motions.motion import Motion
-from rockbatch.motions.pairs import DIRECTIONS, squared, station_spectra, unpaired
+from rockbatch.motions.pairs import DIRECTIONS, measured, pair_of, squared, station_spectra, unpaired
 from rockbatch.motions.spectrum import Samples, spectral_acceleration
 
 Array = npt.NDArray[np.float64]
@@ -91,6 +91,11 @@ class SpectrumTarget:
         return f"the spectrum {self.spectrum} between {low:g} s and {high:g} s"
 
     @property
+    def code(self) -> str:
+        """Return the code that sets conditions on such a suite; empty for none. EN 1998-2 is that of pairs, "srss"."""
+        return "EN 1998-2" if self.pairs == "srss" and self.spectrum.code == "EN 1998-1" else self.spectrum.code
+
+    @property
     def periods(self) -> Array:
         """Periods that count [s]."""
         low, high = self.range_s
@@ -160,7 +165,7 @@ class SpectrumTarget:
     def remarks(self, motions: Sequence[Motion]) -> list[str]:
         """Return what to consider about the target of these ``motions``, a sentence each."""
         paired = any(len(station) == 2 for station in _stations(motions))
-        apart = self.pairs == "apart" and self.spectrum.of_code and paired
+        apart = self.pairs == "apart" and self.spectrum.code and paired
         return list(filter(None, (self.spectrum.beyond, _APART if apart else "")))
 
     def described(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
@@ -168,6 +173,9 @@ class SpectrumTarget:
         stations = [[motions[i] for i in station] for station in _stations(motions)]
         return {
             "spectrum": str(self.spectrum),
+            "code": self.code,
+            "stations": len(stations),
+            "events": _events(stations),
             "damping": self.spectrum.damping,
             "range_s": list(self.range_s),
             "factors": self.factors,
@@ -180,7 +188,38 @@ class SpectrumTarget:
             "sa_g": _short(self.spectrum.at(self.periods)),
             "mean_sa_g": _short(np.nan_to_num(self.mean(motions, self.periods, gravity))),
             **self._components_mean(motions, gravity),
+            **(self._conditions(motions, gravity) if self.code and motions else {}),
         }
+
+    def _conditions(self, motions: Sequence[Motion], gravity: float) -> dict[str, Any]:
+        """Return what a code's conditions are about beside the mean spectrum: its end, both spectra at 0 s, and the factors.
+
+        The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest.
+        """
+        low, high = self.spectrum.limits
+        members = self._members(_stations(motions))
+        fitted = [
+            math.exp(float(np.log(self.spectrum.at(self.periods) / row).mean()))
+            for row in self._rows(motions, members, self.periods, gravity)
+        ]
+        record = [motions[places[0]].factor * k for places, k in zip(members, fitted, strict=True)]
+        at_zero = float(self.spectrum.at(np.array([0.0]))[0]) if low == 0.0 else math.nan
+        peaks = [
+            motions[places[0]].pga if self.pairs == "apart" else self._peak([motions[i] for i in places])
+            for places in members
+        ]
+        return {
+            "record_factors": _short([min(record), max(record)]),
+            "family_factors": _short([1.0 / max(fitted), 1.0 / min(fitted)]),
+            **({"defined_to_s": high} if math.isfinite(high) else {}),
+            **({} if math.isnan(at_zero) else {"zero_sa_g": _short([at_zero, float(np.mean(peaks)) / gravity])}),
+        }
+
+    def _peak(self, station: Sequence[Motion]) -> float:
+        """Return the peak ground acceleration of a pair by the rule [m/s²], which its spectra have at 0 s."""
+        if unpaired(station):
+            return station[0].pga
+        return measured(*pair_of(station))[self.pairs]
 
     def _is_alone(self, station: Sequence[Motion]) -> bool:
         """Return whether a station lacks the second component that the rule takes."""
@@ -199,5 +238,11 @@ def _stations(motions: Sequence[Motion], among: Sequence[int] | None = None) -> 
     return list(grouped(places, lambda i: motions[i].of_station).values())
 
 
-def _short(values: Array) -> list[float]:
+def _events(stations: Sequence[Sequence[Motion]]) -> int:
+    """Return the number of earthquakes that the stations are of; 0 if that of any is not known."""
+    events = [next((motion.origin.event for motion in station if motion.origin.event), "") for station in stations]
+    return len(set(events)) if all(events) else 0
+
+
+def _short(values: Array | Sequence[float]) -> list[float]:
     return [float(f"{value:.5g}") for value in values]

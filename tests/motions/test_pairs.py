@@ -292,12 +292,8 @@ def by_hand(rule, peaks, axis_deg=None, every_deg=None):
     if rule == "apart":
         return [peaks[direction] for direction in directions]
     pair = peaks[first], peaks[first + 90]
-    return [
-        {
-            "srss": math.hypot(*pair), "geomean": math.sqrt(pair[0] * pair[1]), "rotd50": np.median(peaks),
-            "rotd100": peaks.max(),
-        }[rule]
-    ]  # fmt: skip
+    of_pair = {"srss": math.hypot(*pair), "geomean": math.sqrt(pair[0] * pair[1])}
+    return [{**of_pair, "rotd50": np.median(peaks), "rotd100": peaks.max()}[rule]]
 
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=str)

@@ -146,6 +146,6 @@ def test_a_pair_that_was_turned_to_directions_before_it_is_read_is_one_station(t
         text_record(tmp_path / f"ST{degrees}_000.txt", np.cos(angle) * first + np.sin(angle) * second)
     text_record(tmp_path / "OTHER_000.txt", 0.6 * first + 0.8 * other)
     assert sorted(counted(tmp_path, options=ReadOptions(unit="m/s2")).values()) == [1, 4]
-    for name in ("ST20_000.txt", "ST110_000.AT2"):
+    for name in ("ST20_000.txt", "ST110_000.txt"):
         (tmp_path / name).unlink()
     assert sorted(counted(tmp_path, options=ReadOptions(unit="m/s2")).values()) == [1, 1, 1]
