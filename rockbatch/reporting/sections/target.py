@@ -38,7 +38,7 @@ def section(finished: Finished) -> Markup:
                 "reporting/sections/vertical_target.html",
                 target=vertical,
                 factors=factors,
-                below=_is_below(finished, "vertical_target"),
+                below=_below(finished, "vertical_target"),
                 conditions=_conditions(finished, "vertical_target"),
                 **_mean_over(vertical),
             )
@@ -52,11 +52,16 @@ def _of_target(finished: Finished, entry: str) -> list[Verdict]:
     return [verdict for verdict in suite_verdicts(finished.info, scales) if verdict.check == NAMES[entry]]
 
 
-def _is_below(finished: Finished, entry: str) -> bool:
-    """Return whether the mean spectrum of the suite is below a target at some scale."""
-    return any(
-        verdict.verdict == FAIL and verdict.demand == MEAN_OVER_TARGET for verdict in _of_target(finished, entry)
-    )
+def _below(finished: Finished, entry: str) -> str:
+    """Return at which scales the mean spectrum of the suite is below a target, in words; empty if at none."""
+    scales = [
+        verdict.scale
+        for verdict in _of_target(finished, entry)
+        if verdict.verdict == FAIL and verdict.demand == MEAN_OVER_TARGET
+    ]
+    if scales in ([], [1.0]):
+        return "that is asked for" if scales else ""
+    return f"that is asked for, at scale {', '.join(f'{scale:g}' for scale in scales)}"
 
 
 def _conditions(finished: Finished, entry: str) -> Markup:
@@ -101,7 +106,7 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
-        "reporting/sections/target.html", target=target, records=records, below=_is_below(finished, "target"),
+        "reporting/sections/target.html", target=target, records=records, below=_below(finished, "target"),
         conditions=_conditions(finished, "target"),
         **_mean_over(target),
         run=(both / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(both) == len(target["sa_g"]) else [],
