@@ -128,8 +128,8 @@ def _conditions(target: Target, scale: float) -> Iterator[Condition]:
         )
         yield Condition("suite_pairs", "stations with the measure of a pair", paired, "at least", stations, note=note)
     yield from _periods(target, code)
-    if code.zero and "zero_sa_g" in target:
-        at_zero, mean = target["zero_sa_g"]
+    at_zero, mean = _two(target, "zero_sa_g")
+    if code.zero and at_zero > 0.0:
         value = 1.0 if math.isclose(scale * mean, at_zero, rel_tol=_ROUNDING) else scale * mean / at_zero
         yield Condition("suite_zero_period", "mean over target at 0 s", value, "at least", 1.0, scaled=True)
     yield from _factors("record", target, code.record, 1.0)
@@ -138,9 +138,9 @@ def _conditions(target: Target, scale: float) -> Iterator[Condition]:
 
 def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float) -> Iterator[Condition]:
     """Yield the conditions on the least and the greatest factor of a kind, if the code has ``bounds`` of them."""
-    if not bounds or f"{kind}_factors" not in target:
+    least, greatest = (scale * float(f"{factor:.4g}") for factor in _two(target, f"{kind}_factors"))
+    if not bounds or math.isnan(least):
         return
-    least, greatest = (scale * float(f"{factor:.4g}") for factor in target[f"{kind}_factors"])
     scaled = kind == "family"
     yield Condition(f"suite_least_{kind}_factor", f"least {kind} factor", least, "at least", bounds[0], scaled=scaled)
     yield Condition(
@@ -148,12 +148,18 @@ def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float)
     )
 
 
+def _two(target: Target, name: str) -> tuple[float, float]:
+    """Return two numbers of a target; NaN if they are not there."""
+    values = target.get(name, ())
+    return (float(values[0]), float(values[1])) if len(values) == 2 else (math.nan, math.nan)
+
+
 def _periods(target: Target, code: Code) -> Iterator[Condition]:
     """Yield the conditions on the period range, by the period at 0.1 α of the piers, no further than the spectrum is defined."""
     if not code.longest:
         return
     low, high = target["range_s"]
-    shortest, longest = target.get("rocking_s", (math.nan, math.nan))
+    shortest, longest = _two(target, "rocking_s")
     asked = min(code.longest * longest, float(target.get("defined_to_s", math.inf)))
     for demand, words, value, sense, limit, times, period in (
         (

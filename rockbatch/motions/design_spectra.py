@@ -29,7 +29,7 @@ class Spectrum(Protocol):
 
     @property
     def code(self) -> str:
-        """Name of the code whose spectrum it is; empty for a table."""
+        """Name of the code whose conditions a suite under it has to meet; empty for a table."""
 
     @property
     def beyond(self) -> str:
@@ -88,8 +88,12 @@ class EurocodeSpectrum:
     name: str = "EN 1998-1"
     limits: tuple[float, float] = (0.0, 4.0)
     amplification: float = 2.5
-    code: ClassVar[str] = "EN 1998-1"
     beyond: ClassVar[str] = ""
+
+    @property
+    def code(self) -> str:
+        """See :class:`Spectrum`; of the vertical one no condition on a suite is known."""
+        return "" if self.shape == VERTICAL_SHAPE else "EN 1998-1"
 
     def __str__(self) -> str:
         symbol = "a_vg" if self.shape == VERTICAL_SHAPE else "a_g"

@@ -130,13 +130,17 @@ class SpectrumTarget:
 
         ``spectra``, shape (motions, periods), are those of the components, if they are at hand.
         """
+        members = self._counted(motions)
+        if not members:
+            return np.full(len(periods), math.nan)
+        return np.asarray(np.mean(self._rows(motions, members, periods, gravity, spectra), axis=0))
+
+    def _counted(self, motions: Sequence[Motion]) -> list[list[int]]:
+        """Return the places of the motions that make each spectrum that counts: none of a station without its pair."""
         stations = _stations(motions)
         if self.pairs in DIRECTIONS:
             stations = [station for station in stations if not unpaired([motions[i] for i in station])]
-        if not stations:
-            return np.full(len(periods), math.nan)
-        rows = self._rows(motions, self._members(stations), periods, gravity, spectra)
-        return np.asarray(np.mean(rows, axis=0))
+        return self._members(stations)
 
     def _members(self, stations: Sequence[Sequence[int]]) -> list[list[int]]:
         """Return the places of the motions that make each spectrum: one component, or those of a station."""
@@ -197,27 +201,26 @@ class SpectrumTarget:
         The record factor k₁ of NZS 1170.5 fits a record by least squares of ln S_a; the family factor k₂ is the rest.
         """
         low, high = self.spectrum.limits
-        members = self._members(_stations(motions))
+        members = [places for places in self._counted(motions) if motions[places[0]].pga > 0]
+        found: dict[str, Any] = {"defined_to_s": high} if math.isfinite(high) else {}
+        if not members:
+            return found
         fitted = [
             math.exp(float(np.log(self.spectrum.at(self.periods) / row).mean()))
             for row in self._rows(motions, members, self.periods, gravity)
         ]
         record = [motions[places[0]].factor * k for places, k in zip(members, fitted, strict=True)]
-        at_zero = float(self.spectrum.at(np.array([0.0]))[0]) if low == 0.0 else math.nan
-        peaks = [
-            motions[places[0]].pga if self.pairs == "apart" else self._peak([motions[i] for i in places])
-            for places in members
-        ]
-        return {
-            "record_factors": _short([min(record), max(record)]),
-            "family_factors": _short([1.0 / max(fitted), 1.0 / min(fitted)]),
-            **({"defined_to_s": high} if math.isfinite(high) else {}),
-            **({} if math.isnan(at_zero) else {"zero_sa_g": _short([at_zero, float(np.mean(peaks)) / gravity])}),
-        }
+        found["record_factors"] = _short([min(record), max(record)])
+        found["family_factors"] = _short([1.0 / max(fitted), 1.0 / min(fitted)])
+        if low == 0.0:
+            at_zero = float(self.spectrum.at(np.array([0.0]))[0])
+            peaks = [self._peak([motions[i] for i in places]) for places in members]
+            found["zero_sa_g"] = _short([at_zero, float(np.mean(peaks)) / gravity])
+        return found
 
     def _peak(self, station: Sequence[Motion]) -> float:
-        """Return the peak ground acceleration of a pair by the rule [m/s²], which its spectra have at 0 s."""
-        if unpaired(station):
+        """Return the peak ground acceleration of what makes a spectrum [m/s²], which that has at 0 s."""
+        if self.pairs == "apart" or unpaired(station):
             return station[0].pga
         return measured(*pair_of(station))[self.pairs]
 

@@ -119,7 +119,6 @@ class Rule:
     above: float | None = None
     least: int | None = None
     count: str | None = None
-    per_event: int | None = None
     reason: str = ""
     basis: str = "judgement"
     case: tuple[str, ...] = ()
@@ -132,6 +131,7 @@ class Rule:
     confirm: tuple[str, ...] = ()
     at_m: float | None = None
     both_axes: str | None = None
+    per_event: int | None = None
 
     def __post_init__(self) -> None:
         wrong = _unknown_words(self) or _misfits(self)
