@@ -10,7 +10,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.coverage import ALL_STATIONS, CaseRuns, File, Stations
 from rockbatch.checks.omissions import OMISSIONS
 from rockbatch.checks.responses import RESPONSES, Worst, in_words, unlimited, worst_of_all
-from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.common.showing import shown
 from rockbatch.quantities.cases import of_pier
@@ -66,31 +66,48 @@ def answer(
     open_ = [name for name, of_case in kinds.items() if NOT_DECIDED in of_case and FAIL not in of_case]
     meeting = [name for name in cases if name not in {*failing, *open_, *every.unchecked}]
     free = without_limits({name: cases[name] for name in meeting}, worst)
-    passing = every.passing([name for name in meeting if name not in free])
+    scales = {verdict.scale for verdict in below}
+    doubted = [name for name in meeting if name not in free and cases[name][0].scale in scales]
+    passing = every.passing([name for name in meeting if name not in {*free, *doubted}])
     lines = [
         passing,
+        _doubted(every.passing(doubted), below),
         every.without_limit(free),
         every.failing(failing),
         every.undecided(open_, failing),
-        None if passing or not of_cases else every.unchecked_alone(),
+        None if passing or doubted or not of_cases else every.unchecked_alone(),
     ]
     missing = missing_stations(stations)
     # It qualifies what passes; what fails does so without these stations, too
     lines = [missing, *lines] if meeting else [*lines, missing]
-    return [*_below(below), *(_doubted(line) if below else line for line in lines if line)]
+    return [*_below(below), *filter(None, lines)]
+
+
+def _is_low(below: Sequence[Verdict]) -> bool:
+    """Return whether the mean spectrum of a suite is too low, and not only other conditions on it are not met."""
+    return any(verdict.demand == MEAN_OVER_TARGET for verdict in below)
 
 
 def _below(verdicts: Sequence[Verdict]) -> list[Line]:
     """Return the line on a suite that fails these checks of its own; none if it fails none."""
-    details = tuple(f"{verdict.check}: {wording.against(verdict)}, {verdict.note}." for verdict in verdicts)
-    return [Line(FAIL, "The suite is below its target", "", details)] if details else []
+    said = (
+        f"{wording.name_of(verdict)}: {', '.join(filter(None, (wording.against(verdict), verdict.note)))}."
+        for verdict in verdicts
+    )
+    details = [*dict.fromkeys(said)]  # most conditions are the same at every scale
+    more = [f"and {len(details) - MOST_CHECKS} more."] if len(details) > MOST_CHECKS else []
+    text = (
+        "The suite is below its target" if _is_low(verdicts) else "The suite does not conform to the code of its target"
+    )
+    return [Line(FAIL, text, "", (*details[:MOST_CHECKS], *more))] if details else []
 
 
-def _doubted(line: Line) -> Line:
-    """Return a line under a suite below its target: it fails what fails, and passes nothing."""
-    if line.verdict != PASS:
-        return line
-    return line._replace(verdict=NOT_DECIDED, text=f"{line.text}, but under a suite below its target")
+def _doubted(line: Line | None, below: Sequence[Verdict]) -> Line | None:
+    """Return the line on cases that pass under a suite that fails: nothing passes."""
+    if line is None:
+        return None
+    suite = "a suite below its target" if _is_low(below) else "a suite that does not conform to the code of its target"
+    return line._replace(verdict=NOT_DECIDED, text=f"{line.text}, but under {suite}")
 
 
 def missing_stations(stations: Stations) -> Line | None:
@@ -285,8 +302,11 @@ class _Cases:
 
     def _doubt(self, verdict: Verdict) -> str:
         case = f" in {self.case_of(verdict)}" if len(self.every) > 1 else ""
-        limit = "" if verdict.is_ban else f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip()
-        cause = f"left open by {self.record_of(verdict)}" if verdict.record else ""
+        is_open = wording.is_left_open(verdict)
+        limit = (
+            f"limit {wording.number(verdict.limit)} {verdict.unit}".rstrip() if is_open and not verdict.is_ban else ""
+        )
+        cause = f"left open by {self.record_of(verdict)}" if is_open and verdict.record else ""
         return ", ".join(filter(None, (f"{verdict.check}{case}: {verdict.note}", limit, cause))) + "."
 
     def _of(self, names: Sequence[str], *kinds: str) -> list[Verdict]:

@@ -77,6 +77,7 @@ def verdicts(
     """Return the verdicts of :func:`check`, one for each row."""
     given_rules = _rules_of(rules)
     records: Mapping[str, str] | None = None
+    events: Mapping[str, str] | None = None
     of_suite: list[Verdict] = []
     sections: pd.DataFrame | None = None
     if isinstance(results, Saved | str | os.PathLike):
@@ -84,6 +85,7 @@ def verdicts(
         own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
         table, cases = saved.peaks, saved.info["cases"]
         records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
+        events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
         if (path := saved.directory / SECTIONS).exists():
             sections = read_sections(path, saved.info["varied"])
         of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
@@ -100,7 +102,7 @@ def verdicts(
         wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
         if wrong:
             raise InputError(*wrong)
-    return [*of_suite, *(judge(rules, table, cases, records, count, sections) if rules else ())]
+    return [*of_suite, *(judge(rules, table, cases, records, count, sections, events) if rules else ())]
 
 
 def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:

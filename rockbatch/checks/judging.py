@@ -22,6 +22,8 @@ from rockbatch.checks.bounds import (
     of_runs,
     on_both_axes,
 )
+from rockbatch.checks.endings import left_open
+from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS, omissions
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
@@ -58,6 +60,7 @@ def judge(
     records: Mapping[str, str] | None = None,
     count: str = "station",
     sections: "pd.DataFrame | None" = None,
+    events: Mapping[str, str] | None = None,
 ) -> list[Verdict]:
     """Evaluate every rule for every case at every scale; a case that was run on both axes of its pier is one.
 
@@ -73,9 +76,11 @@ def judge(
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
-        How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`.
+        How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`; a code's statistic counts stations.
     sections : DataFrame, optional
         Rows of sections.csv, for rules about a section.
+    events : mapping, optional
+        Names of horizontal components, each with the earthquake that it is of, empty if it is not known.
 
     Raises
     ------
@@ -117,10 +122,12 @@ def judge(
                 Axis(case, complete(table.at(rows[scale_of[rows] == scale]), stations, polarities))
                 for case, rows in pier
             ]
+            judged = []
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale):
                     of_rule = [_of_rule(rule, axis, polarities, tables[rule.at_m]) for axis in axes]
-                    verdicts.append(_verdict(rule, of_rule, scale, rule.count or count))
+                    judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
+            verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
 
 
@@ -141,13 +148,14 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Ro
     return Rows(runs.merge(its, how="left", on=keys))
 
 
-def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verdict:
+def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
     demand, case = DEMANDS[rule.demand], axes[0].case
     unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
     of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
     if not demand.per_case:
         suites = [axis.suite for axis in axes]
         statistic, number = rule.statistic or "max", sum(map(len, suites))
+        count = "station" if STATISTICS[statistic].code else count
         of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suites), "count": count}
     absent = [_absent(rule, axis) for axis in axes]
     height = demand.height(case) if demand.height else rule.at_m
@@ -170,7 +178,7 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str) -> Verd
     if not applying:
         return none
     if not demand.per_case:
-        verdict = _of_suite(rule, applying, none)
+        verdict = _of_suite(rule, applying, none, events)
     else:
         worst = max if rule.sense == "at most" else min
         value = worst(float(demand.evaluate(axis.suite, axis.case).value[0]) for axis in applying)
@@ -218,7 +226,7 @@ def _bounded(rule: Rule, value: float, low: float, high: float) -> dict[str, Any
     return {"value": value, "low": low, "high": high, "ratio": ratio, "margin": margin}
 
 
-def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
+def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[str, str]) -> Verdict:
     """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
     suite = axes[0].suite
     of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
@@ -227,22 +235,24 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict) -> Verdict:
     counted_as, unknown = counts_as(suite, none.count)
     bounds = by_record(runs, counting, counted_as)
     n = len(bounds.value)
-    value, low, high = (_statistic(rule, values) for values in (bounds.value, bounds.low, bounds.high))
+    value, low, high = _of_bounds(rule, bounds)
     if np.isinf(bounds.high).sum() > np.isinf(bounds.low).sum() and rule.statistic == "asce7-16":
         high = math.inf  # a response that is not known is not one of the unacceptable
     count = "component" if unknown else none.count
-    verdict, few = _decide(rule, low, high, count, n)
+    statistic = STATISTICS[none.statistic]
+    of_event = largest_event(suite.texts("record")[counting], counted_as[counting], events) if statistic.code else None
+    verdict, few = _decide(rule, low, high, _unmet(rule, count, n, of_event))
     omitted = [name for name in _omitted(rule, axes, of_axes) if verdict != PASS or OMISSIONS[name].decides]
     open_by = math.isinf(high) and not all(OMISSIONS[name].decides for name in omitted)
-    remark = STATISTICS[rule.statistic or "max"].remark
     deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(low, high)),
         *(OMISSIONS[name].remark for name in omitted),
         _far(rule, value) if verdict == PASS else "",
         _on_each([bounds for bounds, _ in of_axes], axes, deciding),
-        remark(bounds.high) if remark and n else "",
+        statistic.remark(bounds.high) if statistic.remark and n else "",
         unknown,
+        of_event.in_words if of_event else "",
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
         *dict.fromkeys(_laws(rule, axis.suite, axis.case, deciding) for axis in axes),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
@@ -322,6 +332,15 @@ def _directions(records: Mapping[str, tuple[int, int]]) -> str:
     return f"not every direction counts, and the worst may be another: {', '.join(names[:MOST_NAMES])}{more}"
 
 
+def _of_bounds(rule: Rule, bounds: Bounds) -> tuple[float, float, float]:
+    """Return the statistic of the demands of all records, and its bounds."""
+    interval = STATISTICS[rule.statistic or "max"].interval
+    value, low, high = (_statistic(rule, values) for values in bounds[:3])
+    if interval is not None and len(bounds.value):
+        low, high = interval(*bounds[:3])
+    return value, low, high
+
+
 def _statistic(rule: Rule, values: Values) -> float:
     if len(values) == 0:
         return math.nan
@@ -329,16 +348,15 @@ def _statistic(rule: Rule, values: Values) -> float:
     return float((values > (rule.above or 0.0)).sum()) if statistic.evaluate is None else statistic.evaluate(values)
 
 
-def _decide(rule: Rule, low: float, high: float, count: str = "", records: int | None = None) -> tuple[str, str]:
-    """Return the verdict on a demand within these bounds, and the remark on too few ``records``, for a statistic of some."""
+def _decide(rule: Rule, low: float, high: float, unmet: str = "") -> tuple[str, str]:
+    """Return the verdict on a demand within these bounds, and the ``unmet`` condition on the records; with one nothing passes."""
     within, beyond = high <= rule.limit, low > rule.limit
     if rule.sense == "at least":
         within, beyond = low >= rule.limit, high < rule.limit
-    few = "" if records is None else _too_few(rule, count, records)
     if beyond:
-        return FAIL, few
-    if few:
-        return NOT_DECIDED, few
+        return FAIL, unmet
+    if unmet:
+        return NOT_DECIDED, unmet
     return (PASS if within else NOT_DECIDED), ""
 
 
@@ -347,13 +365,17 @@ def _between(low: float, high: float) -> str:
     return f"between {low:.4g} and {'any value' if math.isinf(high) else f'{high:.4g}'}"
 
 
-def _too_few(rule: Rule, count: str, records: int) -> str:
-    """Return the remark that too few records count, and the code that asks for more; empty if there are enough."""
+def _unmet(rule: Rule, count: str, records: int, of_event: OfEvent | None) -> str:
+    """Return the condition on the number of records that they do not meet, with who sets it; empty if they meet all."""
     statistic = STATISTICS[rule.statistic or "max"]
-    least, authority = statistic.least, statistic.code
+    least, authority = statistic.least, statistic.code or (f"the {statistic.words}" if statistic.least > 1 else "")
     if rule.least is not None:
         least, authority = rule.least, "the check"
-    if records >= least:
-        return ""
-    counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
-    return f"{counts}, {authority} asks for {least}" if authority else counts
+    if records < least:
+        counts = f"1 {count} counts" if records == 1 else f"{records} {count}s count"
+        return f"{counts}, {authority} asks for {least}" if authority else counts
+    if statistic.code and count != "station":
+        return f"{statistic.code} counts stations"
+    if of_event is not None and rule.per_event is not None and of_event.records > rule.per_event:
+        return f"the check allows {rule.per_event} of one event"
+    return ""

@@ -48,7 +48,8 @@ class Row(NamedTuple):
     """A case: its name, the verdict on it, and a cell for each column, None where the check says nothing of it.
 
     The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing;
-    "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words.
+    "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words, or the suite fails a check
+    of its own.
     """
 
     name: str
@@ -67,6 +68,8 @@ class Row(NamedTuple):
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
             return f"no limit on {', '.join(self.unlimited)}"
+        if self.verdict == NOT_DECIDED and not self.count(NOT_DECIDED):
+            return "not decided, under a suite that fails"
         number = self.count(self.verdict)
         checks = f"{number} check{'s' * (number != 1)}"
         return f"{checks} not decided" if self.verdict == NOT_DECIDED else f"{VERBS[self.verdict]} {checks}"
@@ -104,13 +107,15 @@ def scorecard(
     fallen = {case_of(case) for case in runs if sum(case.ended.values()) >= case.runs}
     rows: list[tuple[tuple[int, float], Row]] = []
     by_case = grouped(of_cases, case_of)
+    failing = {verdict.scale for verdict in verdicts if not verdict.case and verdict.verdict == FAIL}
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
         own = {verdict.check: verdict for verdict in of_case}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
         words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
-        rows.append((max(map(_badness, of_case)), Row(name, NOT_DECIDED if words else kind, cells, words)))
+        doubted = kind == PASS and (bool(words) or of_case[0].scale in failing)
+        rows.append((max(map(_badness, of_case)), Row(name, NOT_DECIDED if doubted else kind, cells, words)))
     named = {row.name for _, row in rows}
     rows += [
         ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns))) for name in map(case_of, runs) if name not in named

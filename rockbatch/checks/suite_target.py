@@ -1,68 +1,224 @@
-"""The check that a target spectrum asks of a suite: the mean over the target, everywhere in its range."""
+"""The check that a target spectrum makes of a suite: its mean over the target, and what the code of the spectrum asks besides.
+
+Each condition is a verdict without a case, at each scale at which the suite is run. What a code does not ask has none.
+"""
 
 import math
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
 
-from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, PASS, Verdict
+from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 
 NAMES = {"target": "suite to target", "vertical_target": "suite to vertical target"}
 """Names of the checks, by the entries of run.json on both targets."""
 
+UNRECORDED = ("pulse", "still")
+"""Sources of motions that no target scales."""
+VERTICALS = "suite_verticals"
+OF_STUDY = (MEAN_OVER_TARGET, VERTICALS)
+"""Demands that the study makes by its targets, and no code."""
+
 _ROUNDING = 1e-4  # relative: run.json has five digits of either spectrum
+Target = Mapping[str, Any]
+
+
+class Code(NamedTuple):
+    """Conditions of a code on a suite, by what is commonly said of its clauses; which of them could be confirmed is said on the
+    page on spectra.
+
+    Attributes
+    ----------
+    clause : str
+        Where it states them.
+    stations : int
+        Least number of motions.
+    pairs : str
+        Measure of two components by which motions count; empty if single components will do.
+    shortest, longest : float
+        Times the period of the pier: between which periods the mean has to reach the target; 0 if it does not say.
+    zero : bool
+        Whether the mean at 0 s has to reach that of the target.
+    record, family : tuple
+        Least and greatest factor of a record by least squares, and of all records besides; empty if it does not say.
+    """
+
+    clause: str
+    stations: int
+    pairs: str = ""
+    shortest: float = 0.0
+    longest: float = 0.0
+    zero: bool = False
+    record: tuple[float, ...] = ()
+    family: tuple[float, ...] = ()
+
+
+CODES = {
+    "EN 1998-1": Code("EN 1998-1, 3.2.3.1.2 (4)", 3, shortest=0.2, longest=2.0, zero=True),
+    "EN 1998-2": Code("EN 1998-2, 3.2.3", 3, "srss", 0.2, 1.5),
+    "ASCE 7-16": Code("ASCE 7-16, 16.2", 11, "rotd100", 0.2, 2.0),
+    "AASHTO": Code("AASHTO LRFD, 4.7.4.3.4b", 3),
+    "NZS 1170.5": Code("NZS 1170.5, 5.5", 3, shortest=0.4, longest=1.3, record=(0.33, 3.0), family=(1.0, 1.3)),
+}
+
+
+class Condition(NamedTuple):
+    """A condition on a suite: its demand and words, the value and the limit with its sense, unit, and a remark."""
+
+    demand: str
+    words: str
+    value: float
+    sense: str
+    limit: float
+    unit: str = ""
+    note: str = ""
+    scaled: bool = False
+    """Whether its value is that at the scale."""
 
 
 def suite_verdicts(info: Mapping[str, Any], scales: Iterable[float]) -> list[Verdict]:
-    """Return whether the suite reaches its targets, those that ask it to, as run.json (``info``) has them.
+    """Return what becomes of every condition on the suite, at each of the ``scales``, as run.json (``info``) has its targets.
 
-    It is judged as it was fitted if that was run; else with the greatest of ``scales``, the factors that the study puts on top.
-    There is no verdict on a suite without a record that is fitted.
+    There is none on a target that is only compared, and on a suite without a record that is fitted.
     """
-    factors = sorted(set(scales)) or [1.0]
-    factor = 1.0 if 1.0 in factors else factors[-1]
-    note = "" if factors == [1.0] else "as fitted, at scale 1" if factor == 1.0 else f"at scale {factor:g}"
     targets = {name: info.get(key) for key, name in NAMES.items()}
     return [
-        _verdict(name, target, factor, note)
+        _verdict(name, condition, scale, target)
         for name, target in targets.items()
         if target is not None and target.get("required", target["factors"] != "none") and any(target["mean_sa_g"])
+        for scale in sorted(set(scales)) or [1.0]
+        for condition in (
+            _share(target, scale),
+            *(_verticals(info) if name == NAMES["vertical_target"] else _conditions(target, scale)),
+        )
     ]
 
 
-def _verdict(name: str, target: Mapping[str, Any], factor: float, note: str) -> Verdict:
+def _share(target: Target, scale: float) -> Condition:
     least, period = least_over_target(target)
-    value = factor * least
-    limit = float(target["at_least"])
+    value, limit = scale * least, float(target["at_least"])
     if math.isclose(value, limit, rel_tol=_ROUNDING):
         value = limit
+    words = "mean spectrum of the suite over its target"
+    return Condition(MEAN_OVER_TARGET, words, value, "at least", limit, "", f"least at T = {period:.3g} s", True)
+
+
+def _verticals(info: Mapping[str, Any]) -> Iterator[Condition]:
+    """Yield the condition that every station has the vertical component that is fitted."""
+    recorded = [record for record in info["records"] if record["source"] not in UNRECORDED]
+    stations = {str(record.get("station") or record["record"]): False for record in recorded}
+    stations |= {
+        str(record.get("station") or record["record"]): True for record in recorded if record.get("pga_v_g") is not None
+    }
+    words = "stations with a vertical component"
+    yield Condition(VERTICALS, words, sum(stations.values()), "at least", len(stations))
+
+
+def _conditions(target: Target, scale: float) -> Iterator[Condition]:
+    """Yield the conditions of the code of a target, if it has one, beside that on the mean spectrum."""
+    code = CODES.get(str(target.get("code")))
+    if code is None or "stations" not in target:
+        return
+    stations, events = int(target["stations"]), int(target.get("events", 0))
+    of_events = f"of {events} event{'s' * (events > 1)}" if events else "of some the event is not known"
+    yield Condition("suite_stations", "stations", stations, "at least", code.stations, note=of_events)
+    if code.pairs:
+        paired = stations - int(target["alone"]) if target["pairs"] == code.pairs else 0
+        note = (
+            "" if target["pairs"] == code.pairs else f'pairs = "{target["pairs"]}", and the code\'s is "{code.pairs}"'
+        )
+        yield Condition("suite_pairs", "stations with the measure of a pair", paired, "at least", stations, note=note)
+    yield from _periods(target, code)
+    at_zero, mean = _two(target, "zero_sa_g")
+    if code.zero and at_zero > 0.0:
+        value = 1.0 if math.isclose(scale * mean, at_zero, rel_tol=_ROUNDING) else scale * mean / at_zero
+        yield Condition("suite_zero_period", "mean over target at 0 s", value, "at least", 1.0, scaled=True)
+    yield from _factors("record", target, code.record, 1.0)
+    yield from _factors("family", target, code.family, scale)
+
+
+def _factors(kind: str, target: Target, bounds: tuple[float, ...], scale: float) -> Iterator[Condition]:
+    """Yield the conditions on the least and the greatest factor of a kind, if the code has ``bounds`` of them."""
+    least, greatest = (scale * float(f"{factor:.4g}") for factor in _two(target, f"{kind}_factors"))
+    if not bounds or math.isnan(least):
+        return
+    scaled = kind == "family"
+    yield Condition(f"suite_least_{kind}_factor", f"least {kind} factor", least, "at least", bounds[0], scaled=scaled)
+    yield Condition(
+        f"suite_greatest_{kind}_factor", f"greatest {kind} factor", greatest, "at most", bounds[1], scaled=scaled
+    )
+
+
+def _two(target: Target, name: str) -> tuple[float, float]:
+    """Return two numbers of a target; NaN if they are not there."""
+    values = target.get(name, ())
+    return (float(values[0]), float(values[1])) if len(values) == 2 else (math.nan, math.nan)
+
+
+def _periods(target: Target, code: Code) -> Iterator[Condition]:
+    """Yield the conditions on the period range, by the period at 0.1 α of the piers, no further than the spectrum is defined."""
+    if not code.longest:
+        return
     low, high = target["range_s"]
+    shortest, longest = _two(target, "rocking_s")
+    asked = min(code.longest * longest, float(target.get("defined_to_s", math.inf)))
+    for demand, words, value, sense, limit, times, period in (
+        (
+            "suite_shortest_period",
+            "shortest period of the range",
+            low,
+            "at most",
+            code.shortest * shortest,
+            code.shortest,
+            shortest,
+        ),
+        ("suite_longest_period", "longest period of the range", high, "at least", asked, code.longest, longest),
+    ):
+        note = f"{times:g} times {period:.3g} s, a pier's period of rocking at 0.1 α"
+        if sense == "at least" and asked < code.longest * longest:
+            note = f"where the spectrum ends; {note}"
+        yield Condition(
+            demand, words, value, sense, limit, "s", note if period == period else "no pier has a period of rocking"
+        )
+
+
+def _verdict(name: str, condition: Condition, scale: float, target: Target) -> Verdict:
+    value, limit = float(condition.value), float(condition.limit)
+    more = condition.sense == "at least"
+    met = value >= limit if more else value <= limit
+    numerator, denominator = (limit, value) if more else (value, limit)
+    low, high = target["range_s"]
+    basis, reason = "study", f"{target['spectrum']}, between {low:g} s and {high:g} s"
+    if condition.demand not in OF_STUDY:
+        basis, reason = "code", CODES[target["code"]].clause
+    at_scale = f"at scale {scale:g}" if condition.scaled and scale != 1.0 else ""
     return Verdict(
         check=name,
         case="",
         columns={},
-        scale=1.0,
-        demand=MEAN_OVER_TARGET,
+        scale=scale,
+        demand=condition.demand,
         statistic="",
-        words="mean spectrum of the suite over its target",
+        words=condition.words,
         records=0,
         runs=0,
         value=value,
         low=value,
         high=value,
-        sense="at least",
+        sense=condition.sense,
         limit=limit,
-        ratio=limit / value if value > 0.0 else math.inf,
-        margin=value - limit,
-        verdict=PASS if value >= limit else FAIL,
-        basis="study",
-        reason=f"{target['spectrum']}, between {low:g} s and {high:g} s",
+        ratio=numerator / denominator if denominator else math.inf,
+        margin=value - limit if more else limit - value,
+        verdict=NOT_DECIDED if math.isnan(limit) else PASS if met else FAIL,
+        basis=basis,
+        reason=reason,
         counting="",
         counted="",
-        note="; ".join(filter(None, (f"least at T = {period:.3g} s", note))),
+        note="; ".join(filter(None, (condition.note, at_scale))),
+        unit=condition.unit,
     )
 
 
-def least_over_target(target: Mapping[str, Any]) -> tuple[float, float]:
+def least_over_target(target: Target) -> tuple[float, float]:
     """Return the least ratio of the mean spectrum to the target, and its period [s]."""
     rows = zip(target["period_s"], target["sa_g"], target["mean_sa_g"], strict=False)
     return min(((mean / sa, period) for period, sa, mean in rows if sa > 0.0), default=(0.0, math.nan))

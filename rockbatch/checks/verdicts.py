@@ -20,7 +20,15 @@ PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does n
 CHECKS = "checks.csv"
 """File of the verdicts, beside peaks.csv."""
 MEAN_OVER_TARGET = "mean_over_target"
-"""Demand of the verdicts on the suite itself."""
+"""Demand of the verdict on the mean spectrum of the suite."""
+_CONDITIONS = ("stations", "pairs", "shortest_period", "longest_period", "zero_period", "verticals")
+_FACTORS = ("least_record", "greatest_record", "least_family", "greatest_family")
+OF_SUITE = (
+    MEAN_OVER_TARGET,
+    *(f"suite_{name}" for name in _CONDITIONS),
+    *(f"suite_{name}_factor" for name in _FACTORS),
+)
+"""Demands of the verdicts on the suite itself."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +130,7 @@ class Verdict:
 _KINDS: dict[str, Any] = {field.name: field.type for field in fields(Verdict)}
 _WORDS: dict[str, Collection[str]] = {
     "verdict": (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY), "sense": ("at most", "at least"), "statistic": ("", *STATISTICS),
-    "demand": (*DEMANDS, MEAN_OVER_TARGET), "count": ("", *COUNTS),
+    "demand": (*DEMANDS, *OF_SUITE), "count": ("", *COUNTS),
 }  # fmt: skip
 """Columns of words that readers look up."""
 _LATER = {field.name for field in fields(Verdict) if field.default is not MISSING}

@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
@@ -17,6 +17,13 @@ SUITE = "the suite"
 REPEATED = 3
 MOST = 30
 """Verdicts that are all printed; more are summed up, and the worst of them printed."""
+
+
+def name_of(verdict: Verdict) -> str:
+    """Return the name of its check; of a condition on the suite beside its mean spectrum, with the condition."""
+    if verdict.case or verdict.demand == MEAN_OVER_TARGET:
+        return verdict.check
+    return f"{verdict.check} ({verdict.words})"
 
 
 def worst_first(verdicts: Iterable[Verdict]) -> list[Verdict]:
@@ -161,11 +168,16 @@ def run(verdict: Verdict) -> str:
     return f"{station}{verdict.record} ({verdict.polarity})"
 
 
+def is_left_open(verdict: Verdict) -> bool:
+    """Return whether the demand may lie on either side of the limit."""
+    return verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+
+
 def governing(verdict: Verdict) -> str:
     """Return the run that governs, has the largest of several demands or leaves the demand open, with its own demand."""
     if not verdict.record:
         return ""
-    left_open = verdict.verdict == NOT_DECIDED and verdict.low <= verdict.limit < verdict.high
+    left_open = is_left_open(verdict)
     alone = verdict.is_ban or verdict.governing == verdict.value
     text = f"{'left open by' if left_open else 'governs:' if alone else 'largest:'} {run(verdict)}"
     if verdict.is_ban:
@@ -186,10 +198,7 @@ def at(height: float) -> str:
 
 def requirements(verdicts: Iterable[Verdict]) -> dict[str, list[str]]:
     """Return the requirements of each check: several where piers differ in the height at which its demand is read."""
-    asked = {
-        name: list(dict.fromkeys(map(requirement, same)))
-        for name, same in grouped(verdicts, lambda verdict: verdict.check).items()
-    }
+    asked = {name: list(dict.fromkeys(map(requirement, same))) for name, same in grouped(verdicts, name_of).items()}
     return {
         name: words
         if len(words) <= REPEATED

@@ -141,7 +141,7 @@ def _blocks(verdicts: Sequence[Verdict], notes: Notes) -> list[str]:
         of_verdicts, key=lambda pair: (pair[0].case, pair[0].columns, pair[0].scale)
     ):
         values = columns | ({"scale": scale} if many_scales else {})
-        parts = [f"{case}  {named(values, values.values())}".rstrip() if case else wording.SUITE, head]
+        parts = [f"{case or wording.SUITE}  {named(values, values.values())}".rstrip(), head]
         for verdict, line in block:
             parts.append(_coloured(line, verdict.verdict))
             remarks = (wording.governing(verdict), verdict.counted, notes.about(verdict))
@@ -166,7 +166,7 @@ def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
 
 def _cells(verdict: Verdict) -> tuple[str, ...]:
     return (
-        verdict.check,
+        wording.name_of(verdict),
         str(verdict.records) if verdict.records else "",
         _plain(wording.demanded(verdict)),
         _plain(wording.limit(verdict, ("<=", ">="))),
@@ -185,7 +185,7 @@ def _plain(text: str) -> str:
 
 def _checks(verdicts: Sequence[Verdict], notes: Notes) -> str:
     """Return what each check asks, and why; what a record is, and the basis of the statistics of codes."""
-    first = {verdict.check: verdict for verdict in reversed(verdicts)}
+    first = {wording.name_of(verdict): verdict for verdict in reversed(verdicts)}
     rests = {verdict.statistic: verdict for verdict in reversed(verdicts) if wording.unchecked(verdict)}
     lines = [
         f"{name}: {'; '.join(asked)} [{first[name].basis}] {first[name].reason}".rstrip()

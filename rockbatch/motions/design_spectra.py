@@ -28,8 +28,8 @@ class Spectrum(Protocol):
         """Least and largest period [s] for which it is defined."""
 
     @property
-    def of_code(self) -> bool:
-        """True of a code's spectrum, False of a table."""
+    def code(self) -> str:
+        """Name of the code whose conditions a suite under it has to meet; empty for a table."""
 
     @property
     def beyond(self) -> str:
@@ -88,8 +88,12 @@ class EurocodeSpectrum:
     name: str = "EN 1998-1"
     limits: tuple[float, float] = (0.0, 4.0)
     amplification: float = 2.5
-    of_code: ClassVar[bool] = True
     beyond: ClassVar[str] = ""
+
+    @property
+    def code(self) -> str:
+        """See :class:`Spectrum`; of the vertical one no condition on a suite is known."""
+        return "" if self.shape == VERTICAL_SHAPE else "EN 1998-1"
 
     def __str__(self) -> str:
         symbol = "a_vg" if self.shape == VERTICAL_SHAPE else "a_g"
@@ -115,7 +119,7 @@ class AsceSpectrum:
     tl_s: float
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, math.inf)
-    of_code: ClassVar[bool] = True
+    code: ClassVar[str] = "ASCE 7-16"
     beyond: ClassVar[str] = ""
 
     def __str__(self) -> str:
@@ -140,7 +144,7 @@ class AashtoSpectrum:
     sd1_g: float
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, math.inf)
-    of_code: ClassVar[bool] = True
+    code: ClassVar[str] = "AASHTO"
     beyond: ClassVar[str] = ""
 
     def __str__(self) -> str:
@@ -196,7 +200,7 @@ class NzsSpectrum:
     fault_km: float = math.inf
     damping: float = 0.05
     limits: tuple[float, float] = (0.0, 4.5)
-    of_code: ClassVar[bool] = True
+    code: ClassVar[str] = "NZS 1170.5"
 
     def __str__(self) -> str:
         near = f", D = {self.fault_km:g} km" if self.fault_km < FAR_KM else ""
@@ -239,7 +243,7 @@ class TableSpectrum:
     damping: float = 0.05
     name: str = "table"
     linear: bool = False
-    of_code: ClassVar[bool] = False
+    code: ClassVar[str] = ""
     beyond: ClassVar[str] = ""
 
     def __post_init__(self) -> None:

@@ -37,7 +37,7 @@ WORDS = {
 """Them in words."""
 
 DIRECTIONS = ("geomean", "rotd50", "rotd100")
-"""Those of them that take both components."""
+"""Those of them that take both components; of one alone, the root of the sum of squares is that component."""
 
 
 def measured(first: Array, second: Array) -> dict[str, float]:
@@ -111,13 +111,35 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
 
 def unpaired(motions: Sequence[Motion]) -> str:
     """Return why motions of a station have no two that are square to each other; empty if they have."""
-    if motions[0].across is not None:
-        return ""
     try:
-        square_pair(motions)
+        pair_of(motions)
     except InputError as error:
         return "; ".join(error.problems)
     return ""
+
+
+def pair_of(motions: Sequence[Motion]) -> tuple[Samples, Samples]:
+    """Return two horizontal accelerations of a station over their common time, shape (n,) each, that are square to each other.
+
+    They do not depend on the directions to which its ``motions`` are turned. Raises ``InputError`` as :func:`square_pair`.
+    """
+    with_other = next((motion for motion in motions if motion.across is not None), None)
+    if with_other is None or with_other.across is None:
+        return aligned(*square_pair(motions))
+    return with_other.horizontal, with_other.across
+
+
+def squared(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
+    """Return the accelerations, with their sampling intervals [s], whose spectra SRSS takes: two that are square to each other,
+    which need no common time; the first one alone if there are none."""
+    first = motions[0]
+    for i, motion in enumerate(motions):
+        if motion.across is not None:
+            return [(motion.horizontal, motion.dt), (motion.across, motion.dt)]
+        for other in motions[i + 1 :]:
+            if not not_square(motion.azimuth, other.azimuth, ""):
+                return [(motion.horizontal, motion.dt), (other.horizontal, other.dt)]
+    return [(first.horizontal, first.dt)]
 
 
 def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Array]:
@@ -125,9 +147,7 @@ def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: 
 
     Raises ``InputError`` as :func:`square_pair`, and for periods and damping that are out of range.
     """
-    lone = motions[0]
-    samples = aligned(*square_pair(motions)) if lone.across is None else (lone.horizontal, lone.across)
-    histories = (responses(a, lone.dt, periods, damping) for a in samples)
+    histories = (responses(a, motions[0].dt, periods, damping) for a in pair_of(motions))
     rows = [measured(u, v) for u, v in zip(*histories, strict=True)]
     return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
 

@@ -169,10 +169,14 @@ def sequence(
         notes += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
         vertical = _joined([part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts],
                            [Initial()] * len(parts), dt, pause_steps, name, "vertical: ", notes)  # fmt: skip
+    across = None
+    acrosses = [part.across for part in parts if part.across is not None]
+    if len(acrosses) == len(parts):
+        across = _joined(acrosses, [Initial()] * len(parts), dt, pause_steps, name, "across: ", notes)
     initial = [part.initial or Initial() for part in parts]
     horizontal = _joined([part.horizontal for part in parts], initial, dt, pause_steps, name, "", notes)
     return _described(parts, name, replace(
-        parts[0], name=name, dt=dt, across=None, horizontal=horizontal, vertical=vertical, notes=tuple(notes),
+        parts[0], name=name, dt=dt, across=across, horizontal=horizontal, vertical=vertical, notes=tuple(notes),
         shocks=tuple(
             Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + pause_steps) * dt)
             for i, part in zip(map(int, starts), parts, strict=True)
@@ -218,8 +222,12 @@ def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
         np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt,
         np.arange(motion.npts),
     )
-    vertical = None if motion.vertical is None else np.interp(positions, samples, motion.vertical)
-    return replace(motion, dt=dt, horizontal=np.interp(positions, samples, motion.horizontal), vertical=vertical)
+    vertical, across = (
+        None if component is None else np.interp(positions, samples, component)
+        for component in (motion.vertical, motion.across)
+    )
+    horizontal = np.interp(positions, samples, motion.horizontal)
+    return replace(motion, dt=dt, horizontal=horizontal, vertical=vertical, across=across)
 
 
 def _joined(
@@ -264,7 +272,7 @@ def _described(parts: Sequence[Motion], name: str, whole: Motion) -> Motion:
         source=files("source"),
         vertical_source=files("vertical_source"),
         findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
-        station=" + ".join(part.of_station for part in parts),
+        station=" + ".join(sorted({part.of_station for part in parts})),  # in whatever order, and however often
         origin=UNKNOWN_ORIGIN,
         lacks_vertical=any(part.lacks_vertical for part in parts),
         **{key: common(key) for key in ("azimuth", "magnitude", "distance_km", "processed")},

@@ -128,6 +128,10 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
                     low, high = sorted((first_of(i), first_of(j)))
                     if low != high and (_together(a, b) or _copies(a, b)):
                         root[high] = low
+    for i, j, k in _turned(stations):
+        low = min(map(first_of, (i, j, k)))
+        for station in (i, j, k):
+            root[first_of(station)] = low
     records = list(dict.fromkeys(map(first_of, root)))
     firsts = [stations[i][0] for i in records]
     names = distinct(
@@ -191,3 +195,27 @@ def _copies(a: Component, b: Component) -> bool:
     if first[i] == 0 or second[i] == 0:
         return False
     return bool(np.abs(first / first[i] - second / second[i]).max() <= _SAME_SHAPE)
+
+
+def _turned(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[int, int, int]]:
+    """Yield the places of three stations, some of which may be one, with horizontal components that are one pair turned to three
+    directions: one of them is a combination of the others.
+
+    Of three lines in a plane two are 60° apart at most, and their samples have a correlation of a half or more.
+    """
+    horizontals = [
+        (i, c) for i, station in enumerate(stations) for c in station if not c.orientation.vertical and c.pga
+    ]
+    for alike in grouped(horizontals, lambda pair: (len(pair[1].acceleration), round(pair[1].dt, 9))).values():
+        if len({i for i, _ in alike}) < 2 or len(alike) < 3:
+            continue
+        places = [i for i, _ in alike]
+        samples = np.array([c.acceleration / np.linalg.norm(c.acceleration) for _, c in alike])
+        cosines = samples @ samples.T
+        close = (np.abs(cosines) >= 0.499) & (np.abs(cosines) < 1.0 - _SAME_SHAPE)
+        for a, b in zip(*np.nonzero(np.triu(close, 1)), strict=True):
+            g = cosines[a, b]
+            in_plane = (cosines[a] ** 2 + cosines[b] ** 2 - 2.0 * g * cosines[a] * cosines[b]) / (1.0 - g**2)
+            for c in np.flatnonzero(in_plane > 1.0 - _SAME_SHAPE**2 / (1.0 - g**2)):
+                if c not in (a, b) and len({places[a], places[b], places[c]}) > 1:
+                    yield places[a], places[b], places[int(c)]

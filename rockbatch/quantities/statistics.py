@@ -1,7 +1,8 @@
 """Statistics over a suite of records.
 
-Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds. A code's own are by
-what is commonly said of it: ``unchecked`` says what each rests on, as no clause's own text was at hand.
+Every statistic grows with each of its values as long as they are finite, so that it maps bounds to bounds; one that does not has
+an ``interval`` of its own. A code's own are by what is commonly said of it: ``unchecked`` says what each rests on, as no clause's
+own text was at hand.
 """
 
 import math
@@ -34,6 +35,91 @@ def quantiles(ordered: Values, first: npt.NDArray[np.int64], n: npt.NDArray[np.i
     with np.errstate(invalid="ignore"):
         of_groups[filled] = np.where(between, np.where(np.isinf(high), math.inf, low + share * (high - low)), low)
     return of_groups
+
+
+P84, CONFIDENCE = 0.84, 0.95
+"""The high quantile that checks ask for, and the confidence with which a statistic of few records holds it."""
+
+
+def exceedance(q: float, n: int) -> float:
+    """Return the share of further records that exceed the quantile ``q`` between the ranks of ``n``.
+
+    Its rank is q (n − 1) + 1, and k/(n + 1) of all values are expected below the k-th (Gumbel 1958).
+    """
+    return 1.0 - (q * (n - 1) + 1.0) / (n + 1)
+
+
+def tolerance_rank(n: int, q: float = P84, confidence: float = CONFIDENCE) -> int | None:
+    """Return the least rank of ``n`` values that is no less than the quantile ``q`` with this confidence, whatever their
+    distribution; None if not even the greatest is.
+
+    The k-th is below the quantile if k or more values are: P(X_(k) ≥ x_q) = P(Bin(n, q) < k) (Wilks 1941).
+    """
+    below = 0.0
+    for k in range(1, n + 1):
+        below += math.comb(n, k - 1) * q ** (k - 1) * (1.0 - q) ** (n - k + 1)
+        if below >= confidence:
+            return k
+    return None
+
+
+def _p84_remark(values: Values) -> str:
+    n = len(values)
+    return (
+        f"by interpolation between the ranks of {n}, which {100.0 * exceedance(P84, n):.0f} % of further records exceed"
+    )
+
+
+def _p84_95(values: Values) -> float:
+    rank = tolerance_rank(len(values))
+    return float(np.sort(values)[(rank or len(values)) - 1])
+
+
+def _p84_95_remark(values: Values) -> str:
+    rank = tolerance_rank(len(values))
+    return f"rank {rank} of {len(values)}" if rank else ""
+
+
+def _lognormal(values: Values) -> float:
+    """Return exp(m + z s), with mean and standard deviation of the logarithms; NaN of one value, and where one is 0."""
+    if np.isinf(values).any():
+        return math.inf
+    if len(values) < 2 or (values <= 0.0).any():
+        return math.nan
+    from scipy.special import ndtri
+
+    logs = np.log(values)
+    return math.exp(float(logs.mean()) + float(ndtri(P84)) * float(logs.std(ddof=1)))
+
+
+def _lognormal_interval(value: Values, low: Values, high: Values) -> tuple[float, float]:
+    """Return the 95 % interval of the quantile of a lognormal distribution, which holds for all values from ``low`` to ``high``.
+
+    (m + z σ − x̄)/s √n has a non-central t distribution of ν = n − 1 and δ = z √n. The standard deviation of values that change
+    by d changes by no more than |d|/√(n − 1).
+    """
+    n = len(value)
+    if np.isinf(low).any():
+        return math.inf, math.inf
+    if n < 2 or (low <= 0.0).any() or np.isinf(high).any():
+        return 0.0, math.inf
+    from scipy.special import nctdtrit, ndtri
+
+    logs, lows, highs = (np.log(values) for values in (value, low, high))
+    noncentral = float(ndtri(P84)) * math.sqrt(n)
+    ends = [float(nctdtrit(n - 1, noncentral, p)) / math.sqrt(n) for p in (0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2)]
+    change = float(np.linalg.norm(np.maximum(highs - logs, logs - lows))) / math.sqrt(n - 1)
+    spreads = [max(float(logs.std(ddof=1)) + sign * change, 0.0) for sign in (-1.0, 1.0)]
+    return (
+        math.exp(float(lows.mean()) + min(ends[0] * spread for spread in spreads)),
+        math.exp(float(highs.mean()) + max(ends[1] * spread for spread in spreads)),
+    )
+
+
+def _lognormal_remark(values: Values) -> str:
+    if (values <= 0.0).any():
+        return "a record demands nothing, which no lognormal distribution has"
+    return "its 95 % interval decides, as if the records were of a lognormal distribution"
 
 
 def _mean(values: Values) -> float:
@@ -87,6 +173,8 @@ class Statistic:
         Of a code's own: what it rests on, and what it was not held against.
     remark : function or None
         Of the values: what to know about the way taken, in words, or nothing.
+    interval : function or None
+        Of the values and of their bounds: the bounds of the statistic, where those are not the statistics of the bounds.
     """
 
     words: str
@@ -95,13 +183,18 @@ class Statistic:
     code: str = ""
     unchecked: str = ""
     remark: Callable[[Values], str] | None = None
+    interval: Callable[[Values, Values, Values], tuple[float, float]] | None = None
 
 
 STATISTICS = {
     "max": Statistic("maximum", _max),
     "mean": Statistic("mean", _mean),
     "median": Statistic("median", lambda values: quantile(values, 0.5)),
-    "p84": Statistic("84 % quantile", lambda values: quantile(values, 0.84)),
+    "p84": Statistic("84 % quantile", lambda values: quantile(values, P84), 6, remark=_p84_remark),
+    "p84_95": Statistic("84 % quantile with 95 % confidence", _p84_95, 18, remark=_p84_95_remark),
+    "p84_lognormal": Statistic(
+        "84 % quantile of a lognormal distribution", _lognormal, 3, remark=_lognormal_remark, interval=_lognormal_interval
+    ),
     "count": Statistic("number of records", None),
     "asce7-16": Statistic(
         "mean by ASCE 7-16", _asce7_16, 11, "ASCE 7-16",
@@ -137,6 +230,12 @@ STATISTICS = {
 }  # fmt: skip
 """Statistics by the name that a rule gives them.
 
+p84
+    Between ranks; nothing passes by fewer than 6, as more than a quarter of further records exceed it.
+p84_95
+    The rank that is no less than the 84 % quantile with 95 % confidence; the greatest of 18, and of fewer none is.
+p84_lognormal
+    By mean and standard deviation of the logarithms, with its 95 % interval.
 asce7-16
     Mean of at least 11 records. At most one of them may respond unacceptably (Risk Categories I and II only), and 120 % of the
     median then takes the place of the mean, but no less than the mean of the others.

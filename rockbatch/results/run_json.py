@@ -2,11 +2,14 @@
 
 import hashlib
 import json
+import math
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from rockbatch.common.files import is_plain, read_text, replacing
 from rockbatch.motions import MotionSet
@@ -14,8 +17,10 @@ from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
-from rockbatch.pier import Damper, DeckSpring, Stop, Tendon, described
+from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
 from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.free_rocking import FreeRocking
+from rockbatch.pier.statics import COMPARED
 from rockbatch.results.columns import PEAKS, units
 from rockbatch.results.shape import Maybe
 from rockbatch.study import Case, Study
@@ -44,7 +49,10 @@ _SPECTRA = {
 _TARGET = {
     "spectrum": str, "range_s": [float], "factors": ("each", "suite", "both", "none"), "pairs": tuple(PAIRS),
     "alone": int, "at_least": float, "required": Maybe(bool), "period_s": [float], "sa_g": [float], "mean_sa_g": [float],
-    "components_sa_g": Maybe([float]), "remarks": Maybe([str]),
+    "components_sa_g": Maybe([float]), "remarks": Maybe([str]), "code": Maybe(str), "stations": Maybe(int), "events": Maybe(int),
+    "defined_to_s": Maybe(float),
+} | {
+    name: Maybe([float]) for name in ("record_factors", "family_factors", "zero_sa_g", "rocking_s")
 }  # fmt: skip
 
 SHAPE = {
@@ -141,7 +149,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),
-        **({} if target is None else {"target": target.described(fitted, gravity)}),
+        **({} if target is None else {"target": target.described(fitted, gravity) | _rocking(study, target)}),
         **_vertical_target(study, motions, gravity),
         "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
@@ -171,6 +179,22 @@ def _is_pulse(motion: Motion, study: Study) -> bool:
     """Return whether a motion is a pulse of the study, or a sequence of pulses, which no target scales."""
     names = [shock.name for shock in motion.shocks] or [motion.name]
     return {pulse.name for pulse in study.motions.pulses}.issuperset(names)
+
+
+def _rocking(study: Study, target: SpectrumTarget) -> dict[str, list[float]]:
+    """Return the least and the greatest period of free rocking at 0.1 α [s] of the piers, for a code's conditions."""
+    kinds = [(case.pier, case.base) for case in study.cases] if target.code else []
+    found = [period for i, kind in enumerate(kinds) if kind not in kinds[:i] for period in _period_at(*kind)]
+    return {"rocking_s": [float(f"{period:.5g}") for period in (min(found), max(found))]} if found else {}
+
+
+def _period_at(pier: Pier, base: Base) -> list[float]:
+    """Return the period of free rocking at :data:`rockbatch.pier.statics.COMPARED` of α [s], if the pier has one."""
+    free, amplitude = FreeRocking(pier, base), COMPARED * pier.alpha
+    if free.turn.unstable is not None and free.turn.unstable <= amplitude:
+        return []
+    period = float(free.swings(np.array([amplitude])).period[0])
+    return [period] if math.isfinite(period) else []
 
 
 def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[str, Any]:

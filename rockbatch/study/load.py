@@ -18,7 +18,6 @@ from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT
@@ -318,8 +317,6 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     if not output.forces:
         _complain_without_forces(file)
     along = along_the_axis(cases)
-    if len(along) < len(cases) and isinstance(motion_spec.target, SpectrumTarget):
-        motion_spec = replace(motion_spec, target=replace(motion_spec.target, both=True))
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
     file.finish()
     return Study(

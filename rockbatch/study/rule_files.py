@@ -3,19 +3,21 @@
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
-from rockbatch.study.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, Rule
-from rockbatch.toml.kinds import choice, text
+from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.study.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
+from rockbatch.toml.kinds import choice, count, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import Key, Section
 
 SUITE = Section(("suite",), "What holds for every check that does not say otherwise, and where more of them are.", {
     "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
+    "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
     "both_axes": Key(choice(*BOTH_AXES), '"srss"', f"{AXES}; demands that do not add up have the greater.", default="greater"),
     "checks": Key(text, '"checks.toml"',
         "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
@@ -90,7 +92,7 @@ def read_checks(
 
 
 def _rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, usual: Mapping[str, str], names: set[str]
+    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, usual: Mapping[str, Any], names: set[str]
 ) -> list[Rule]:
     """Return the rules of usable [[check]] tables, with the ``usual`` keys that they do not give; their names join ``names``."""
     rules: list[Rule] = []
@@ -105,6 +107,7 @@ def _rules(
         if file.is_sound_since(before):
             applying = {"count"} if "demand" in read and not DEMANDS[read["demand"]].per_case else set()
             applying |= {"both_axes"} if read.get("demand") in DIRECTED else set()
+            applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
             read = {name: value for name, value in usual.items() if name in applying} | read
             try:
                 rule = Rule(**read)

@@ -72,7 +72,10 @@ class Rule:
     least : int or None
         Number of records below which nothing passes; that of the statistic if it is larger or nothing is given.
     count : "station", "component" or None
-        What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station".
+        What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station". A code's
+        statistic counts stations.
+    per_event : int or None
+        With a code's statistic: the greatest number of records of one event with which anything passes; no limit unless given.
     reason : str
         Clause, source, or why, in words.
     basis : "code", "literature" or "judgement"
@@ -128,6 +131,7 @@ class Rule:
     confirm: tuple[str, ...] = ()
     at_m: float | None = None
     both_axes: str | None = None
+    per_event: int | None = None
 
     def __post_init__(self) -> None:
         wrong = _unknown_words(self) or _misfits(self)
@@ -201,6 +205,7 @@ COUNT = (
     'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
     'or each "component"'
 )
+PER_EVENT = "Greatest number of stations of one event with which anything passes by a code's statistic"
 AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
 _CALLED = {
     "demand": names({
@@ -211,7 +216,8 @@ _CALLED = {
     }),
     "statistic": names({
         "mean": "average avg", "max": "maximum envelope worst largest peak", "median": "p50", "count": "number",
-        "p84": "84th 84 84percentile percentile84 84thpercentile", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
+        "p84": "84th 84 84percentile percentile84 84thpercentile", "p84_lognormal": "lognormal",
+        "p84_95": "tolerance", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
         "asce7-16": "asce7", "aashto": "aashtolrfd lrfd", "nzs1170.5": "nzs",
     }),
     "basis": names({
@@ -233,7 +239,8 @@ CHECK = Section(("check",), (
         'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
     "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
     "count": Key(choice(*COUNTS), '"component"',
-        f"{COUNT}; what `[suite]` says if it is not given."),
+        f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations."),
+    "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
     "both_axes": Key(choice(*BOTH_AXES), '"srss"',
         f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
         "`[suite]` says if it is not given."),
@@ -304,6 +311,12 @@ def _misfits(rule: Rule) -> list[str]:
             rule.least is not None and rule.least < statistic.least,
             f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
         ),
+        (
+            rule.count == "component" and statistic.code != "",
+            f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
+            'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
+        ),
+        (rule.per_event is not None and not statistic.code, "per_event: is for a code's statistic; leave it out"),
         (
             demand.event and statistic.code != "",
             f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',

@@ -6,7 +6,7 @@ from dataclasses import replace
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.scaling import at_targets
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
@@ -38,7 +38,7 @@ def ground_motions(study: Study) -> MotionSet:
             leave_out=spec.leave_out if spec.override is None else (),
         )
         if azimuths != spec.azimuths:
-            records = _along_the_axis(records, azimuths)
+            records = _without_the_square(records, azimuths)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
     records, pulses = with_sequences(records, spec.sequences, pulses)
     station = {motion.name: motion.of_station for motion in records}
@@ -61,13 +61,16 @@ def ground_motions(study: Study) -> MotionSet:
 
 
 def _azimuths(study: Study) -> tuple[float, ...]:
-    """Return the directions that pairs are turned to: along the pier's axis, and across it if the study asks for their spectra
-    or for runs on both axes."""
+    """Return the directions that pairs are turned to: those of the runs, and square to the first one if none of them is and the
+    study asks for spectra of pairs or for runs on both axes."""
     spec = study.motions
-    in_directions = spec.target is not None and spec.target.pairs in DIRECTIONS
-    if not (in_directions or study.output.sa_pairs or _both_axes(study)) or len(spec.azimuths) != 1:
+    of_pairs = spec.target is not None and spec.target.pairs != "apart"
+    if not (of_pairs or study.output.sa_pairs or _both_axes(study)) or not spec.azimuths:
         return spec.azimuths
-    return spec.azimuths[0], (spec.azimuths[0] + 90.0) % 360.0
+    square = (spec.azimuths[0] + 90.0) % 360.0
+    if any(same_azimuth(azimuth, way) for azimuth in spec.azimuths for way in (square, square + 180.0)):
+        return spec.azimuths
+    return *spec.azimuths, square
 
 
 def _both_axes(study: Study) -> bool:
@@ -89,13 +92,14 @@ def _with_pairs(motions: MotionSet, pulses: Sequence[Motion]) -> tuple[MotionSet
     return motions.reduced_to(paired, unusable), [pulse for pulse in pulses if pulse.across is not None]
 
 
-def _along_the_axis(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
-    """Return motions with those across the pier's axis, the second of two ``azimuths``, within those along it."""
-    across = {motion.of_station: motion for motion in motions if motion.name.endswith(f"_az{azimuths[1]:03g}")}
+def _without_the_square(motions: MotionSet, azimuths: Sequence[float]) -> MotionSet:
+    """Return motions without those of the last of ``azimuths``, each within that of its station along the first."""
+    first, square = (f"_az{azimuth:03g}" for azimuth in (azimuths[0], azimuths[-1]))
+    across = {motion.of_station: motion for motion in motions if motion.name.endswith(square)}
     along = [motion for motion in motions if across.get(motion.of_station) is not motion]
     for i, motion in enumerate(along):
         perpendicular = across.get(motion.of_station)
-        if perpendicular is not None and perpendicular.npts == motion.npts:
+        if perpendicular is not None and motion.name.endswith(first) and perpendicular.npts == motion.npts:
             along[i] = replace(motion, across=perpendicular.horizontal)
     return replace(motions, motions=along)
 

@@ -292,8 +292,10 @@ def test_cases_that_are_not_checked_stand_in_the_order_of_how_many_runs_did_not_
 
 
 def test_what_is_open_says_why_and_that_it_does_not_matter_where_a_case_fails():
-    open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ")
+    open_ = verdict("a", "not decided", check="tilt", note="between 0.2 and 0.6", record="ERZ", high=0.6)
     assert lines([open_])[0].details == ("tilt: between 0.2 and 0.6, limit 0.5, left open by record ERZ.",)
+    few = verdict("a", "not decided", note="2 stations count, EN 1998-1 asks for 3", record="ERZ")
+    assert lines([few])[0].details == ("margin: 2 stations count, EN 1998-1 asks for 3.",)
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     assert lines([open_, failed])[-1].cases == "tilt, in cases that fail anyway"
 

@@ -264,7 +264,9 @@ def test_the_worked_values_belong_to_the_sample_pier():
 def test_an_event_is_unknown_where_the_run_ended_before(demand, status, flight_s, low, high):
     found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0)
     assert (found.low, found.high) == (low, high)
-    assert found.verdict == {(0, 0): "pass", (0, 1): "not decided", (1, 1): "fail"}[low, high]
+    assert found.verdict == (
+        "fail" if low else "not decided"
+    )  # where it is known not to occur, the other end is not checked
 
 
 @pytest.mark.parametrize("demand", FLIGHTS)

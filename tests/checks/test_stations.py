@@ -15,6 +15,7 @@ from rockbatch.checks import Rule, judge, read_verdicts
 from rockbatch.checks.checking import verdicts
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
+from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.study.rule_files import load_rules
 
 pytestmark = pytest.mark.usefixtures("no_report")
@@ -47,10 +48,60 @@ SEVEN = tuple((0.1 * i, 0.05 * i) for i in range(1, 8))
 def test_eight_components_of_four_stations_are_no_seven_records(statistic):
     found = judged(pairs(*FOUR), statistic=statistic)
     assert (found.records, found.count, found.value, found.verdict) == (4, "station", 0.9, "fail")
-    asked_for = judged(pairs(*FOUR), statistic=statistic, count="component")
-    mean = statistic != "nzs1170.5"
-    assert (asked_for.records, asked_for.count) == (8, "component")
-    assert (asked_for.value, asked_for.verdict) == ((pytest.approx(0.25), "pass") if mean else (0.9, "fail"))
+    assert (
+        judged(pairs(*FOUR), statistic=statistic, count="component") == found
+    )  # of a study whose other checks count so
+
+
+@pytest.mark.parametrize("statistic", [name for name, kind in STATISTICS.items() if kind.code])
+def test_a_code_asks_for_motions_of_stations_and_its_count_of_components_is_refused(tmp_path, statistic):
+    told = f'count = "component": {STATISTICS[statistic].code} asks for {STATISTICS[statistic].least} motions'
+    with pytest.raises(InputError, match=f'{told}.* write count = "station" in this check, or a statistic of no code'):
+        Rule("check", "theta_max_over_alpha", 0.5, statistic=statistic, count="component")
+    text = COMPONENT + CHECK.replace("mean", statistic)
+    with pytest.raises(InputError, match=told):
+        rb.load_study(write_study(tmp_path, study_text() + "\n" + text))
+    (tmp_path / "rules.toml").write_text(text + 'count = "station"\n')
+    assert load_rules(tmp_path / "rules.toml")[0].count == "station"
+
+
+def test_components_that_may_be_of_one_station_meet_no_code():
+    found = judged(pairs(*SEVEN).assign(station=""), statistic="en1998-1", at_most=1.0)
+    assert (found.records, found.count, found.verdict) == (14, "component", "not decided")
+    assert found.note.startswith("EN 1998-1 counts stations; these results do not say")
+    assert judged(pairs(*SEVEN).assign(station=""), statistic="mean", at_most=1.0).verdict == "pass"
+
+
+def test_records_of_one_event_say_so_and_are_as_many_as_the_check_allows():
+    """Stations A, B and C of one event, D of another, and of the others it is not known."""
+    table = pairs(*SEVEN)
+    events = {
+        f"{station}{i}": event for station, event in zip("ABCD", ["x 1999"] * 3 + ["y"], strict=True) for i in (1, 2)
+    }
+    told = "3 of 7 stations are of one event, x 1999; of 3 of 7 stations the event is not known"
+
+    def of(**asked):
+        (found,) = judge([Rule("c", "theta_max_over_alpha", 1.0, **asked)], table, [case()], events=events)
+        return found
+
+    assert of(statistic="mean").note == "no error estimate"  # no code's
+    assert (of(statistic="en1998-2").verdict, of(statistic="en1998-2").note.startswith(told)) == ("pass", True)
+    assert of(statistic="en1998-2", per_event=3).verdict == "pass"
+    few = of(statistic="en1998-2", per_event=2)
+    assert (few.verdict, few.note.startswith(f"the check allows 2 of one event; {told}")) == ("not decided", True)
+    with pytest.raises(InputError, match="per_event: is for a code's statistic; leave it out"):
+        of(per_event=2)
+
+
+def test_a_suite_says_how_many_records_of_one_event_its_codes_may_have(tmp_path):
+    code = CHECK.replace("mean", "en1998-2")
+    suite = "[suite]\nper_event = 2\n" + code + CHECK.replace("peak", "other")
+    records = [RECORD | {"record": f"{s}{i}", "station": s, "event": "x 1999"} for s in "ABCD" for i in (1, 2)]
+    out = folder(tmp_path / "out", pairs(*FOUR), [case()], suite.replace("0.5", "1.0"), records=records)
+    assert [(one.verdict, "4 of 4 stations are of one event" in one.note) for one in verdicts(out)] == [
+        ("not decided", True),
+        ("pass", False),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -81,8 +132,6 @@ def test_both_components_of_one_station_are_one_unacceptable_response_under_asce
     status = ["overturned", "overturned", *["ok"] * 20]
     found = judged(pairs(*stations, status=status), statistic="asce7-16")
     assert (found.records, found.value, found.verdict) == (11, pytest.approx(0.12), "pass")
-    apart = judged(pairs(*stations, status=status), statistic="asce7-16", count="component")
-    assert (apart.records, apart.verdict) == (22, "fail")
 
 
 # What goes wrong in one direction
@@ -100,7 +149,7 @@ def test_a_component_that_is_left_out_is_reported_with_its_station():
     """It still counts, by the direction that is left: nobody shall take that for the worse one."""
     table = pairs(*FOUR, status=["ok", "ok", "ok", "ok", "ok", "failed", "ok", "ok"])
     found = judged(table, statistic="max", failed="left out")
-    assert (found.verdict, found.value, found.records) == ("pass", 0.3, 4)
+    assert (found.verdict, found.value, found.records) == ("not decided", 0.3, 4)
     assert "not every direction counts, and the worst may be another: C (1 of 2)" in found.note
 
 
@@ -295,6 +344,7 @@ def by_hand(path: Path, statistic, count):
 def test_a_verdict_is_what_plain_python_makes_of_peaks_csv(tmp_path, stations, count, statistic):
     table = pd.concat([pairs(*stations), pairs(*stations, polarity="-").assign(theta_max_over_alpha=0.15)])
     out = folder(tmp_path / "out", table, [case()])
+    count = "station" if STATISTICS[statistic].code else count
     (found,) = verdicts(out, [Rule("peak", "theta_max_over_alpha", 0.5, statistic=statistic, count=count)])
     records, value = by_hand(out / "peaks.csv", statistic, count)
     assert (found.records, found.value) == (records, pytest.approx(value, rel=1e-9))

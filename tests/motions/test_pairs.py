@@ -17,7 +17,7 @@ from rockbatch.motions.design_spectra import TableSpectrum
 from rockbatch.motions.pairs import aligned, station_spectra
 from rockbatch.motions.scaling import Target, at_target
 from rockbatch.motions.spectrum import responses, spectral_acceleration
-from rockbatch.motions.spectrum_target import SpectrumTarget
+from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions
 
@@ -269,6 +269,81 @@ def test_turned_to_the_axis_a_record_has_the_factor_of_its_pair(tmp_path):
     assert first == second
     assert np.isfinite(first).all()
     assert turned.motions[0].times(2.0).across == pytest.approx(2.0 * turned.motions[0].across)
+
+
+SETTINGS = [
+    {},
+    {"axis_deg": 0},
+    {"axis_deg": 30},
+    {"every_deg": 90},
+    {"every_deg": 30},
+    {"every_deg": 15},
+    {"every_deg": 20},
+]
+"""Directions to which records are turned; none of those of the last are square to each other."""
+
+
+def by_hand(rule, peaks, axis_deg=None, every_deg=None):
+    """Return the spectral accelerations that count of a station by those in all directions, a degree apart from 0 on."""
+    directions = [0, 90] if every_deg is None else range(0, 180, every_deg)
+    first = 0
+    if axis_deg is not None:
+        directions, first = [axis_deg], axis_deg
+    if rule == "apart":
+        return [peaks[direction] for direction in directions]
+    pair = peaks[first], peaks[first + 90]
+    of_pair = {"srss": math.hypot(*pair), "geomean": math.sqrt(pair[0] * pair[1])}
+    return [{**of_pair, "rotd50": np.median(peaks), "rotd100": peaks.max()}[rule]]
+
+
+@pytest.mark.parametrize("setting", SETTINGS, ids=str)
+def test_what_a_pair_is_does_not_depend_on_the_directions_that_are_run(tmp_path, setting):
+    """Each rule against a solver of another kind that turns the recorded components, the factor of the suite being
+    max(at_least · target/mean)."""
+    recorded = ground_motions(study(tmp_path, SPECTRUM | {"factors": "none"})).motions
+    periods = np.geomspace(0.5, 0.54, 5)  # a hundred a decade
+    stations = [
+        np.array([brute_force(a.horizontal, b.horizontal, a.dt, period) for period in periods])
+        for a, b in zip(recorded[::2], recorded[1::2], strict=True)
+    ]
+    for rule, share in PAIRS.items():
+        keys = SPECTRUM | {"factors": "suite", "pairs": rule, "period_range_s": [0.5, 0.54]}
+        made = study(tmp_path, keys, **setting)
+        found = ground_motions(made)
+        counted = np.concatenate([np.transpose([by_hand(rule, row, **setting) for row in peaks]) for peaks in stations])
+        target = np.exp(np.interp(np.log(periods), np.log([0.1, 3.0]), np.log([0.8, 0.2])))
+        factor = (share * target / (np.mean(counted, axis=0) / 9.81)).max()
+        assert (found.unusable, {motion.station for motion in found.motions}) == ([], {"RSN1", "RSN2"})
+        np.testing.assert_allclose([motion.factor for motion in found.motions], factor, rtol=1e-9)
+        assert rule == "apart" or made.motions.target.described(found.motions, 9.81)["alone"] == 0
+        directions = {"axis_deg": 1, "every_deg": len(range(0, 180, setting.get("every_deg", 90)))}
+        assert len(found.motions) == 2 * directions.get(next(iter(setting), ""), 2)  # no more than are asked for
+
+
+def test_components_that_have_no_time_in_common_have_a_root_of_the_sum_of_squares():
+    """Of three of a station, the first two that are square to each other; two that are not make no pair."""
+    a, b = component(1, 0.0, start=0.0), component(2, 90.0, start=1e4)
+    target = SpectrumTarget(TABLE, (0.3, 3.0), "none", "srss")
+    own = [spectral_acceleration(motion.horizontal, 0.01, target.periods) / 9.81 for motion in (a, b)]
+    np.testing.assert_allclose(target.mean([a, b], target.periods, 9.81), np.hypot(*own), rtol=1e-12)
+    between = component(3, 45.0)
+    np.testing.assert_allclose(target.mean([a, between, b], target.periods, 9.81), np.hypot(*own), rtol=1e-12)
+    np.testing.assert_allclose(target.mean([a, between], target.periods, 9.81), own[0], rtol=1e-12)
+    assert [target.described(motions, 9.81)["alone"] for motions in ([a, b], [a, between])] == [0, 1]
+
+
+def test_a_sequence_that_is_turned_keeps_its_pair(tmp_path):
+    folder = study(tmp_path, SPECTRUM, axis_deg=33).motions.paths[0].parent
+    text = (folder / "study.toml").read_text()
+    (folder / "study.toml").write_text(
+        f'{text}\n[[motions.sequence]]\nname = "both"\nrecords = ["RSN1_A_az033", "RSN2_B_az033"]\npause_s = 10.0\nalone = true\n'
+    )
+    motions = ground_motions(load_study(folder / "study.toml"))
+    (joined,) = [motion for motion in motions if motion.name == "both"]
+    single = {motion.name: motion for motion in motions}["RSN2_B_az033"]
+    end = joined.across[-single.npts :]
+    np.testing.assert_allclose(end, single.across / single.factor * joined.factor, rtol=1e-9, atol=1e-12)
+    assert joined.npts == len(joined.across)
 
 
 def test_the_single_measure_takes_pairs_too(tmp_path):

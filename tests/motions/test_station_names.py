@@ -135,3 +135,17 @@ def test_several_records_of_one_station_differ_in_event_or_folder():
 
 def test_a_motion_that_is_made_in_python_is_a_record_of_its_own():
     assert rb.pulse("sine", name="p", amplitude=1.0, period=1.0, dt=0.01, duration=2.0).of_station == "p"
+
+
+def test_a_pair_that_was_turned_to_directions_before_it_is_read_is_one_station(tmp_path):
+    """Of three, one is a combination of the others; two may be any two components, and noise is none."""
+    rng = np.random.default_rng(1)
+    first, second, other = rng.normal(size=(3, 400))
+    for degrees in (20, 50, 80, 110):
+        angle = np.radians(degrees)
+        text_record(tmp_path / f"ST{degrees}_000.txt", np.cos(angle) * first + np.sin(angle) * second)
+    text_record(tmp_path / "OTHER_000.txt", 0.6 * first + 0.8 * other)
+    assert sorted(counted(tmp_path, options=ReadOptions(unit="m/s2")).values()) == [1, 4]
+    for name in ("ST20_000.txt", "ST110_000.txt"):
+        (tmp_path / name).unlink()
+    assert sorted(counted(tmp_path, options=ReadOptions(unit="m/s2")).values()) == [1, 1, 1]

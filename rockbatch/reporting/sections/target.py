@@ -6,18 +6,21 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.checks import wording
 from rockbatch.checks.suite_target import NAMES, suite_verdicts
-from rockbatch.checks.verdicts import FAIL
+from rockbatch.checks.verdicts import FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import spread
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, join
 from rockbatch.reporting.sections.motions import Record, spectra
+from rockbatch.reporting.sections.verdicts import mark
 from rockbatch.reporting.table import Head, table
 from rockbatch.reporting.templates import render
 
 NEAR_KM = 15.0
 """A usual limit of near-source sites: ASCE 7-16, 11.4.1, has 15 km from a fault of M 7, and 10 km of M 6."""
 MOST_PERIODS = 12
+MET = {PASS: "met", FAIL: "not met", NOT_DECIDED: "not decided"}
 
 
 def section(finished: Finished) -> Markup:
@@ -35,18 +38,48 @@ def section(finished: Finished) -> Markup:
                 "reporting/sections/vertical_target.html",
                 target=vertical,
                 factors=factors,
-                below=_is_below(finished, "vertical_target"),
+                below=_below(finished, "vertical_target"),
+                conditions=_conditions(finished, "vertical_target"),
                 **_mean_over(vertical),
             )
         )
     return join(*parts)
 
 
-def _is_below(finished: Finished, entry: str) -> bool:
-    """Return whether the suite fails the check of a target, ``entry`` of run.json."""
-    return any(
-        verdict.verdict == FAIL for verdict in suite_verdicts(finished.info, ()) if verdict.check == NAMES[entry]
-    )
+def _of_target(finished: Finished, entry: str) -> list[Verdict]:
+    """Return what becomes of every condition on the suite by a target, ``entry`` of run.json, at every scale that was run."""
+    scales = finished.runs["scale"].unique().tolist()
+    return [verdict for verdict in suite_verdicts(finished.info, scales) if verdict.check == NAMES[entry]]
+
+
+def _below(finished: Finished, entry: str) -> str:
+    """Return at which scales the mean spectrum of the suite is below a target, in words; empty if at none."""
+    scales = [
+        verdict.scale
+        for verdict in _of_target(finished, entry)
+        if verdict.verdict == FAIL and verdict.demand == MEAN_OVER_TARGET
+    ]
+    if scales in ([], [1.0]):
+        return "that is asked for" if scales else ""
+    return f"that is asked for, at scale {', '.join(f'{scale:g}' for scale in scales)}"
+
+
+def _conditions(finished: Finished, entry: str) -> Markup:
+    """Return a table of the conditions on the suite, each met or not; empty for a target that is only compared."""
+    rows = [
+        [
+            verdict.words,
+            wording.limit(verdict),
+            wording.demanded(verdict),
+            verdict.unit,
+            mark(verdict.verdict, MET[verdict.verdict]),
+            verdict.reason,
+            verdict.note,
+        ]
+        for verdict in _of_target(finished, entry)
+    ]
+    heads = map(Head, ("condition", "asked", "is", "unit", "", "by", "note"))
+    return table([*heads], rows, prose=True, name="Conditions on the suite") if rows else Markup("")
 
 
 def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
@@ -73,7 +106,8 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
     return render(
-        "reporting/sections/target.html", target=target, records=records, below=_is_below(finished, "target"),
+        "reporting/sections/target.html", target=target, records=records, below=_below(finished, "target"),
+        conditions=_conditions(finished, "target"),
         **_mean_over(target),
         run=(both / np.array(target["sa_g"], dtype=np.float64)).tolist() if len(both) == len(target["sa_g"]) else [],
         factors=[record.get("factor", 1.0) for record in records],

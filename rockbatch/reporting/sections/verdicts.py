@@ -147,10 +147,10 @@ def _said(finished: Finished, verdict: Verdict) -> str:
 
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
-    firsts = [of_check[0] for of_check in grouped(verdicts, lambda verdict: verdict.check).values()]
     asked = wording.requirements(verdicts)
-    rows = [[row.check, "; ".join(asked[row.check]), BASIS.get(row.basis, row.basis), row.reason] for row in firsts]
-    rests = {row.statistic: wording.unchecked(row) for row in firsts}
+    firsts = {name: of_check[0] for name, of_check in grouped(verdicts, wording.name_of).items()}
+    rows = [[name, "; ".join(asked[name]), BASIS.get(row.basis, row.basis), row.reason] for name, row in firsts.items()]
+    rests = {row.statistic: wording.unchecked(row) for row in firsts.values()}
     heads = map(Head, ("check", "asks", "limit from", "reason"))
     sentences = (f"{name}: {words}." for name, words in rests.items() if words)
     drawn = table([*heads], rows, prose=True, name="What the checks ask")
@@ -179,7 +179,7 @@ def _every(finished: Finished, verdicts: Sequence[Verdict], notes: wording.Notes
     case_of = _namer(finished)
     rows = [
         [
-            row.check, case_of(row), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
+            wording.name_of(row), case_of(row), mark(row.verdict, row.verdict), wording.demanded(row), _between(row),
             "" if math.isnan(row.value) else wording.limit(row), wording.margin(row), row.unit, row.records or None,
             wording.governing(row), "; ".join(filter(None, (row.counted, notes.about(row)))),
         ]

@@ -1,0 +1,102 @@
+"""Runs that do not end standing: they leave a case undecided, unless its checks say how many records may have such runs.
+
+A rank, such as the median, does not see by how much the records beyond it exceed it, and runs that are left out, or count by what
+was reached, are not seen at all.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.checks.bounds import noted
+from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
+from rockbatch.common.notes import OVERTURNS
+from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.results.rows import counts_as
+from rockbatch.study.rules import Rule
+
+
+class Ending(NamedTuple):
+    """What a record with such a run does, in the singular and the plural, and the event that a check on its number is about."""
+
+    singular: str
+    plural: str
+    event: str
+
+
+MAY_OVERTURN = "may overturn"
+ENDINGS = {
+    "overturned": Ending("overturns the pier", "overturn the pier", "overturned"),
+    MAY_OVERTURN: Ending("may overturn the pier", "may overturn the pier", "overturned"),
+    "flight": Ending("has a run that flight ended", "have runs that flight ended", "flight"),
+    "failed": Ending("has a run that failed or is missing", "have runs that failed or are missing", "failed"),
+}
+"""Statuses of runs that do not end standing, and that of one that stands, and would not under a motion a hair stronger."""
+_SAYS_ALL = "asce7-16"
+"""Statistic that says of every ending how many records may have it."""
+
+
+def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) -> list[Verdict]:
+    """Return the verdicts on a case at one scale, none of its records passing by runs about whose end no check says anything.
+
+    ``suites`` are its runs, of one or both axes of its pier. What belongs to the case, and not to its runs, stays as it is.
+    """
+    applying = [rule for rule, verdict in judged if verdict.verdict != DOES_NOT_APPLY]
+    ended = {
+        name: [_ended(suite, name) & ~_allowed(suite, kind.event, applying) for suite in suites]
+        for name, kind in ENDINGS.items()
+    }
+    if not any(runs.any() for of_status in ended.values() for runs in of_status):
+        return [verdict for _, verdict in judged]
+    return [
+        replace(
+            verdict, verdict=NOT_DECIDED, note="; ".join(filter(None, (_reason(verdict, suites, ended), verdict.note)))
+        )
+        if verdict.verdict == PASS and verdict.statistic
+        else verdict
+        for _, verdict in judged
+    ]
+
+
+def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
+    """Return True for each run that ended so, shape (n,)."""
+    status = suite.texts("status")
+    return noted(suite, OVERTURNS) & (status != "overturned") if ending == MAY_OVERTURN else status == ending
+
+
+def _allowed(suite: Rows, event: str, rules: Sequence[Rule]) -> npt.NDArray[np.bool_]:
+    """Return True for each run that a check counts that says how many records may end so, shape (n,)."""
+    polarity = suite.texts("polarity")
+    allowed = np.zeros(len(suite), dtype=bool)
+    for rule in rules:
+        if rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run):
+            allowed |= True if rule.polarity is None else polarity == rule.polarity
+    return allowed
+
+
+def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:
+    """Return how many records end in each such way, and the check to write."""
+    names = [counts_as(suite, verdict.count)[0] for suite in suites]
+    total = len({*np.concatenate(names)})
+    parts = list(_numbers(ended, names))
+    events = " and ".join(dict.fromkeys(f'"{ENDINGS[name].event}"' for name, _ in parts))
+    words = ", ".join(
+        f"{number} of {total} {verdict.count}s {ENDINGS[name].singular if number == 1 else ENDINGS[name].plural}"
+        for name, number in parts
+    )
+    remedy = f'add a [[check]] with demand = {events} and statistic = "count"'
+    return f"{words}, and no check says how many may: {remedy}"
+
+
+def _numbers(
+    ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]], names: Sequence[npt.NDArray[np.object_]]
+) -> Iterator[tuple[str, int]]:
+    """Yield each ending with the number of records with such runs, if there are any."""
+    for name, of_suites in ended.items():
+        records = {record for runs, of_runs in zip(of_suites, names, strict=True) for record in of_runs[runs]}
+        if records:
+            yield name, len(records)

@@ -1,0 +1,39 @@
+"""Records of one earthquake, which a code's statistic takes as independent motions."""
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from rockbatch.quantities.arrays import Texts
+
+
+class OfEvent(NamedTuple):
+    """The earthquake with the most records of a suite: its name, their number, that of all, and of those of no known event."""
+
+    event: str
+    records: int
+    total: int
+    unknown: int
+
+    @property
+    def in_words(self) -> str:
+        """How many records are of it, if more than one: "3 of 8 stations are of one event, Kaikoura 2016"."""
+        parts = []
+        if self.records > 1:
+            parts.append(f"{self.records} of {self.total} stations are of one event, {self.event}")
+        if 0 < self.unknown < self.total:
+            parts.append(f"of {self.unknown} of {self.total} stations the event is not known")
+        return "; ".join(parts)
+
+
+def largest_event(records: Texts, counted_as: Texts, events: Mapping[str, str]) -> OfEvent | None:
+    """Return the earthquake of most records by the names of runs' ``records``, those that they are ``counted_as`` and the
+    ``events`` of components, shape (n,); None if none is known."""
+    event_of: dict[str, str] = {}
+    for record, counted in zip(records, counted_as, strict=True):
+        event_of[counted] = event_of.get(counted) or events.get(record, "")
+    named = Counter(event for event in event_of.values() if event)
+    if not named:
+        return None
+    event, number = named.most_common(1)[0]
+    return OfEvent(event, number, len(event_of), len(event_of) - sum(named.values()))
