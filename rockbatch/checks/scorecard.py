@@ -62,7 +62,7 @@ class Row(NamedTuple):
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
-            return f"no limit on {', '.join(self.unlimited)}"
+            return f"no limit on {', '.join(dict.fromkeys(self.unlimited))}"
         number = self.count(self.verdict)
         checks = f"{number} check{'s' * (number != 1)}"
         return f"{checks} not decided" if self.verdict == NOT_DECIDED else f"{VERBS[self.verdict]} {checks}"
