@@ -232,7 +232,7 @@ def test_an_amplitude_of_overturning_proportional_to_a_lognormal_slenderness_is_
     logarithms = np.log(drawn)
     assert logarithms.std() == pytest.approx(0.1, rel=0.1)
     assert curve.fitted.median == pytest.approx(3.289147 * math.exp(logarithms.mean()), rel=2e-4)
-    assert curve.fitted.dispersion == pytest.approx(logarithms.std(), rel=2e-3)
+    assert curve.fitted.dispersion == pytest.approx(logarithms.std(ddof=1), rel=2e-3)
     assert curve.drawn == ("alpha",)
     assert (curve.drawn_share.dispersion, *curve.drawn_share.effects) == pytest.approx((0.1, 0.1), rel=2e-3)
 
