@@ -74,7 +74,7 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         said = f"has a median {bound_in_words(curve['median_bound'], info['measure'], info['unit'])}"
         said += f" ({case.removeprefix(' for ')})" if case else ""
     else:
-        said = f"has no median{case}: no curve could be fitted"
+        said = f"has no median{case}: {curve.get('no_curve') or 'no curve could be fitted'}"
     return sentence(f"{subject} {said}", _left_open(info, curve, curves))
 
 

@@ -197,6 +197,7 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "median_interval": None,
         "dispersion": None,
         "dispersion_interval": None,
+        "no_curve": fitted.reason if isinstance(fitted, NoCurve) else None,
         "stations": None if isinstance(fitted, NoCurve) else fitted.stations,
         "note": note(curve, spec),
         "undecided": curve.undecided._asdict(),
@@ -323,7 +324,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
     if curve.cloud:
         notes += note_on_cloud(curve, spec)
     notes.append(_about_drawn(curve))
-    if curve.windows and isinstance(curve.windows.fitted, NoCurve):
+    if curve.windows and isinstance(curve.windows.fitted, NoCurve) and curve.windows.fitted != fitted:
         notes.append(f"no median by shares: {curve.windows.fitted.reason}")
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
