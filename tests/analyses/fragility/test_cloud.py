@@ -266,7 +266,8 @@ def test_the_command_runs_every_record_as_it_is_and_fits_what_its_table_shows(tm
     curve = next(curve for curve in found.curves if curve.limit.name == "rotation")
     expected = fit(
         Demands(of_rotation["intensity"].to_numpy(), of_rotation["demand"].to_numpy(),
-        (of_rotation["counts"] == "overturned").to_numpy(), np.zeros(len(of_rotation), dtype=bool)), 0.5, 0.005,
+        (of_rotation["counts"] == "overturned").to_numpy(), np.zeros(len(of_rotation), dtype=bool),
+        of_rotation["record"].factorize()[0]), 0.5, 0.005,
     )  # fmt: skip
     assert curve.fitted.median == pytest.approx(expected.median, rel=1e-8)
     overturning = next(curve for curve in found.curves if curve.limit.name == "overturning")
