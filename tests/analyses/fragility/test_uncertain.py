@@ -226,7 +226,7 @@ def test_an_amplitude_of_overturning_proportional_to_a_lognormal_slenderness_is_
         rows = [row for _, row in journal.rows()]
     alpha = {row["record"]: float(row["drawn_alpha"]) for row in rows}
     assert len({(row["record"], row["drawn_alpha"]) for row in rows}) == 16  # the same at all intensities of a record
-    drawn = np.array([alpha[motions[m].name] for m, _ in curve.capacities])
+    drawn = np.array([alpha[motions[m].name] for (_, m), _ in curve.capacities])
     capacity = np.array([cap.decided.high for _, cap in curve.capacities])
     assert capacity / drawn == pytest.approx(3.289147, rel=2e-4)
     logarithms = np.log(drawn)

@@ -115,7 +115,7 @@ def test_a_finer_hunt_lowers_the_first_exceedances_and_leaves_the_shares(tmp_pat
 
 def test_the_default_hunt_goes_in_steps_of_a_quarter_of_a_percent_and_each_capacity_says_so(tmp_path):
     curve, spec, _ = made_up(tmp_path)
-    shares = [cap.decided.high / CAPACITIES[m] for m, cap in curve.capacities if 0.4 < 0.9 * CAPACITIES[m] < 1.19]
+    shares = [cap.decided.high / CAPACITIES[m] for (_, m), cap in curve.capacities if 0.4 < 0.9 * CAPACITIES[m] < 1.19]
     assert 15 < len(shares) < 30
     assert 0.9 < min(shares) <= max(shares) < 0.903
     rows = capacities([curve], spec, (), [str(m) for m in range(30)], [1.0] * 30)
