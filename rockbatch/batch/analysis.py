@@ -231,19 +231,21 @@ def run_analysis(
     jobs: int | Engine | None,
     fresh: bool,
     progress: Progress,
+    takes_both_axes: Callable[[Spec], bool] = lambda spec: False,
 ) -> A:
     """Return an analysis of ``study``: ``work`` writes its tables into ``out``, and returns its other attributes.
 
-    ``read`` returns the settings of the study that ``work`` takes. Without ``out`` the folder is a temporary one, removed with
+    ``read`` returns the settings of the study that ``work`` takes. Cases across the axis of others are taken if
+    ``takes_both_axes`` with these settings. Without ``out`` the folder is a temporary one, removed with
     all that is in it. The others as for :func:`rockbatch.run`.
     """
     started = time.monotonic()
     loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
-    cases = along_the_axis(loaded.cases)
-    if len(cases) < len(loaded.cases):
+    spec, cases = read(loaded), along_the_axis(loaded.cases)
+    if len(cases) < len(loaded.cases) and not takes_both_axes(spec):
         listener.say("other_width_m: this analysis takes the cases along the axis of the pier only")
         loaded = replace(loaded, cases=cases)
-    spec = read(loaded)
+        spec = read(loaded)
     if out is not None:
         kind.refuse_irregular(Path(out))
     with nullcontext(out) if out is not None else TemporaryDirectory(prefix="rockbatch-") as directory, engine:

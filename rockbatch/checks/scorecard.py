@@ -67,7 +67,7 @@ class Row(NamedTuple):
         if self.verdict == DOES_NOT_APPLY:
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
-            return f"no limit on {', '.join(self.unlimited)}"
+            return f"no limit on {', '.join(dict.fromkeys(self.unlimited))}"
         if self.verdict == NOT_DECIDED and not self.count(NOT_DECIDED):
             return "not decided, under a suite that fails"
         number = self.count(self.verdict)

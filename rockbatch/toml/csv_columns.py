@@ -22,17 +22,7 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
     an empty cell is NaN. Raises ``InputError`` with the file and the line for an unknown column, a cell that is not of its kind,
     or a line that is too short.
     """
-    lines = [
-        (number, line)
-        for number, line in enumerate(TomlFile.text_of(path).splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if len(lines) < 2 or len(lines) > MOST_ROWS:
-        raise InputError(f"{path}: expected a line of column names, and a line for each row below it")
-    delimiter = ";" if ";" in lines[0][1] else ","
-    rows = [
-        (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in lines
-    ]
+    rows, delimiter = _rows(path)
     names = _names(path, *rows[0], kinds)
     columns: dict[str, list[Any]] = {name: [] for name in names}
     wrong: list[str] = []
@@ -50,6 +40,26 @@ def columns_of(path: Path, kinds: Mapping[str, Kind], *, gaps: bool = False) -> 
     if wrong:
         raise InputError(*wrong[:20])
     return columns
+
+
+def heading_of(path: Path) -> list[str]:
+    """Return the names of the columns of a CSV file, as its first line has them."""
+    return _rows(path)[0][0][1]
+
+
+def _rows(path: Path) -> tuple[list[tuple[int, list[str]]], str]:
+    """Return the numbers and cells of the lines that are no remarks, the heading first, and what is between the cells."""
+    lines = [
+        (number, line)
+        for number, line in enumerate(TomlFile.text_of(path).splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if len(lines) < 2 or len(lines) > MOST_ROWS:
+        raise InputError(f"{path}: expected a line of column names, and a line for each row below it")
+    delimiter = ";" if ";" in lines[0][1] else ","
+    return [
+        (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for number, line in lines
+    ], delimiter
 
 
 def _names(path: Path, number: int, names: Sequence[str], known: Collection[str]) -> Sequence[str]:

@@ -11,7 +11,7 @@ from rockbatch.checks import wording
 from rockbatch.checks.answer import answer
 from rockbatch.checks.coverage import CaseRuns
 from rockbatch.checks.responses import worst_of_cases
-from rockbatch.checks.scorecard import scorecard
+from rockbatch.checks.scorecard import Row, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.scorecard import of_checks
 
@@ -138,3 +138,8 @@ def test_the_text_counts_the_columns_it_leaves_out_and_says_which_cases_no_check
     assert "3 more" in lines[-2]
     assert lines[-2].endswith(a.in_words)
     assert lines[-1].endswith(b.in_words)
+
+
+def test_a_response_without_a_limit_on_both_axes_is_named_once():
+    row = Row("rock", NOT_DECIDED, [], ("rotation", "rotation", "drift"))
+    assert row.in_words == "no limit on rotation, drift"

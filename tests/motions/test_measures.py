@@ -254,23 +254,25 @@ def test_the_cav_of_a_sine_is_four_amplitudes_over_omega_each_period():
     assert measures.cumulative_absolute_velocity(a, dt) == pytest.approx(5 * 4 * 3.0 / omega, rel=1e-5)
 
 
-def test_the_cav_counts_both_sides_of_a_zero_between_samples():
-    assert measures.cumulative_absolute_velocity(np.array([3.0, -1.0]), 2.0) == pytest.approx(1.5 * 1.5 + 0.5 * 0.5)
-    assert measures.cumulative_absolute_velocity(np.array([0.0, 0.0, 0.0]), 1.0) == 0.0
-    fine = np.interp(np.arange(0, 2001 * 4 - 3) / 4, np.arange(2001), shaking())
-    assert measures.cumulative_absolute_velocity(fine, 0.0025) == pytest.approx(
-        measures.cumulative_absolute_velocity(shaking(), 0.01), rel=1e-12
-    )
+@pytest.mark.parametrize("dt", [0.02, 0.01, 0.005])
+def test_the_cav_is_that_of_eqsig_at_any_sampling(dt):
+    """Trapezoids of |a|, by eqsig; to rounding."""
+    theirs = eqsig.im.calc_cav(eqsig.AccSignal(shaking(dt), dt))[-1]
+    assert measures.cumulative_absolute_velocity(shaking(dt), dt) == pytest.approx(theirs, rel=1e-12)
 
 
-def test_the_cav_tends_to_that_of_eqsig_as_samples_grow_dense():
-    # eqsig sums trapezoids of |a|, too large where a changes its sign between samples: by the square of the step
-    off = []
-    for dt in (0.01, 0.002):
-        theirs = eqsig.im.calc_cav(eqsig.AccSignal(shaking(dt), dt))[-1]
-        off.append(theirs / measures.cumulative_absolute_velocity(shaking(dt), dt) - 1)
-    assert 0 < off[1] < 2e-4
-    assert off[0] == pytest.approx(25 * off[1], rel=0.2)
+@pytest.mark.parametrize("samples", [5, 7, 12])
+def test_the_cav_of_a_coarse_sine_is_the_closed_sum_of_its_samples(samples):
+    """Of N samples a half-period, Σ|sin| = cot(π/2N) from zero to zero; Σ|cos| = 1/sin(π/2N) if N is odd, with zeros between
+    samples, and as of the sine if it is even.
+    """
+    phase = math.pi / samples * np.arange(4 * samples + 1)
+    half = math.pi / (2 * samples)
+    of_cosine = math.sin(half) if samples % 2 else math.tan(half)
+    for wave, expected in ((np.sin(phase), 4 / math.tan(half)), (np.cos(phase), 4 / of_cosine)):
+        assert measures.cumulative_absolute_velocity(wave, 0.01) == pytest.approx(0.01 * expected, rel=1e-12)
+    assert measures.cumulative_absolute_velocity(np.array([3.0, -1.0]), 2.0) == 4.0
+    assert measures.cumulative_absolute_velocity(np.zeros(3), 1.0) == 0.0
 
 
 def test_durations_of_a_rectangle_are_its_length_and_of_two_their_sum_and_span():

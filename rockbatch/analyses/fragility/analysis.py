@@ -2,15 +2,17 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.fragility.cloud_tables import CLOUD, cloud_table
+from rockbatch.analyses.fragility.clusters import clusters
 from rockbatch.analyses.fragility.curves import Curve, assess
 from rockbatch.analyses.fragility.hazard import YEARS, Dispersion, Hazard
 from rockbatch.analyses.fragility.risk import DEAGGREGATION, RISK, Risk, deaggregation_table, risk_table, risks
-from rockbatch.analyses.fragility.runs import first_intensities, level_plan, output
+from rockbatch.analyses.fragility.runs import first_intensities, level_plans, output
 from rockbatch.analyses.fragility.scale_factors import SCALES, described_scales, scales
 from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
 from rockbatch.analyses.fragility.tables import CAPACITIES, POINTS, RUNS, capacities, described, points
@@ -124,16 +126,20 @@ class Fragility(Analysis):
 def fragility(
     study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
     jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+    im: "Mapping[str, float] | pd.Series | str | os.PathLike[str] | None" = None,
 ) -> Fragility:  # fmt: skip
     """Compute how probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
 
     Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those
-    of one station are not independent, so that the bands are then too narrow.
+    of one station are not independent: intervals count stations, or earthquakes where five or more are known.
 
     Parameters
     ----------
     study, motions, jobs, fresh, progress
         As for :func:`rockbatch.run`; the count starts anew for each wave of runs.
+    im : mapping of str to float, Series or path, optional
+        Intensity measure of your own, in place of that of the study: a value of each record as it was recorded, by its name; a
+        Series has the name and unit of the measure as its name, "AvgSa [g]". Or a CSV file, as ``measure_file``.
     out : path, optional
         Folder for the files of ``rockbatch fragility``, continued if it was interrupted; without it nothing is kept on disk.
 
@@ -157,15 +163,33 @@ def fragility(
     >>> [path.name for path in result.save("reports/fragility")]
     ['fragility_scales.csv', 'fragility.csv', 'fragility_runs.csv', 'fragility.json', 'analyses.html']
     """
-    return run_analysis(Fragility, read_fragility, _write_tables, study, out, motions, jobs, fresh, progress)
+    return run_analysis(
+        Fragility,
+        partial(read_fragility, im=im),
+        _write_tables,
+        study,
+        out,
+        motions,
+        jobs,
+        fresh,
+        progress,
+        _of_pier,
+    )
+
+
+def _of_pier(spec: FragilitySpec) -> bool:
+    """Return whether both axes of a pier share a curve."""
+    return spec.of_pier
 
 
 def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
     study = results.study = replace(results.study, output=output(spec, results.study.output))
     listener, records = results.listener, results.read_motions(study).motions
-    plan = level_plan(study, spec, records)
+    plans = level_plans(study, spec, records)
     if spec.method == "cloud":
-        spec = replace(spec, levels=tuple(sorted({x for intensities in plan.used for x in intensities})))
+        spec = replace(
+            spec, levels=tuple(sorted({x for plan in plans for intensities in plan.used for x in intensities}))
+        )
     elif study.motions.scale != (1.0,):
         listener.say("scale of [motions] is not used: the levels of [fragility] take its place")
     digest = digests(
@@ -177,7 +201,8 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any
     )
     of_runs = replace(study, varied=(*study.varied, *spec.uncertain.columns))
     with results.journal(RUNS, columns(of_runs), digest) as journal:
-        first = (len(first_intensities(spec, plan, m, case)) for m in range(len(records)) for case in study.cases)
+        of_cases = [*zip(study.cases, plans, strict=True)]
+        first = (len(first_intensities(spec, plan, m, case)) for m in range(len(records)) for case, plan in of_cases)
         runs = count(sum(first), "run")
         windowed = any(spec.window_on(case.base) is not None for case in study.cases)
         scaling = f"at {len(spec.levels)} levels of {spec.label}{' and in windows about them' if windowed else ''}"
@@ -191,20 +216,21 @@ def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any
         listener.say(f"{levels}: {runs}{once(study)} on {results.engine}{search}")
         make_ready(study, listener)
         waves = Waves(of_runs, journal, results.engine, listener)
-        curves = assess(study, spec, records, waves, plan)
+        curves = assess(study, spec, records, waves, plans)
         rates = risks(curves, spec)
         results.info |= described(curves, spec, study, len(records), rates)
-        results.info["stations"] = len({motion.of_station for motion in records})
+        shared = clusters(records)
+        results.info |= {"stations": shared.stations, "events": shared.events, "by": shared.kind}
         names = [motion.name for motion in records]
-        results.keep_table(SCALES, scales(plan, spec, names))
-        results.info["scales"] = described_scales(plan, spec, names)
+        results.keep_table(SCALES, scales(plans, spec, names, study.cases, study.varied))
+        results.info["scales"] = described_scales(plans, spec, names)
         results.keep_table(POINTS, points(curves, spec, study.varied))
         if spec.method == "cloud":
             results.keep_table(CLOUD, cloud_table(curves, spec, study.varied, names))
         else:
             results.drop(CLOUD)
         if spec.method == "ida":
-            results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, plan.unscaled))
+            results.keep_table(CAPACITIES, capacities(curves, spec, study.varied, names, plans, study.cases))
         else:
             results.drop(CAPACITIES)
         _keep_risk(results, spec, curves, rates)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rockbatch.analyses.fragility.figures import label
-from rockbatch.analyses.fragility.quantities import FEW, Curve, level_of, percent, power
+from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
 from rockbatch.common.grouping import grouped
 from rockbatch.reporting.finished_analysis import answered, sentence
 from rockbatch.reporting.labels import counted
@@ -13,6 +13,8 @@ from rockbatch.results.labels import plain
 
 NOTABLE = 0.2
 """Share of a rate that rests on an extrapolation, from which the answer says so."""
+APART = 0.1
+"""Relative distance of the median by shares from which it stands beside the other in the first sentence."""
 MOST_NAMES = 3
 """Most cases that a remark names."""
 
@@ -25,11 +27,13 @@ def of_curves(info: Info) -> Markup:
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]
     weakest = min(others, key=_lowest, default=None)
-    if weakest is not None and _lowest(weakest) < _lowest(overturning):
+    if weakest is not None and (_lowest(weakest) < _lowest(overturning) or _lowest(weakest) == 0.0):
         words = f" ({weakest[0]['words']})" if weakest[0]["words"] else ""
         sentences.append(_of_limit(info, weakest, f"The limit exceeded first, {weakest[0]['limit_state']}{words},"))
+    elif others and all(_never(curve) for curves in others for curve in curves):
+        sentences.append(sentence(f"No other limit is exceeded up to {_intensity(info, info['levels'][-1])}"))
     elif others:
-        sentences.append(sentence("The other limits are not exceeded earlier"))
+        sentences.append(sentence("No other limit has a lower median"))
     return answered(join(*sentences, between=" "), remarks=_of_all(info))
 
 
@@ -43,7 +47,7 @@ def of_rates(info: Info) -> Markup:
     if info["hazard"]["source"]:
         subjects[overturning] = f"With the hazard “{info['hazard']['source']}” {overturning}"
     sentences = [_of_rate(info, known[name], subject) for name, subject in subjects.items()]
-    curves, remarks = info["curves"], list(_narrow(info))
+    curves, remarks = info["curves"], list(_shared(info))
     if lost := sum(not curve["risk"] for curve in curves):
         words = f"{lost} of {len(curves)} curves could not be fitted"
         remarks.insert(0, f"{words}: what has no rate here may be exceeded more often.")
@@ -54,13 +58,10 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     """Return the sentence about a limit: the case with the lowest median."""
     curve = min(curves, key=_strength)
     decided = _decided(curve)
-    beyond = sum(point["exceeded"] for point in decided)
     total = sum(point["records"] - point["undecided"] for point in decided)
     case = f" for {label(curve)}, the lowest of {len(curves)} cases" if len(curves) > 1 else ""
     if curve["median"] is not None:
-        interval = f"{level_of(info)} from {_records(curve)}: {_bounds(curve['median_interval'])}"
-        dispersion = "" if curve["dispersion"] is None else f" and a dispersion of {curve['dispersion']:.2f}"
-        said = f"has a median of {_intensity(info, curve['median'])} ({interval}){dispersion}{case}"
+        said = f"has a median of {_median(info, curve)}{case}"
         said += (
             ", whose intervals overlap" if any(_overlap(curve, each) for each in curves if each is not curve) else ""
         )
@@ -69,11 +70,31 @@ def _of_limit(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
     elif _withstood(decided, curve):
         said = f"is not reached up to {_intensity(info, decided[-1]['level'])} by any of {_records(curve)}"
         said += f", in any of {len(curves)} cases" if case else ""
-    elif beyond == total:
-        said = f"is reached by every record from {_intensity(info, decided[0]['level'])} on{case}: its median is below that"
+    elif curve.get("median_bound"):
+        said = f"has a median {bound_in_words(curve['median_bound'], info['measure'], info['unit'])}"
+        said += f" ({case.removeprefix(' for ')})" if case else ""
     else:
-        said = f"has no median{case}: no curve could be fitted"
+        said = f"has no median{case}: {curve.get('no_curve') or 'no curve could be fitted'}"
     return sentence(f"{subject} {said}", _left_open(info, curve, curves))
+
+
+def _median(info: Info, curve: Curve) -> str:
+    """Return the median with its interval, the one by shares, if it differs, and the dispersion."""
+    if curve["median_interval"] is None:
+        interval = f"from {_records(curve)}, no interval: {counted(curve['stations'], 'station')}"
+    else:
+        interval = f"{level_of(info)} from {_records(curve)}: {_bounds(curve['median_interval'])}"
+    said = f"{_intensity(info, curve['median'])} ({interval})"
+    windows = curve.get("windows", {})
+    if windows.get("above") is not None and abs(windows["above"]) >= APART:
+        said += f", by shares {_intensity(info, windows['median'])} ({100 * windows['above']:+.0f}\u00a0%),"
+    return said if curve["dispersion"] is None else f"{said} and a dispersion of {curve['dispersion']:.2f}"
+
+
+def _never(curve: Curve) -> bool:
+    """Return whether every run is decided, and none exceeds the limit."""
+    points = curve["points"]
+    return _withstood(points, curve) and not any(point["undecided"] for point in points)
 
 
 def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[str]:
@@ -105,19 +126,23 @@ def _of_all(info: Info) -> Iterator[str]:
             yield f"{lost} of {len(curves)} curves could not be fitted: the table says why."
         if little := sum(curve["says_little"] for curve in curves):
             yield f"{little} of {len(curves)} curves {'says' if little == 1 else 'say'} little: too many runs are undecided."
-    yield from _narrow(info)
+    yield from _shared(info)
     if gaps := list(dict.fromkeys(label(curve) for curve in curves if len(curve.get("looked", ())) > 1)):
         cases = ", ".join(gaps) if len(gaps) <= MOST_NAMES else f"{len(gaps)} cases"
         yield f"Between the levels nothing was run in {cases}: a first exceedance there is missed, and medians may be too high."
 
 
-def _narrow(info: Info) -> Iterator[str]:
-    """Yield why intervals are too narrow."""
-    if info.get("stations", info["records"]) < info["records"]:
-        counts = f"The {info['records']} records are components of {counted(info['stations'], 'station')}"
-        yield f"{counts}, each counted by itself: the intervals are too narrow."
-    if info["method"] == "cloud" and max(len(curve["points"]) for curve in info["curves"]) > info["records"]:
-        yield "Each record counts at every scale as one of its own: the intervals are too narrow."
+def _shared(info: Info) -> Iterator[str]:
+    """Yield what intervals rest on where records share a station or an earthquake."""
+    stations, events = info.get("stations", info["records"]), info.get("events", 0)
+    if info.get("by") == "event":
+        yield f"Intervals are by earthquake: the records are of {events}."
+        return
+    if stations < info["records"]:
+        yield f"Intervals are by station: the {info['records']} records are components of {counted(stations, 'station')}."
+    if 0 < events < stations:
+        alone = counted(events, "earthquake")
+        yield f"The stations recorded {alone}: what differs from one to another is not in the intervals."
 
 
 def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
@@ -126,17 +151,21 @@ def _of_rate(info: Info, curves: Sequence[Curve], subject: str) -> Markup:
         return sentence(f"{subject} has no rate, as no curve could be fitted")
     curve = max(curves, key=_rate)
     risk, years = curve["risk"], min(info["hazard"]["years"])
-    p, low, high = (percent(risk[f"p_in_{years:g}_years{end}"]) for end in ("", "_low", "_high"))
     case = f" for {label(curve)}, the greatest of {len(curves)} cases" if len(curves) > 1 else ""
-    said = (
-        f"{subject} has a probability of {p}\u00a0% in {years:g} years ({level_of(info)}: {low} to {high}\u00a0%){case}"
-    )
+    p, low, high = (risk[f"p_in_{years:g}_years{end}"] for end in ("", "_low", "_high"))
+    if bound := risk["bound"]:
+        chances = [f"{percent(p)}\u00a0%" for p, end in ((low, "rate_least"), (high, "rate_most")) if risk[end]]
+        yearly = [power(risk[end]) for end in ("rate_least", "rate_most") if risk[end]]
+        said = f"{subject} has a probability of {bound} {' and '.join(chances)} in {years:g} years{case}"
+        return sentence(f"{said}, a mean rate of {bound} {' and '.join(yearly)} a year")
+    interval = "" if low is None else f" ({level_of(info)}: {percent(low)} to {percent(high)}\u00a0%)"
+    said = f"{subject} has a probability of {percent(p)}\u00a0% in {years:g} years{interval}{case}"
     return sentence(f"{said}, a mean rate of {power(_rate(curve))} a year", _rate_left_open(info, curve))
 
 
 def _rate_left_open(info: Info, curve: Curve) -> Iterator[str]:
     risk, rate = curve["risk"], _rate(curve)
-    if risk["rate_high"] is None:
+    if risk["rate_high"] is None and risk["rate_low"] is not None:
         yield "the records leave its upper bound open"
     if curve["says_little"]:
         ends = (
@@ -154,9 +183,13 @@ def _lowest(curves: Sequence[Curve]) -> float:
 
 
 def _strength(curve: Curve) -> float:
-    """Return the median of a curve; without one the lowest level at which half of the decided records exceed the limit."""
+    """Return the median of a curve, 0 if it is below all levels; without one the lowest level at which half of the decided
+    records exceed the limit.
+    """
     if curve["median"] is not None:
         return float(curve["median"])
+    if bound := curve.get("median_bound"):
+        return 0.0 if bound["is"] == "below" else float("inf") if bound["is"] == "above" else float(bound["below"])
     half = (
         point["level"] for point in _decided(curve) if 2 * point["exceeded"] >= point["records"] - point["undecided"]
     )
@@ -175,16 +208,20 @@ def _withstood(points: Sequence[Mapping[str, Any]], curve: Curve) -> bool:
 def _unknown(curve: Curve) -> bool:
     """Return whether a curve has no median though some record may have one."""
     points = curve["points"]
-    return curve["median"] is None and not (
-        _withstood(points, curve)
-        and any(point["records"] for point in points)
-        and not any(point["undecided"] for point in points)
+    return (
+        curve["median"] is None
+        and not curve.get("median_bound")
+        and not (
+            _withstood(points, curve)
+            and any(point["records"] for point in points)
+            and not any(point["undecided"] for point in points)
+        )
     )
 
 
 def _overlap(curve: Curve, other: Curve) -> bool:
     """Return whether the median of another curve may be as low, by the intervals."""
-    if other["median"] is None:
+    if other["median_interval"] is None or curve["median_interval"] is None:
         return False
     low, high = (other["median_interval"][0] or 0.0), curve["median_interval"][1]
     return high is None or low <= high
@@ -205,11 +242,14 @@ def _bounds(interval: Sequence[float | None]) -> str:
 
 
 def _intensity(info: Info, value: float) -> str:
-    return f"{info['measure']} {plain(value, 3)} {info['unit']}".replace(" ", "\u00a0")
+    return f"{info['measure']} {plain(value, 3)} {info['unit']}".strip().replace(" ", "\u00a0")
 
 
 def _rate(curve: Curve) -> float:
-    return float(curve["risk"]["rate_per_year"])
+    """Return the rate of a curve, or the greatest bound that it has."""
+    risk = curve["risk"]
+    rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
+    return float(rate or 0.0)
 
 
 def _capital(words: str) -> str:

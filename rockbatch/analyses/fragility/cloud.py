@@ -7,6 +7,9 @@ Of the records that stand, ln D = ln a + b ln x + ε, with ε normal of deviatio
 (Jalayer, Ebrahimian, Miano, Manfredi & Sezen 2017, Earthq. Eng. Struct. Dyn. 46(15):2639–2663). A rocking pier that does not lift
 off has no demand, or next to none, of which the logarithm says nothing about those near the limit d: demands below a share of d
 are censored, known only to be below it (Tobin 1958, Econometrica 26(1):24–36).
+
+Records of one station share a part of ε. Mean squares between and within stations, as of an analysis of variance, give σ² and its
+draws; the line, which they share too, scatters as that between stations says.
 """
 
 import math
@@ -14,9 +17,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import expit, log_expit, log_ndtr, ndtr
+from scipy.special import expit, log_expit, log_ndtr, ndtr, ndtri
+from scipy.stats import t as student
 
-from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.lognormal import (
+    STATIONS_OF_CURVE,
+    STATIONS_OF_INTERVAL,
+    Interval,
+    NoCurve,
+    Numbers,
+    Values,
+    sums_by,
+    too_few,
+)
 
 DRAWS = 1000
 """Sets of parameters from their joint distribution, from which all intervals come."""
@@ -80,6 +93,8 @@ class Cloud:
     confidence : float
     centre : float
         Mean of ln x.
+    stations : int
+        Number of stations whose records it is of; of fewer than five there are no intervals.
     added : float
         Dispersion added to that of the records.
     """
@@ -89,14 +104,17 @@ class Cloud:
     overturning: Logistic | None
     confidence: float
     centre: float
+    stations: int = STATIONS_OF_INTERVAL
     added: float = 0.0
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""
         return self._probabilities(*self._parameters(), np.log(x))[0]
 
-    def band(self, x: Values) -> tuple[Values, Values]:
-        """Return the pointwise interval of P(x), each shape (n,)."""
+    def band(self, x: Values) -> tuple[Values, Values] | None:
+        """Return the pointwise interval of P(x), each shape (n,); None of too few stations."""
+        if not self._has_intervals:
+            return None
         low, high = np.quantile(self._of_draws(np.log(x)), self._ends, axis=0)
         return low, high
 
@@ -111,17 +129,24 @@ class Cloud:
         return float(_dispersion(*(self._quantiles(float(ndtr(z))) for z in (-1.0, 1.0)))[0])
 
     @property
-    def median_interval(self) -> tuple[float, float]:
-        """Return the interval of the median."""
-        low, high = np.quantile(self._quantiles(0.5, drawn=True), self._ends, method="nearest")
-        return float(low), float(high)
+    def median_interval(self) -> Interval | None:
+        """Return the interval of the median; None of too few stations."""
+        return self._interval(self._quantiles(0.5, drawn=True)) if self._has_intervals else None
 
     @property
-    def dispersion_interval(self) -> tuple[float, float]:
-        """Return the interval of the dispersion."""
-        of_draws = _dispersion(*(self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0)))
-        least, most = np.quantile(of_draws, self._ends, method="nearest")
-        return float(least), float(most)
+    def dispersion_interval(self) -> Interval | None:
+        """Return the interval of the dispersion; None of too few stations."""
+        if not self._has_intervals:
+            return None
+        return self._interval(_dispersion(*(self._quantiles(float(ndtr(z)), drawn=True) for z in (-1.0, 1.0))))
+
+    @property
+    def _has_intervals(self) -> bool:
+        return self.stations >= STATIONS_OF_INTERVAL
+
+    def _interval(self, of_draws: Values) -> Interval:
+        low, high = np.quantile(of_draws, self._ends, method="nearest")
+        return float(low), float(high)
 
     def widened(self, added: float) -> "Cloud":
         """Return the curve with a dispersion ``added`` to the intensity that exceeds the limit."""
@@ -130,14 +155,16 @@ class Cloud:
     def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
         """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its interval.
 
-        Of draws with which the probability falls with the intensity the rate is infinite.
+        It is NaN of too few stations. Of draws with which the probability falls with the intensity the rate is infinite.
         """
+        rate = float(self.probability(x) @ rates)
+        if not self._has_intervals:
+            return rate, math.nan, math.nan
         of_draws = self._of_draws(np.log(x)) @ rates
         for part in (self.line, self.overturning):
             if part is not None:
                 of_draws = np.where(part.draws[:, 1] > 0, of_draws, np.inf)
-        low, high = np.quantile(of_draws, self._ends, method="nearest")
-        return float(self.probability(x) @ rates), float(low), float(high)
+        return rate, *self._interval(of_draws)
 
     @property
     def _ends(self) -> tuple[float, float]:
@@ -190,73 +217,109 @@ class Cloud:
 class Demands:
     """Runs of a cloud: intensities ``x``, shape (n,), ``demand`` of those that stand, and which ``overturned``.
 
-    ``within`` are those of which only this is known: that they do not exceed the limit.
+    ``within`` are those of which only this is known: that they do not exceed the limit. ``station``, shape (n,), has the
+    number of the station of each; None if each is of a station by itself.
     """
 
     x: Values
     demand: Values
     overturned: npt.NDArray[np.bool_]
     within: npt.NDArray[np.bool_]
+    station: Numbers | None = None
+
+    @property
+    def of_station(self) -> Numbers:
+        """Return the number of the station of each run, shape (n,)."""
+        return _alone(self.x) if self.station is None else self.station
 
 
-def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> Cloud | str:
-    """Return the curve of a limit above 0, or why the data do not have one, in words; demands below ``floor`` are censored.
+def _alone(x: Values) -> Numbers:
+    return np.arange(len(x))
+
+
+def fit(runs: Demands, limit: float, floor: float, confidence: float = 0.95) -> Cloud | NoCurve:
+    """Return the curve of a limit above 0, or why the data do not have one; demands below ``floor`` are censored.
 
     σ has n − 2 in its denominator, and its draws are those of a χ² variable, so that without censored demands the intervals of
     the line are Student's. The logistic part is penalised as Firth (1993, Biometrika 80(1):27–38) proposes, which
     keeps it finite where intensities part the records that overturned from the others.
     """
-    log_x, stands = np.log(runs.x), ~runs.overturned
-    share = _share(log_x, runs.overturned)
-    if isinstance(share, str):
+    log_x, stands, station = np.log(runs.x), ~runs.overturned, runs.of_station
+    if refusal := _refused(station):
+        return refusal
+    share = _share(log_x, runs.overturned, station)
+    if isinstance(share, NoCurve):
         return share
     exact = stands & ~runs.within & (runs.demand > floor)
     if np.count_nonzero(exact) < LEAST_RECORDS:
-        return (
+        return NoCurve(
             f"{np.count_nonzero(exact)} records stand with a demand above {floor:.3g}, where a line needs {LEAST_RECORDS}: more "
             "records, stronger ones, or a smaller censored_below"
         )
     if np.ptp(log_x[exact]) < 1e-6:
-        return "all records have the same intensity: a line needs a cloud of them"
+        return NoCurve("all records have the same intensity: a line needs a cloud of them")
     log_demand = np.log(runs.demand[exact])
     if np.abs(np.polyval(np.polyfit(log_x[exact], log_demand, 1), log_x[exact]) - log_demand).max() < 1e-7:
-        return "all demands are on one line over the intensity, and nothing tells the dispersion"
+        return NoCurve("all demands are on one line over the intensity, and nothing tells the dispersion")
     censored = stands & ~exact
     bounds = np.log(np.where(runs.within, limit, floor))[censored]
-    line = _line(log_x[exact], log_demand, log_x[censored], bounds)
+    line = _line(log_x[exact], log_demand, log_x[censored], bounds, np.concatenate((station[exact], station[censored])))
     if not line.slope > 0:
-        return "the demand does not grow with the intensity"
-    return Cloud(limit, line, share, confidence, float(log_x.mean()))
+        return NoCurve("the demand does not grow with the intensity")
+    curve = Cloud(limit, line, share, confidence, float(log_x.mean()), len(np.unique(station)))
+    beyond = runs.overturned | (exact & (runs.demand > limit))
+    least, most = float(runs.x.min()), float(runs.x.max())
+    if (beyond.all() and curve.median < least) or (not beyond.any() and curve.median > most):
+        return _without_both(runs.x, beyond)
+    return curve
 
 
-def fit_event(x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95) -> Cloud | str:
-    """Return the curve of an event such as overturning, logistic alone, or why the data do not have one."""
-    log_x = np.log(x)
-    if not happened.any():
-        return (
-            f"no record exceeds the limit up to {x.max():.4g}: the median is beyond" if len(x) else "no record counts"
-        )
+def _refused(station: Numbers) -> NoCurve | None:
+    stations = len(np.unique(station))
+    return NoCurve(too_few(stations)) if 0 < stations < STATIONS_OF_CURVE else None
+
+
+def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
+    """Return the bound of the median where all records exceed the limit, or none."""
     if happened.all():
-        return f"every record exceeds the limit from {x.min():.4g} on: the median is below"
-    share = _share(log_x, happened)
-    if isinstance(share, str):
-        return share
-    return Cloud(1.0, None, share, confidence, float(log_x.mean()))
+        return NoCurve(
+            f"every record exceeds the limit from {x.min():.4g} on: the median is below, weaker ones are needed",
+            below=float(x.min()),
+        )
+    return NoCurve(f"no record exceeds the limit up to {x.max():.4g}: the median is above", above=float(x.max()))
 
 
-def _share(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic | str | None:
+def fit_event(
+    x: Values, happened: npt.NDArray[np.bool_], confidence: float = 0.95, station: Numbers | None = None
+) -> Cloud | NoCurve:
+    """Return the curve of an event such as overturning, logistic alone, or why the data do not have one."""
+    log_x, station = np.log(x), _alone(x) if station is None else station
+    if not len(x):
+        return NoCurve("no record counts")
+    if refusal := _refused(station):
+        return refusal
+    if happened.all() or not happened.any():
+        return _without_both(x, happened)
+    share = _share(log_x, happened, station)
+    if share is None or isinstance(share, NoCurve):
+        return share or NoCurve("no record has the event")
+    return Cloud(1.0, None, share, confidence, float(log_x.mean()), len(np.unique(station)))
+
+
+def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
+    """Return the share that overturns, None if no record did, or why there is none."""
     if not happened.any():
         return None
     if happened.all():
-        return "every record overturns: weaker ones are needed"
+        return _without_both(np.exp(log_x), happened)
     if np.ptp(log_x) < 1e-6:
-        return "all records have the same intensity: a share over it needs a cloud of them"
-    share = _logistic(log_x, happened)
-    return share if share.slope > 0 else "the share of records that overturn does not grow with the intensity"
+        return NoCurve("all records have the same intensity: a share over it needs a cloud of them")
+    share = _logistic(log_x, happened, station)
+    return share if share.slope > 0 else NoCurve("the share of records that overturn does not grow with the intensity")
 
 
-def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> Regression:
-    """Return the censored regression by maximum likelihood, by Newton's method.
+def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values, station: Numbers) -> Regression:
+    """Return the censored regression by maximum likelihood, by Newton's method; ``station`` has the censored ones last.
 
     In δ = β/σ and γ = 1/σ the likelihood is concave (Olsen 1978, Econometrica 46(5):1211–1215).
     """
@@ -285,15 +348,53 @@ def _line(log_x: Values, log_d: Values, censored_x: Values, bounds: Values) -> R
     # From δ, γ to β and ln σ: at the maximum information changes by the Jacobian alone
     turned = np.column_stack((np.vstack((np.eye(2), np.zeros(2))) * point[2], -point))
     covariance = np.linalg.inv(-turned.T @ hessian @ turned)[:2, :2]
-    free = max(len(log_x) - 2, 1)
-    grown = len(log_x) / free
-    beta, sigma = point[:2] / point[2], math.sqrt(grown) / point[2]
+    beta, sigma = point[:2] / point[2], 1.0 / point[2]
     rng = np.random.default_rng(SEED)
-    sigmas = sigma * np.sqrt(free / rng.chisquare(free, DRAWS))
-    spread = rng.standard_normal((DRAWS, 2)) @ np.linalg.cholesky(covariance * grown).T
-    betas = beta + spread * (sigmas / sigma)[:, None]
+    z, w = point[2] * log_d - x @ point[:2], point[2] * bounds - xc @ point[:2]
+    squares = _mean_squares(np.concatenate((z, -_mills(w))), len(log_x), station)
+    of_draws = squares.drawn(rng)
+    spread = rng.standard_normal((DRAWS, 2)) @ np.linalg.cholesky(covariance).T
+    betas = beta + spread * np.sqrt(of_draws[:, :1])
+    sigmas = sigma * np.sqrt(of_draws @ squares.shares)
+    sigma *= math.sqrt(squares.values @ squares.shares)
     draws = np.column_stack((betas[:, 0] - betas[:, 1] * centre, betas[:, 1], sigmas))
     return Regression(float(beta[0] - beta[1] * centre), float(beta[1]), float(sigma), draws)
+
+
+@dataclass(frozen=True)
+class _MeanSquares:
+    """Mean squares of residuals between stations and within them, each with its degrees of freedom, and their shares of σ²."""
+
+    values: Values
+    free: Values
+    shares: Values
+
+    def drawn(self, rng: np.random.Generator) -> Values:
+        """Return what the variances may be, shape (DRAWS, 2): mean squares over χ² variables of their degrees of freedom."""
+        return self.values * self.free / rng.chisquare(self.free, (DRAWS, 2))
+
+
+def _mean_squares(residuals: Values, exact: int, station: Numbers) -> _MeanSquares:
+    """Return the mean squares of residuals over σ, of which the first ``exact`` are of demands that are known.
+
+    The line, two parameters, is taken off those between stations. If each record is of a station by itself, there is only one.
+    """
+    sums = sums_by(station, np.column_stack((residuals, np.ones(len(station)))))
+    of_station, numbers = sums.T
+    n, k = len(station), len(numbers)
+    if k == n:
+        alone = max(exact - 2, 1)
+        return _MeanSquares(np.array([exact / alone, 0.0]), np.array([alone, 1.0]), np.array([1.0, 0.0]))
+    between = float((of_station**2 / numbers).sum())
+    within = max(float(residuals @ residuals) - between, 0.0)
+    together = float(numbers @ numbers) / n
+    free = np.array([k - 2.0, n - k])
+    return _MeanSquares(np.array([between, within]) / free, free, np.array([1.0, together - 1.0]) / together)
+
+
+def _mills(w: Values) -> Values:
+    """Return φ(w)/Φ(w)."""
+    return np.exp(-0.5 * w**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(w))
 
 
 def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Values) -> tuple[Values, Values]:
@@ -307,14 +408,14 @@ def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Va
     if len(bounds):
         rows = np.column_stack((-xc, bounds))
         w = rows @ point
-        ratio = np.exp(-0.5 * w**2 - 0.5 * math.log(2.0 * math.pi) - log_ndtr(w))
+        ratio = _mills(w)
         score += rows.T @ ratio
         hessian -= rows.T @ (rows * (ratio * (w + ratio))[:, None])
     return score, hessian
 
 
-def _logistic(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic:
-    """Return Firth's logistic regression, by Newton's method on its penalised score."""
+def _logistic(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic:
+    """Return Firth's logistic regression, by Newton's method on its penalised score; draws are stretched by stations."""
     centre, width = log_x.mean(), log_x.std()
     x = np.column_stack((np.ones(len(log_x)), (log_x - centre) / width))
     coefficients = np.zeros(2)
@@ -327,10 +428,26 @@ def _logistic(log_x: Values, happened: npt.NDArray[np.bool_]) -> Logistic:
         coefficients = coefficients + step * min(1.0, 2.0 / max(np.abs(step).max(), 1e-300))
         if np.abs(step).max() < 1e-11:
             break
-    draws = np.vstack((coefficients, _posterior(coefficients, covariance, x, happened)))
+    posterior = _posterior(coefficients, covariance, x, happened)
+    posterior = coefficients + math.sqrt(_design_effect(happened - p, station)) * (posterior - coefficients)
+    draws = np.vstack((coefficients, posterior))
     slopes = draws[:, 1] / width
     plain = np.column_stack((draws[:, 0] - slopes * centre, slopes))
     return Logistic(float(plain[0, 0]), float(plain[0, 1]), plain[1:])
+
+
+def _design_effect(residuals: Values, station: Numbers) -> float:
+    """Return the factor on the variance of draws by stations, 1 if each record is of a station by itself.
+
+    It is how much more the sums of residuals scatter than those of independent records, 1 at least, and Student's quantile of
+    the number of stations over the normal one, squared.
+    """
+    of_station = sums_by(station, residuals[:, None])
+    k = len(of_station)
+    if k == len(station):
+        return 1.0
+    together = k / (k - 2) * float((of_station**2).sum()) / float(residuals @ residuals)
+    return max(1.0, together) * float(student.ppf(0.975, k - 1) / ndtri(0.975)) ** 2
 
 
 def _posterior(mode: Values, covariance: Values, x: Values, happened: npt.NDArray[np.bool_]) -> Values:

@@ -70,7 +70,7 @@ def risk_lines(info: Mapping[str, Any]) -> str:
     curves = [curve for curve in info["curves"] if curve["risk"]]
     if not curves:
         return "No annual rates: no curve could be fitted"
-    about = "Mean annual rates of exceedance; intervals are those that the fit leaves, with the hazard taken as known"
+    about = "Mean annual rates of exceedance; intervals are those of the fit, with the hazard taken as known"
     notes = [f"{_name(curve)}: {curve['risk']['note']}" for curve in curves if curve["risk"]["note"]]
     return "\n".join([about, in_lines([*NAMES, *of_rates(info, "{:.2e}".format)], curves, len(NAMES)), *notes])
 

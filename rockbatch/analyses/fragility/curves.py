@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -12,15 +12,25 @@ import numpy.typing as npt
 from rockbatch.analyses.fragility import cloud
 from rockbatch.analyses.fragility.ida import Bracket, Capacity, Looks, bisect, capacity, hunt
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, applies, threshold
-from rockbatch.analyses.fragility.lognormal import Capacities, Contribution, Lognormal, Values, contribution, fit
-from rockbatch.analyses.fragility.runs import LevelPlan, Point, RecordRuns, Simulate, first_intensities, level_plan
+from rockbatch.analyses.fragility.lognormal import (
+    Capacities,
+    Contribution,
+    Lognormal,
+    NoCurve,
+    Numbers,
+    Values,
+    contribution,
+    fit,
+)
+from rockbatch.analyses.fragility.runs import LevelPlan, Point, RecordRuns, Simulate, first_intensities, level_plans
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, windows
 from rockbatch.batch.listening import count
+from rockbatch.common.grouping import grouped
 from rockbatch.motions import Motion
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.run_json import describe_case
-from rockbatch.study import Case, Study
+from rockbatch.study import PIER_KEYS, Case, Study
 from rockbatch.study.rules import Rule
 
 
@@ -76,31 +86,32 @@ Fitted = Lognormal | cloud.Cloud
 class Readings(NamedTuple):
     """The curves with all undecided runs counted as beyond the limit, and as within it, or why there is none."""
 
-    exceeded: Fitted | str
-    withstood: Fitted | str
+    exceeded: Fitted | NoCurve
+    withstood: Fitted | NoCurve
 
     @property
     def medians(self) -> tuple[float, float]:
-        """Return both medians, the lower first; 0 or infinite for one without a curve."""
-        low = 0.0 if isinstance(self.exceeded, str) else self.exceeded.median
-        high = math.inf if isinstance(self.withstood, str) else self.withstood.median
+        """Return both medians, the lower first; without a curve the bound, 0 or infinite if there is none."""
+        low = self.exceeded.above if isinstance(self.exceeded, NoCurve) else self.exceeded.median
+        high = self.withstood.below if isinstance(self.withstood, NoCurve) else self.withstood.median
         return min(low, high), max(low, high)
 
     def probability(self, x: Values) -> tuple[Values, Values]:
         """Return both P(x), the lower first, each of the shape of ``x``; 0 or 1 for one without a curve."""
-        low = np.zeros(len(x)) if isinstance(self.withstood, str) else self.withstood.probability(x)
-        high = np.ones(len(x)) if isinstance(self.exceeded, str) else self.exceeded.probability(x)
+        low = np.zeros(len(x)) if isinstance(self.withstood, NoCurve) else self.withstood.probability(x)
+        high = np.ones(len(x)) if isinstance(self.exceeded, NoCurve) else self.exceeded.probability(x)
         return np.minimum(low, high), np.maximum(low, high)
 
 
 class CloudPoint(NamedTuple):
-    """A run of a cloud: number of its motion, its intensity, its demand, its status, and its state."""
+    """A run of a cloud: number of its motion, its intensity, demand, status and state, and the number of its case."""
 
     motion: int
     intensity: float
     demand: float
     status: str
     state: int
+    case: int = 0
 
 
 @dataclass(frozen=True)
@@ -113,14 +124,14 @@ class Curve:
         Its case and its limit.
     stripes : tuple of Stripe
         Counts at every level.
-    fitted : Lognormal, Cloud or str
+    fitted : Lognormal, Cloud or NoCurve
         The curve, to which undecided runs add nothing, or why there is none.
     undecided : Undecided
         Number of undecided runs.
     readings : Readings or None
         The curves between which it lies, whatever undecided runs would have come to; None without any.
-    capacities : tuple of (int, Capacity)
-        Number of each motion that counts, and its capacity; of incremental dynamic analysis only.
+    capacities : tuple of (Member, Capacity)
+        Numbers of the case and motion of each record that counts, and its capacity; of incremental dynamic analysis only.
     windows : Windows or None
         Shares of the scales about the levels that exceed the limit, and the curve through them; of incremental dynamic
         analysis only, where the case has windows.
@@ -130,26 +141,44 @@ class Curve:
         Names of the inputs that are drawn for its case.
     drawn_share : Contribution, str or None
         What these contribute to its dispersion, or why that is not known; None if nothing is drawn.
+    cases : int
+        Number of the cases that share it: piers, and both axes of one.
     """
 
     case: Case
     limit: Rule
     stripes: tuple[Stripe, ...]
-    fitted: Fitted | str
+    fitted: Fitted | NoCurve
     undecided: Undecided
     readings: Readings | None = None
-    capacities: tuple[tuple[int, Capacity], ...] = ()
+    capacities: "tuple[tuple[Member, Capacity], ...]" = ()
     windows: Windows | None = None
     cloud: tuple[CloudPoint, ...] = ()
     drawn: tuple[str, ...] = ()
     drawn_share: Contribution | str | None = None
+    cases: int = 1
 
     @property
     def inconclusive(self) -> bool:
         """Return whether undecided runs leave the median more open than the number of records does."""
-        if self.readings is None or isinstance(self.fitted, str):
+        if self.readings is None or isinstance(self.fitted, NoCurve):
             return False
-        return _ratio(self.readings.medians) > _ratio(self.fitted.median_interval)
+        ratio, interval = _ratio(self.readings.medians), self.fitted.median_interval
+        return math.isinf(ratio) if interval is None else ratio > _ratio(interval)
+
+    @property
+    def shares(self) -> tuple[Values, Values, Values]:
+        """Return the levels at which runs count, and the shares of the records beyond the limit there, shape (n,) each: undecided
+        ones within it, and beyond it. A record whose first exceedance is lower is beyond it.
+        """
+        counting = [stripe for stripe in self.stripes if stripe.records]
+        levels = np.array([stripe.level for stripe in counting])
+        if self.capacities:
+            ends = np.array([(cap.if_withstood.high, cap.if_exceeded.low) for _, cap in self.capacities]).T
+            least, most = ((ends[0] <= levels[:, None]).mean(axis=1), (ends[1] < levels[:, None]).mean(axis=1))
+            return levels, least, most
+        n, beyond, open_ = np.array([(each.records, each.exceeded, each.undecided) for each in counting], dtype=float).T
+        return levels, beyond / n, (beyond + open_) / n
 
     def identity(self, varied: Sequence[str]) -> dict[str, Any]:
         """Return the columns that name it in tables: its case, the ``varied`` values of that, and its limit."""
@@ -163,21 +192,26 @@ def _ratio(bounds: tuple[float, float]) -> float:
 
 
 def assess(
-    study: Study, spec: FragilitySpec, motions: Sequence[Motion], simulate: Simulate, plan: LevelPlan | None = None
+    study: Study,
+    spec: FragilitySpec,
+    motions: Sequence[Motion],
+    simulate: Simulate,
+    plans: Sequence[LevelPlan] | None = None,
 ) -> list[Curve]:
     """Return the fragility curves of every case for every limit that applies to it.
 
-    Every record is run at the levels of ``plan``, at all of them if it is not given, and with method "ida" in the windows about
-    them; the first exceedance of every record is then sought below that so far, in one wave, and bisected, in more of them.
+    Every record is run at the levels of ``plans``, one for each case, at all of them if it is not given, and with method "ida"
+    in the windows about them; the first exceedance of every record is then sought below that so far, in one wave, and bisected,
+    in more of them.
 
     ``simulate`` is called once for the levels and windows and once for every wave, each depending on the rows before.
     """
-    plan = plan or level_plan(study, spec, motions)
-    runs = RecordRuns(study, spec, motions, plan, simulate)
+    plans = plans or level_plans(study, spec, motions)
+    runs = RecordRuns(study, spec, motions, plans, simulate)
     cases = [describe_case(case) for case in study.cases]
     pairs = [(c, rule) for rule in spec.limits for c, case in enumerate(cases) if applies(rule, case)]
     first = {
-        (c, m): first_intensities(spec, plan, m, case)
+        (c, m): first_intensities(spec, plans[c], m, case)
         for c, case in enumerate(study.cases)
         for m in range(len(motions))
     }
@@ -191,43 +225,80 @@ def assess(
     keys = [(c, rule, m) for c, rule in pairs for m in range(len(motions))]
     states = iter(runs.states([(rule, Point(m, x, c)) for c, rule, m in keys for x in first[c, m].values()]))
     looks = {(c, rule, m): {x: next(states) for x in first[c, m]} for c, rule, m in keys}
+    shared = grouped(pairs, lambda pair: (_shared_by(study.cases[pair[0]], spec), pair[1]))
     if spec.method == "cloud":
-        return [_of_cloud(runs, spec, c, rule) for c, rule in pairs]
+        return [_of_cloud(runs, spec, [c for c, _ in group], rule) for (_, rule), group in shared.items()]
     if spec.method == "ida":
         looks = hunt(looks, spec.levels, lambda key: spec.step_on(study.cases[key[0]].base), states_of)
         looks = bisect(looks, spec.levels, spec.tolerance, states_of)
-    return [_curve(runs, spec, c, rule, [looks[c, rule, m] for m in range(len(motions))]) for c, rule in pairs]
+    curves = []
+    for (_, rule), group in shared.items():
+        members = [Member(c, m) for c, _ in group for m in range(len(motions))]
+        curves.append(_curve(runs, spec, rule, members, [looks[c, rule, m] for c, m in members]))
+    return curves
+
+
+class Member(NamedTuple):
+    """A record of a curve: number of its case and of its motion; several cases share a curve over what lifts their piers off."""
+
+    case: int
+    motion: int
+
+
+def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
+    """Return what cases that share a curve have in common: their name, and all values that are not the pier's."""
+    if not spec.of_pier:
+        return id(case)
+    return case.across_of or case.name, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
+
+
+def _common(cases: Sequence[Case]) -> Case:
+    """Return the first of the cases of a curve with the columns that are the same in all."""
+    first = cases[0]
+    if len(cases) == 1:
+        return first
+    same = {k: v for k, v in first.columns.items() if all(case.columns.get(k) == v for case in cases)}
+    return replace(first, columns=same)
 
 
 _Key = tuple[int, Rule, int]
 """Number of a case, a limit, and number of a motion."""
 
 
-def _curve(runs: RecordRuns, spec: FragilitySpec, case: int, rule: Rule, looks: Sequence[Looks]) -> Curve:
-    """Return the curve through the states of every motion."""
+def _curve(
+    runs: RecordRuns, spec: FragilitySpec, rule: Rule, members: Sequence[Member], looks: Sequence[Looks]
+) -> Curve:
+    """Return the curve through the states of every member."""
     on_levels = np.array([[states.get(x, LEFT_OUT) for x in spec.levels] for states in looks], dtype=np.int8)
-    undecided = _undecided(runs, case, looks)
-    capacities: tuple[tuple[int, Capacity], ...] = ()
+    undecided, station = _undecided(runs, members, looks), _stations(runs, members)
+    capacities: tuple[tuple[Member, Capacity], ...] = ()
     if spec.method == "ida":
-        by_motion = ((m, capacity(states, spec.levels)) for m, states in enumerate(looks))
-        capacities = tuple((m, found_capacity) for m, found_capacity in by_motion if found_capacity is not None)
-        fits = _through_brackets([found_capacity for _, found_capacity in capacities], spec)
+        found = [capacity(states, spec.levels) for states in looks]
+        capacities = tuple((member, cap) for member, cap in zip(members, found, strict=True) if cap is not None)
+        fits = _through_brackets(
+            [cap for _, cap in capacities], spec, _stations(runs, [member for member, _ in capacities])
+        )
     else:
-        fits = _through_stripes(on_levels, spec)
-    stripes, of_case, windowed = _stripes(on_levels, spec.levels, runs, case), runs.study.cases[case], None
-    if (width := spec.window_on(of_case.base)) is not None:
-        windowed = windows(looks, spec.levels, width, spec.confidence)
+        fits = _through_stripes(on_levels, spec, station)
+    stripes, windowed = _stripes(on_levels, spec.levels, runs, members), None
+    cases = [runs.study.cases[c] for c in dict.fromkeys(c for c, _ in members)]
+    if (width := spec.window_on(cases[0].base)) is not None:
+        windowed = windows(looks, spec.levels, width, station, spec.confidence)
     if spec.method == "ida":
-        intervals = [(Point(m, 0.0, case), *cap.decided) for m, cap in capacities]
+        intervals = [(Point(m, 0.0, c), *cap.decided) for (c, m), cap in capacities]
     else:
-        used = runs.plan.used
         intervals = [
-            _one_sided(Point(m, used[m][x], case), state)
-            for m, of_record in enumerate(looks)
+            _one_sided(Point(m, runs.plans[c].used[m][x], c), state)
+            for (c, m), of_record in zip(members, looks, strict=True)
             for x, state in of_record.items()
         ]
-    curve = Curve(of_case, rule, stripes, fits[0], undecided, fits[1], capacities, windowed)
+    curve = Curve(_common(cases), rule, stripes, fits[0], undecided, fits[1], capacities, windowed, cases=len(cases))
     return _with_share(curve, runs, intervals, spec.confidence)
+
+
+def _stations(runs: RecordRuns, members: Sequence[Member]) -> Numbers:
+    """Return the number of the station of each member."""
+    return runs.clusters.of_motion[np.array([m for _, m in members], dtype=np.int64)]
 
 
 Interval = tuple[Point, float, float]
@@ -249,22 +320,23 @@ def _with_share(curve: Curve, runs: RecordRuns, intervals: Sequence[Interval], c
     names, uncertain = tuple(scores[0]), runs.draws.uncertain
     low, high = np.array([interval[1:] for interval in informative]).T
     motion = np.array([point.motion for point, _, _ in informative])
-    of_record = (motion == np.unique(motion)[:, None]).astype(np.float64)
+    station = runs.clusters.of_motion[motion]
     of_scores = np.array([list(of_run.values()) for of_run in scores])
     places = [uncertain.names.index(name) for name in names]
-    capacities = Capacities(low, high, np.ones(len(low)), of_record)
+    capacities = Capacities(low, high, np.ones(len(low)), station=station)
     share = contribution(capacities, of_scores, uncertain.matrix[np.ix_(places, places)], confidence)
     return replace(curve, drawn=names, drawn_share=share)
 
 
-def _of_cloud(runs: RecordRuns, spec: FragilitySpec, case: int, rule: Rule) -> Curve:
-    """Return the curve through the demands of all runs."""
+def _of_cloud(runs: RecordRuns, spec: FragilitySpec, numbers: Sequence[int], rule: Rule) -> Curve:
+    """Return the curve through the demands of all runs of the cases ``numbers``."""
     points = sorted(
-        (Point(m, x, case) for m, used in enumerate(runs.plan.used) for x in used), key=lambda run: run.intensity
+        (Point(m, x, c) for c in numbers for m, used in enumerate(runs.plans[c].used) for x in used),
+        key=lambda run: run.intensity,
     )
     values, states = runs.demands(rule, points), runs.states([(rule, point) for point in points])
     cloud_points = tuple(
-        CloudPoint(point.motion, point.intensity, float(value), runs.status[point], state)
+        CloudPoint(point.motion, point.intensity, float(value), runs.status[point], state, point.case)
         for point, value, state in zip(points, values, states, strict=True)
     )
     counting = [run for run in cloud_points if run.state != LEFT_OUT]
@@ -272,14 +344,19 @@ def _of_cloud(runs: RecordRuns, spec: FragilitySpec, case: int, rule: Rule) -> C
     ended = Counter(run.status for run in doubtful)
     not_converged = len(doubtful) - ended["flight"] - ended["failed"]
     undecided = Undecided(len(counting), ended["flight"], ended["failed"], not_converged)
-    fitted = _through_cloud([run for run in counting if not _is_doubtful(run)], rule, spec)
+
+    def through(points: Sequence[CloudPoint]) -> Fitted | NoCurve:
+        return _through_cloud(points, rule, spec, runs.clusters.of_motion)
+
+    fitted = through([run for run in counting if not _is_doubtful(run)])
     readings = None
     if doubtful:
         beyond = [run._replace(status="overturned", state=EXCEEDED) if _is_doubtful(run) else run for run in counting]
         within = [run._replace(demand=math.nan, state=WITHSTOOD) if _is_doubtful(run) else run for run in counting]
-        readings = Readings(_through_cloud(beyond, rule, spec), _through_cloud(within, rule, spec))
-    stripes = tuple(_stripe_of_one(run, runs.plan) for run in cloud_points)
-    curve = Curve(runs.study.cases[case], rule, stripes, fitted, undecided, readings, cloud=cloud_points)
+        readings = Readings(through(beyond), through(within))
+    stripes = tuple(_stripe_of_one(run, runs.plans[run.case]) for run in cloud_points)
+    cases = [runs.study.cases[c] for c in numbers]
+    curve = Curve(_common(cases), rule, stripes, fitted, undecided, readings, cloud=cloud_points, cases=len(cases))
     intervals = [_one_sided(point, state) for point, state in zip(points, states, strict=True)]
     return _with_share(curve, runs, intervals, spec.confidence)
 
@@ -296,54 +373,55 @@ def _stripe_of_one(run: CloudPoint, plan: LevelPlan) -> Stripe:
     return Stripe(run.intensity, *counts, *ends)._replace(scale_least=factor, scale_median=factor, scale_most=factor)
 
 
-def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec) -> Fitted | str:
+def _through_cloud(points: Sequence[CloudPoint], rule: Rule, spec: FragilitySpec, station: Numbers) -> Fitted | NoCurve:
+    of_run = station[np.array([run.motion for run in points], dtype=np.int64)]
     x = np.array([run.intensity for run in points], dtype=np.float64)
     demand = np.array([run.demand for run in points], dtype=np.float64)
     exceeded = np.array([run.state == EXCEEDED for run in points], dtype=np.bool_)
     if DEMANDS[rule.demand].event:
-        return cloud.fit_event(x, exceeded, spec.confidence)
+        return cloud.fit_event(x, exceeded, spec.confidence, of_run)
     limit = threshold(rule)
     if not limit > 0:
-        return f"a limit of {limit:g} has no logarithm: a cloud needs one above 0"
+        return NoCurve(f"a limit of {limit:g} has no logarithm: a cloud needs one above 0")
     overturned = exceeded & np.array([run.status == "overturned" for run in points], dtype=np.bool_)
     within = ~overturned & np.isnan(demand)
-    runs = cloud.Demands(x, np.where(within, 0.0, demand), overturned, within)
+    runs = cloud.Demands(x, np.where(within, 0.0, demand), overturned, within, of_run)
     return cloud.fit(runs, limit, spec.censored_below * limit, spec.confidence)
 
 
-def _undecided(runs: RecordRuns, case: int, looks: Sequence[Looks]) -> Undecided:
-    counted = [(m, x, state) for m, states in enumerate(looks) for x, state in states.items()]
-    status = Counter(runs.status_at(m, x, case) for m, x, state in counted if state == UNDECIDED)
+def _undecided(runs: RecordRuns, members: Sequence[Member], looks: Sequence[Looks]) -> Undecided:
+    counted = [(c, m, x, state) for (c, m), states in zip(members, looks, strict=True) for x, state in states.items()]
+    status = Counter(runs.status_at(m, x, c) for c, m, x, state in counted if state == UNDECIDED)
     flight, failed = status.pop("flight", 0), status.pop("failed", 0)
-    return Undecided(sum(state != LEFT_OUT for _, _, state in counted), flight, failed, status.total())
+    return Undecided(sum(state != LEFT_OUT for *_, state in counted), flight, failed, status.total())
 
 
 def _stripes(
-    observed: npt.NDArray[np.int8], levels: Sequence[float], runs: RecordRuns, case: int
+    observed: npt.NDArray[np.int8], levels: Sequence[float], runs: RecordRuns, members: Sequence[Member]
 ) -> tuple[Stripe, ...]:
-    stripes, plan = [], runs.plan
+    stripes, plans = [], runs.plans
     for x, row in zip(levels, observed.T, strict=True):
-        used = [m for m, intensities in enumerate(plan.used) if x in intensities]
-        ended = Counter(runs.status_at(m, x, case) for m in used)
-        counts = [int(np.count_nonzero(members)) for members in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
+        used = [(c, m) for c, m in members if x in plans[c].used[m]]
+        ended = Counter(runs.status_at(m, x, c) for c, m in used)
+        counts = [int(np.count_nonzero(chosen)) for chosen in (row != LEFT_OUT, row == EXCEEDED, row == UNDECIDED)]
         ends = [ended[status] for status in ("overturned", "flight", "failed")]
-        factors = [plan.factor(m, x) for m in used]
+        factors = [plans[c].factor(m, x) for c, m in used]
         least, middle, most = np.quantile(factors, [0.0, 0.5, 1.0]).tolist() if factors else 3 * [math.nan]
-        not_used = sum(x in intensities for intensities in plan.not_used)
+        not_used = sum(x in plans[c].not_used[m] for c, m in members)
         stripe = Stripe(x, *counts, *ends)
         stripes.append(stripe._replace(not_used=not_used, scale_least=least, scale_median=middle, scale_most=most))
     return tuple(stripes)
 
 
-Fits = tuple[Lognormal | str, Readings | None]
+Fits = tuple[Lognormal | NoCurve, Readings | None]
 
 
-def _through_stripes(observed: npt.NDArray[np.int8], spec: FragilitySpec) -> Fits:
+def _through_stripes(observed: npt.NDArray[np.int8], spec: FragilitySpec, station: Numbers) -> Fits:
     levels = np.array(spec.levels)
     within, undecided, beyond = ((observed == state).astype(float) for state in (WITHSTOOD, UNDECIDED, EXCEEDED))
 
-    def through(within: Values, beyond: Values) -> Lognormal | str:
-        return fit(Capacities.of_same_records(levels, within, beyond), spec.confidence)
+    def through(within: Values, beyond: Values) -> Lognormal | NoCurve:
+        return fit(Capacities.of_same_records(levels, within, beyond, station), spec.confidence)
 
     fitted = through(within, beyond)
     if not undecided.any():
@@ -351,15 +429,14 @@ def _through_stripes(observed: npt.NDArray[np.int8], spec: FragilitySpec) -> Fit
     return fitted, Readings(through(within, beyond + undecided), through(within + undecided, beyond))
 
 
-def _through_brackets(capacities: Sequence[Capacity], spec: FragilitySpec) -> Fits:
-    def through(brackets: Sequence[Bracket]) -> Lognormal | str:
-        low, high = np.array(brackets, dtype=np.float64).reshape(-1, 2).T
-        informative = (low > 0) | np.isfinite(high)
-        return fit(Capacities(low[informative], high[informative], np.ones(informative.sum())), spec.confidence)
+def _through_brackets(brackets: Sequence[Capacity], spec: FragilitySpec, station: Numbers) -> Fits:
+    def through(ends: Sequence[Bracket]) -> Lognormal | NoCurve:
+        low, high = np.array(ends, dtype=np.float64).reshape(-1, 2).T
+        return fit(Capacities.of_brackets(low, high, station), spec.confidence)
 
-    fitted = through([bracket.decided for bracket in capacities])
-    if not any(bracket.undecided for bracket in capacities):
+    fitted = through([bracket.decided for bracket in brackets])
+    if not any(bracket.undecided for bracket in brackets):
         return fitted, None
     return fitted, Readings(
-        *(through([getattr(bracket, name) for bracket in capacities]) for name in ("if_exceeded", "if_withstood"))
+        *(through([getattr(bracket, name) for bracket in brackets]) for name in ("if_exceeded", "if_withstood"))
     )

@@ -39,13 +39,18 @@ def label(entry: Curve) -> str:
     return f"{entry['case']}: {', '.join(words)}" if words else entry["case"]
 
 
+def in_brackets(unit: str) -> str:
+    """Return a unit as heads and axes have it; empty without one."""
+    return f"[{unit}]" if unit else ""
+
+
 def _looks(info: Mapping[str, Any]) -> dict[str, Look]:
     """Return the marks of each case, the same in every figure."""
     return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
 
 
 def _intensity(info: Mapping[str, Any]) -> str:
-    return f"{info['measure']} [{info['unit']}]"
+    return f"{info['measure']} {in_brackets(info['unit'])}".strip()
 
 
 def curves(info: Mapping[str, Any]) -> Figure:
@@ -77,7 +82,7 @@ def _line(
 
 def _bands(entry: Curve, look: Look) -> Iterator[Mark]:
     for name, kind in (("open", "unsure"), ("curve", "area")):
-        if name in entry:
+        if "low" in entry.get(name, ()):
             x, low, high = (np.array(entry[name][side]) for side in ("x", "low", "high"))
             around = np.concatenate((low, high[::-1]))
             yield Area(np.concatenate((x, x[::-1])), around, look=Look(kind, look.colour))

@@ -55,12 +55,13 @@ HAZARD = Section(("fragility", "hazard"), (
 ), {
     "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True, usual=IN_G),
     "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True, usual=IN_M_S),
+    "levels": Key(positive, "[0.5, 1.0, 2.0]", "Intensities of the points, of another measure in its unit.", many=True),
     "rate_per_year": Key(positive, "[0.01, 0.0021, 0.0004]", "Mean annual rates at which they are exceeded.", many=True,
         usual=Usual(2.0, "per year: hazard is given for 0.1 to 1e-6; return periods are return_period_years")),
     "return_period_years": Key(positive, "[100, 475, 2475]", "Reciprocals of these rates, to be given instead.", many=True,
         usual=Usual(math.inf, "years: hazard is given for 10 to 1e6 years; rates are rate_per_year", 0.5)),
     "file": Key(text, '"hazard.csv"',
-        "A CSV file with the points, relative to the study: columns levels_g or levels_m_s, and rate_per_year or "
+        "A CSV file with the points, relative to the study: columns levels_g, levels_m_s or levels, and rate_per_year or "
         "return_period_years."),
     "slope": Key(positive, "3.0",
         "k of a rate that falls as 1/x^k, through a single point; of ground accelerations it is of the order of 3."),
@@ -74,6 +75,7 @@ HAZARD = Section(("fragility", "hazard"), (
     Clash(("rate_per_year", "return_period_years"), "rate_per_year and return_period_years are given; keep one"),
     Clash(("file", "levels_g"), "file and levels_g are given; keep one"),
     Clash(("file", "levels_m_s"), "file and levels_m_s are given; keep one"),
+    Clash(("file", "levels"), "file and levels are given; keep one"),
     Clash(("file", "rate_per_year"), "file and rate_per_year are given; write the rates into the file, or the levels here"),
     Clash(("file", "return_period_years"),
         "file and return_period_years are given; write the periods into the file, or the levels here"),
@@ -98,7 +100,7 @@ def read_hazard(file: TomlFile, levels: str) -> Hazard | None:
         return None
     problems_before = len(file.problems)
     read = table.read(HAZARD)
-    wrong_keys = {"levels_g", "levels_m_s"} - {levels}
+    wrong_keys = {"levels_g", "levels_m_s", "levels"} - {levels}
     for name in wrong_keys & table.data.keys():
         table.complain(f"{name}: the levels of [fragility] are {levels}; the hazard must have the same measure", name)
     points = _from_file(table, read["file"], levels) if "file" in read else read

@@ -9,6 +9,10 @@ For stripes, whose intervals are one-sided, it is the binomial likelihood of mul
 incremental dynamic analysis, with records that never exceeded the limit as censored ones, that of a truncated one (both in
 Baker 2015, Earthquake Spectra 31(1):579–599). It is concave in (a, b), as Φ is log-concave and so is its difference over an
 interval: there is one maximum at most.
+
+β of its maximum is low at few records, as a standard deviation with n in its denominator is: the spread about the records' own
+mean lacks that of the mean. The curve has β² = β_ML² + Var(ln θ), the variance by stations: of independent capacities this is
+the sample's, with n − 1, and of the components of stations the unbiased one of an analysis of variance.
 """
 
 import math
@@ -18,8 +22,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr, ndtri
+from scipy.stats import t as student
+
+from rockbatch.batch.listening import count as counted
 
 Values = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
+Interval = tuple[float, float]
 
 RAYS = 360
 """Directions in which the edge of the confidence region is sought; between two it is off by 4e-5 of its width."""
@@ -35,6 +44,9 @@ LEAST_PER_PARAMETER = 5
 SEPARATED = 1e-3
 """ℓ of an interval, below which (in magnitude) the inputs leave nothing open: a probability of 0.999."""
 
+STATIONS_OF_CURVE, STATIONS_OF_INTERVAL = 3, 5
+"""Stations whose records a curve, and its intervals, take at least: of fewer, chance says more than they do."""
+
 LEAST_SLOPE = 1e-3
 """Least slope of z over standardised ln x; below, the capacity would spread over more than a thousand times what was sampled."""
 
@@ -44,23 +56,67 @@ class Capacities:
     """Intervals of capacities, low < x ≤ high, each with the number of records in it; shape (n,).
 
     ``low`` is 0 if the limit was exceeded at the lowest level, ``high`` infinite if it never was. ``of_record``,
-    shape (m, n), holds what each of m records contributes to ``count`` where a record contributes several times.
+    shape (m, n), holds what each of m records contributes to ``count``; None if each interval is of one record, or of fresh ones.
+    ``station``, shape (m,), is the number of the station of each; None for fresh records, each of a station by itself.
     """
 
     low: Values
     high: Values
     count: Values
     of_record: Values | None = None
+    station: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        if self.of_record is not None and self.station is None:
+            object.__setattr__(self, "station", np.arange(len(self.of_record)))
 
     @classmethod
-    def of_same_records(cls, levels: Values, within: Values, beyond: Values) -> "Capacities":
+    def of_same_records(
+        cls, levels: Values, within: Values, beyond: Values, station: Numbers | None = None
+    ) -> "Capacities":
         """Return those of m records, each ``within`` or ``beyond`` the limit at each level, shape (m, n), or neither."""
         of_record = np.hstack((beyond, within)).astype(np.float64)
         low = np.concatenate((np.zeros(len(levels)), levels))
         high = np.concatenate((levels, np.full(len(levels), np.inf)))
-        used = of_record.any(axis=0)
-        of_record = of_record[of_record.any(axis=1)][:, used]
-        return cls(low[used], high[used], of_record.sum(axis=0), of_record)
+        used, counting = of_record.any(axis=0), of_record.any(axis=1)
+        of_record = of_record[counting][:, used]
+        numbers = np.arange(len(within)) if station is None else station
+        return cls(low[used], high[used], of_record.sum(axis=0), of_record, numbers[counting])
+
+    @classmethod
+    def of_brackets(cls, low: Values, high: Values, station: Numbers | None = None) -> "Capacities":
+        """Return those of m records with one bracket each, shape (m,), leaving out those of which nothing is known."""
+        known = (low > 0) | np.isfinite(high)
+        station = np.arange(len(low)) if station is None else station
+        return cls(low[known], high[known], np.ones(known.sum()), None, station[known])
+
+    @property
+    def records(self) -> float:
+        """Return the number of records."""
+        return float(self.count.sum()) if self.station is None else len(self.station)
+
+    def by_record(self, scores: Values) -> Values:
+        """Return the sums of the ``scores`` of intervals, shape (n, k), of each of the m records, shape (m, k)."""
+        return scores if self.of_record is None else self.of_record @ scores
+
+    @property
+    def stations(self) -> int:
+        """Return the number of stations."""
+        return int(self.records) if self.station is None else len(np.unique(self.station))
+
+
+@dataclass(frozen=True)
+class NoCurve:
+    """Why data have no curve, and what they say about its median: it is above ``above`` and below ``below``."""
+
+    reason: str
+    above: float = 0.0
+    below: float = math.inf
+
+    @property
+    def is_bound(self) -> bool:
+        """Return whether the data bound the median."""
+        return self.above > 0 or math.isfinite(self.below)
 
 
 @dataclass(frozen=True)
@@ -70,25 +126,33 @@ class Lognormal:
     Attributes
     ----------
     median, dispersion : float
-        θ, in the unit of the levels, and β.
-    median_interval, dispersion_interval : tuple of two floats
-        Profile-likelihood intervals; a bound is 0 or infinite where the data leave it open.
-    region : ndarray, shape (m, 2)
+        θ, in the unit of the levels, and β of the sample, β² unbiased.
+    median_interval, dispersion_interval : tuple of two floats, or None
+        Profile-likelihood intervals by stations; a bound is 0 or infinite where the data leave it open; None of too few stations.
+    region : ndarray, shape (m, 2), or None
         Edge of the region of (a, b) from which all intervals come.
+    most_likely_dispersion : float
+        β of the maximum of the likelihood, which is low at few records.
+    stations : int
+        Number of stations whose records it is of.
     """
 
     median: float
     dispersion: float
-    median_interval: tuple[float, float]
-    dispersion_interval: tuple[float, float]
-    region: Values
+    median_interval: Interval | None
+    dispersion_interval: Interval | None
+    region: Values | None
+    most_likely_dispersion: float = math.nan
+    stations: int = 0
 
     def probability(self, x: Values) -> Values:
         """Return P(x), shape of ``x``."""
         return ndtr(np.log(x / self.median) / self.dispersion)
 
-    def band(self, x: Values) -> tuple[Values, Values]:
-        """Return the pointwise profile-likelihood interval of P(x), each shape (n,)."""
+    def band(self, x: Values) -> tuple[Values, Values] | None:
+        """Return the pointwise profile-likelihood interval of P(x), each shape (n,); None without intervals."""
+        if self.region is None:
+            return None
         a, b = self.region.T
         z = a + b * np.log(x)[:, None]
         return ndtr(z.min(axis=1)), ndtr(z.max(axis=1))
@@ -97,44 +161,61 @@ class Lognormal:
         """Return the curve with a dispersion ``added`` to its own, independent of it, by the root of the squares."""
         if added == 0:
             return self
-        wide = self.region / np.sqrt(1.0 + (added * self.region[:, 1:]) ** 2)
-        low, high = (math.hypot(bound, added) for bound in self.dispersion_interval)
-        return replace(
-            self, dispersion=math.hypot(self.dispersion, added), dispersion_interval=(low, high), region=wide
-        )
+        wide, interval = self.region, self.dispersion_interval
+        if wide is not None and interval is not None:
+            wide = wide / np.sqrt(1.0 + (added * wide[:, 1:]) ** 2)
+            interval = math.hypot(interval[0], added), math.hypot(interval[1], added)
+        return replace(self, dispersion=math.hypot(self.dispersion, added), dispersion_interval=interval, region=wide)
 
     def rate(self, x: Values, rates: Values) -> tuple[float, float, float]:
         """Return Σ P(x) times the annual ``rates`` of motions about each x, shape (n,), and its profile-likelihood interval.
 
         It rises with a everywhere, so that its extremes over the region are on the edge; the upper bound is infinite where
-        the data leave the dispersion open.
+        the data leave the dispersion open. Both are NaN without intervals.
         """
+        rate = float(self.probability(x) @ rates)
+        if self.region is None:
+            return rate, math.nan, math.nan
         a, b = self.region.T
         sums = ndtr(a[:, None] + b[:, None] * np.log(x)) @ rates
-        return float(self.probability(x) @ rates), float(sums.min()), float(sums.max()) if (b > 0).all() else math.inf
+        return rate, float(sums.min()), float(sums.max()) if (b > 0).all() else math.inf
 
 
-def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | str:
-    """Return the maximum-likelihood curve, or why the data do not have one, in words.
+def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve:
+    """Return the curve of the maximum likelihood, its β that of the sample, or why the data do not have one.
 
-    The intervals are those of the profile likelihood: extremes over all (a, b) whose ℓ is within half the χ²₁ quantile of
-    the maximum. Unlike a bootstrap they need no luck: with a few records many resampled suites cannot be fitted. Unlike
-    the delta method they keep to θ > 0, β > 0 and 0 ≤ P ≤ 1, and are as skew as the data are few.
+    The intervals are those of the profile likelihood: extremes over a region of (a, b). Unlike a bootstrap they need no luck:
+    with a few records many resampled suites cannot be fitted. Unlike the delta method they keep to θ > 0, β > 0 and
+    0 ≤ P ≤ 1, and are as skew as the data are few.
 
-    The binomial likelihood takes the records of every level as fresh ones. Where they are the same, the curve remains, but
-    levels say much less than as many suites would: the region is stretched to the covariance of the records' own scores
-    (Chandler & Bate 2007, Biometrika 94(1):167–183), and never shrunk.
+    The likelihood takes all records, and those of every level, as independent. Where they are not, the curve remains, but
+    says much less than as many suites would: the region is stretched to the covariance of the scores of stations
+    (Chandler & Bate 2007, Biometrika 94(1):167–183), and reaches to Student's quantile of their number.
     """
-    refusal = _degenerate(capacities)
-    if refusal:
+    stations = capacities.stations
+    if 0 < stations < STATIONS_OF_CURVE:
+        return NoCurve(too_few(stations))
+    if refusal := _degenerate(capacities):
         return refusal
     likelihood = _Likelihood(capacities)
     best = likelihood.maximum()
     if best is None:
-        return NOT_RISING
-    edge = likelihood.region(best, confidence)
+        return NoCurve(NOT_RISING)
     a, b = likelihood.plain(best)
-    return Lognormal(math.exp(-a / b), float(1.0 / b), *_intervals(edge), edge)
+    median, most_likely = math.exp(min(max(-a / b, -700.0), 700.0)), float(1.0 / b)
+    if outside := _outside(median, capacities):
+        return outside
+    scatter = _Scatter(likelihood, best)
+    dispersion = math.hypot(most_likely, scatter.of_median)
+    if stations < STATIONS_OF_INTERVAL:
+        return Lognormal(median, dispersion, None, None, None, most_likely, stations)
+    edge = likelihood.region(best, scatter, confidence) * (most_likely / dispersion)
+    return Lognormal(median, dispersion, *_intervals(edge), edge, most_likely, stations)
+
+
+def too_few(stations: int) -> str:
+    """Return why so few stations have no curve."""
+    return f"records of {counted(stations, 'station')}: a curve takes {STATIONS_OF_CURVE}, and an interval {STATIONS_OF_INTERVAL}"
 
 
 @dataclass(frozen=True)
@@ -166,10 +247,10 @@ def contribution(
     changes ln x by −c_j/b. Of the square that the changes make with their ``correlation``, shape (k, k), the share that
     chance gives to any input is taken off: that of their covariance, which is stretched as the region of :func:`fit`.
     """
-    assert capacities.of_record is not None
+    assert capacities.station is not None
     n, k = scores.shape
     if refusal := _degenerate(capacities):
-        return refusal
+        return refusal.reason
     if n < LEAST_PER_PARAMETER * (k + 2):
         return f"{n} runs or capacities are too few to tell {k + 2} parameters"
     likelihood = _Likelihood(capacities, scores)
@@ -188,7 +269,7 @@ def contribution(
     informations, axes = np.linalg.eigh(-hessian)
     known = informations > 1e-9 * informations[-1]  # the factors of two inputs that go together are not known apart
     roots = axes[:, known] / np.sqrt(informations[known])
-    spread = roots @ _stretch(roots.T @ (capacities.of_record @ slopes).T)
+    spread = roots @ _stretch(roots.T @ sums_by(capacities.station, capacities.by_record(slopes)).T)
     spread = np.column_stack((np.zeros(k), -effects / b, -likelihood.width / b * np.eye(k))) @ spread
     together = correlation @ spread @ spread.T
     square = float(effects @ correlation @ effects - np.trace(together))
@@ -199,27 +280,43 @@ def contribution(
     return Contribution(middle, (least, most), tuple(effects.tolist()), tuple(errors.tolist()))
 
 
-def _degenerate(capacities: Capacities) -> str:
-    """Return why the data give no dispersion, or nothing at all; empty if they do."""
+def _degenerate(capacities: Capacities) -> NoCurve | None:
+    """Return why the data give no dispersion, or nothing at all; None if they do."""
     low, high = capacities.low, capacities.high
     if len(low) == 0:
-        return "no record counts"
+        return NoCurve("no record counts")
     highest, lowest = float(low.max()), float(high.min())
     if np.isinf(high).all():
-        return f"no record exceeds the limit up to {highest:.4g}: the median is beyond"
+        return NoCurve(f"no record exceeds the limit up to {highest:.4g}: the median is above", above=highest)
     if (low == 0).all():
-        return f"every record exceeds the limit from {lowest:.4g} on: the median is below"
+        return NoCurve(f"every record exceeds the limit from {lowest:.4g} on: the median is below", below=lowest)
     if highest < lowest:
-        return (
+        reason = (
             f"no record exceeds the limit at {highest:.4g}, every one at {lowest:.4g}: the median is between, and levels "
             "between them would tell the dispersion"
         )
+        return NoCurve(reason, above=highest, below=lowest)
     if highest == lowest:
-        return (
+        return NoCurve(
             f"some records exceed the limit at {highest:.4g}, none below and all above: levels nearer to it would tell the "
             "dispersion"
         )
-    return ""
+    return None
+
+
+def _outside(median: float, capacities: Capacities) -> NoCurve | None:
+    """Return the bound that an extrapolated median is: beyond the intensities that were run it is not known; else None."""
+    ends = np.concatenate((capacities.low, capacities.high))
+    ends = ends[(ends > 0) & np.isfinite(ends)]
+    if median < ends.min():
+        return NoCurve(
+            f"most records exceed the limit at {ends.min():.4g}: the median is below", below=float(ends.min())
+        )
+    if median > ends.max():
+        return NoCurve(
+            f"few records exceed the limit up to {ends.max():.4g}: the median is above", above=float(ends.max())
+        )
+    return None
 
 
 class _Likelihood:
@@ -234,7 +331,7 @@ class _Likelihood:
         finite = np.concatenate((low[np.isfinite(low)], high[np.isfinite(high)]))
         self.centre, self.width = float(finite.mean()), float(finite.std())
         self.low, self.high = (low - self.centre) / self.width, (high - self.centre) / self.width
-        self.count, self.of_record = capacities.count, capacities.of_record
+        self.count, self.capacities = capacities.count, capacities
         self.inputs = np.empty((len(low), 0)) if inputs is None else inputs
 
     def value(self, *parameters: Values) -> Values:
@@ -279,15 +376,19 @@ class _Likelihood:
         )
         return np.asarray(optimum.x) if optimum.x[1] > LEAST_SLOPE else None
 
-    def region(self, best: Values, confidence: float) -> Values:
-        """Return the edge of the region where ℓ is within half the χ²₁ quantile of its maximum, in (a, b) over ln x."""
-        least = self.value(*best)[0] - 0.5 * ndtri(0.5 + 0.5 * confidence) ** 2
+    def region(self, best: Values, scatter: "_Scatter", confidence: float) -> Values:
+        """Return the edge of the region of (a, b) over ln x, from which all intervals come, shape (m, 2).
+
+        ℓ is there n/2 ln(1 + t²/n) below its maximum, with n records and Student's quantile t of the number of stations less
+        1: of n independent capacities, the interval of ln θ is then Student's. Where records contribute several times it is
+        t²/2 below.
+        """
+        t, n = float(student.ppf(0.5 + 0.5 * confidence, scatter.stations - 1)), scatter.records
+        least = self.value(*best)[0] - 0.5 * (t * t if scatter.repeated else n * math.log1p(t * t / n))
         # Rays that would be evenly spread if ℓ were quadratic; ℓ is concave, so each leaves the region once
-        scores, hessian = self.derivatives(best)
-        lower = np.linalg.cholesky(-hessian)
-        roots = np.linalg.inv(lower).T
         angles = np.linspace(0.0, 2.0 * math.pi, RAYS, endpoint=False)
-        rays = roots @ np.array([np.cos(angles), np.sin(angles)])
+        directions = np.array([np.cos(angles), np.sin(angles)])
+        rays = scatter.roots @ directions
 
         def inside(reach: Values) -> npt.NDArray[np.bool_]:
             return self.value(*(best[:, None] + reach * rays)) >= least
@@ -299,15 +400,68 @@ class _Likelihood:
             middle = 0.5 * (near + far)
             within = inside(middle)
             near, far = np.where(within, middle, near), np.where(within, far, middle)
-        edge = near * rays
-        if self.of_record is not None:
-            edge = roots @ _stretch(roots.T @ (self.of_record @ scores).T) @ lower.T @ edge
-        return self.plain(best[:, None] + edge).T
+        plain = best[:, None] + near * rays
+        a, b = best[:, None] + scatter.roots @ (scatter.stretch[:, None] * near * directions)
+        if (plain[1] > 0).all() and (b > 0).all():  # medians by the first factor alone, whatever the second does to b
+            middle = -best[0] / best[1]
+            a = -b * (middle + scatter.stretch[0] * (-plain[0] / plain[1] - middle))
+        return self.plain(np.array([a, b])).T
 
     def plain(self, ab: Values) -> Values:
         """Return (a, b) over ln x from those over what was standardised."""
         b = ab[1] / self.width
         return np.array([ab[0] - b * self.centre, b])
+
+
+class _Scatter:
+    """Scatter of the scores of stations over what the likelihood takes it for.
+
+    ``roots`` bring directions with an information of 1 to (a, b): the first changes the median, the second does not.
+    ``stretch``, shape (2,), are factors on deviations along them; ``of_median`` is the standard error of ln θ by stations.
+
+    Along the first, the variance of the scores of k stations is that of their sums, times k/(k − 1). Along the second, the
+    spread, such a variance would say little at few stations; but where m components of a station have the correlation ρ,
+    their squares have ρ², so that the first, 1 + (m − 1)ρ times the information, tells the second, 1 + (m − 1)ρ² times. From
+    level to level, of records that contribute at several, the scatter is that of the records' scores, times k/(k − 2).
+    """
+
+    def __init__(self, likelihood: _Likelihood, best: Values) -> None:
+        capacities = likelihood.capacities
+        a, b = best
+        scores, hessian = likelihood.derivatives(best)
+        whitened = np.linalg.inv(np.linalg.cholesky(-hessian)).T
+        gradient = whitened.T @ np.array([-1.0 / b, a / b**2])
+        error = float(np.linalg.norm(gradient))
+        along = gradient / error
+        self.roots = whitened @ np.array([[along[0], -along[1]], [along[1], along[0]]])
+        self.records, self.stations = capacities.records, capacities.stations
+        k, station = self.stations, capacities.station
+        self.repeated = False
+        first, self.stretch = k / (k - 1), np.ones(2)
+        if station is not None:
+            of_record = capacities.of_record
+            self.repeated = of_record is not None and bool((of_record.sum(axis=1) > 1.5).any())
+            of_records = capacities.by_record(scores) @ self.roots
+            first *= float((sums_by(station, of_records)[:, 0] ** 2).sum())
+            alone = float((of_records[:, 0] ** 2).sum()) if self.repeated else 1.0
+            shared = float((sums_by(station, np.ones((len(station), 1))) ** 2).sum()) / len(station) - 1.0
+            second = 1.0 + (max(first / alone - 1.0, 0.0) ** 2 / shared if shared > 0 else 0.0)
+            if self.repeated:
+                second *= k / (k - 2) * float((of_records[:, 1] ** 2).sum())
+                first, second = (
+                    max(first, 1.0),
+                    max(second, 1.0),
+                )  # records that are the same say no more than fresh ones
+            self.stretch = np.sqrt([first, second])
+        self.of_median = math.sqrt(first) * error * likelihood.width
+
+
+def sums_by(station: Numbers, values: Values) -> Values:
+    """Return the sums of ``values``, shape (m, k), over the records of each station, shape (stations, k)."""
+    _, places = np.unique(station, return_inverse=True)
+    sums = np.zeros((places.max() + 1, values.shape[1]))
+    np.add.at(sums, places, values)
+    return sums
 
 
 def _stretch(scores: Values) -> Values:

@@ -4,8 +4,10 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rockbatch.analyses.fragility.figures import in_brackets
 from rockbatch.reporting.markup import Markup, interval
 from rockbatch.reporting.table import Head
+from rockbatch.results.labels import plain
 
 Curve = Mapping[str, Any]
 """One of ``curves`` of fragility.json."""
@@ -23,14 +25,17 @@ def of_curves(info: Mapping[str, Any]) -> list[Head]:
     """Return the quantities of a fitted curve."""
     level = level_of(info)
     return [
-        Head(f"median [{info['unit']}]", ".3g", f"θ: the {info['measure']} that half of the motions need", value="median"),
-        Head(level, note="profile-likelihood interval of the median", value=_interval("median_interval")),
+        Head(f"median {in_brackets(info['unit'])}".strip(), ".3g",
+             f"θ: the {info['measure']} that half of the motions need; < and > are bounds, where all runs are on one side",
+             value=_median),
+        Head(level, note="interval of the median, by stations", value=_interval("median_interval")),
         Head(
             "undecided", note="the median with all undecided runs beyond the limit, and with all within it",
             value=_interval("median_undecided"),
         ),
-        Head("dispersion", ".2f", "β: standard deviation of the logarithm", value="dispersion"),
-        Head(level, note="profile-likelihood interval of the dispersion", value=_interval("dispersion_interval")),
+        Head("dispersion", ".2f", "β: standard deviation of the logarithm, of the sample: its square is unbiased, as with n − 1",
+             value="dispersion"),
+        Head(level, note="interval of the dispersion, by stations", value=_interval("dispersion_interval")),
         Head("of it drawn", ".2f", "what the drawn inputs contribute to β, as a root of squares",
              value=lambda curve: _drawn(curve).get("dispersion")),
         Head(level, note="interval of what the drawn inputs contribute, by the standard error of its square",
@@ -42,6 +47,32 @@ def of_curves(info: Mapping[str, Any]) -> list[Head]:
     ]  # fmt: skip
 
 
+def bound_in_words(bound: Mapping[str, Any], measure: str, unit: str, every: str = "there") -> str:
+    """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there"; ``every`` is where records count."""
+
+    def intensity(end: str) -> str:
+        return f"{measure} {plain(bound[end], 3)} {unit}".strip()
+
+    if bound["is"] == "between":
+        ends = f"{intensity('above')} and {intensity('below')}"
+        return f"between {ends}: no record exceeds it at the first, every one at the second"
+    exceeded, records = bound["exceeded"], bound["records"]
+    some = f"{exceeded} of {records} records exceed" if exceeded else "no record exceeds"
+    return (
+        f"{bound['is']} {intensity(bound['is'])}: {'every record exceeds' if exceeded == records else some} it {every}"
+    )
+
+
+def _median(curve: Curve) -> object:
+    """Return the median of a curve, or its bound in signs: "< 1.5"; None without either."""
+    bound = curve.get("median_bound")
+    if not bound:
+        return curve["median"]
+    if bound["is"] == "between":
+        return interval(f"{bound['above']:.3g}", f"{bound['below']:.3g}")
+    return f"{'>' if bound['is'] == 'above' else '<'} {bound[bound['is']]:.3g}"
+
+
 def of_rates(info: Mapping[str, Any], written: Callable[[float], str]) -> list[Head]:
     """Return the quantities of the annual rate of a curve, whose ``risk`` has the columns of fragility_risk.csv.
 
@@ -50,13 +81,13 @@ def of_rates(info: Mapping[str, Any], written: Callable[[float], str]) -> list[H
     level = level_of(info)
     return [
         Head("dispersion", ".2f", "β with what the study adds", value=lambda curve: curve["risk"]["dispersion_total"]),
-        Head("rate [1/year]", note="mean annual rate of exceedance", value=lambda curve: written(curve["risk"]["rate_per_year"])),
+        Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written)),
         Head(level, note="what the fit leaves of the rate", value=_rates("rate_low", "rate_high", written)),
         Head("undecided", note="the rate with all undecided runs within the limit, and with all beyond it",
              value=_rates("rate_if_withstood", "rate_if_exceeded", written)),
         *(Head(f"in {years:g} years", note=f"probability of at least one exceedance, and what the fit leaves of it ({level})",
                value=_probability(f"p_in_{years:g}_years")) for years in info["hazard"]["years"]),
-        Head(f"90 % come from [{info['unit']}]", note="intensities that contribute, but for 5 % at either end",
+        Head(f"90 % come from {in_brackets(info['unit'])}".strip(), note="intensities that contribute, but for 5 % at either end",
              value=_contributing),
     ]  # fmt: skip
 
@@ -82,6 +113,21 @@ def _interval(name: str) -> Callable[[Curve], Markup]:
     return written
 
 
+def _rate(written: Callable[[float], str]) -> Callable[[Curve], str]:
+    """Return a function to the rate of a curve in words, or its bound: "at least 2.1e-04"."""
+
+    def rate(curve: Curve) -> str:
+        risk = curve["risk"]
+        if not risk["bound"]:
+            return written(risk["rate_per_year"])
+        ends = {"at least": ("rate_least",), "at most": ("rate_most",), "between": ("rate_least", "rate_most")}[
+            risk["bound"]
+        ]
+        return f"{risk['bound']} {' and '.join(written(risk[end]) for end in ends)}"
+
+    return rate
+
+
 def _rates(low: str, high: str, written: Callable[[float], str]) -> Callable[[Curve], Markup]:
     def bounds(curve: Curve) -> Markup:
         rates = [curve["risk"][name] for name in (low, high)]
@@ -94,8 +140,12 @@ def _rates(low: str, high: str, written: Callable[[float], str]) -> Callable[[Cu
 
 def _probability(name: str) -> Callable[[Curve], Markup]:
     def written(curve: Curve) -> Markup:
-        value, low, high = (percent(curve["risk"][key]) for key in (name, f"{name}_low", f"{name}_high"))
-        return Markup(f"{value}\u00a0% ({interval(low, high)})")
+        value, low, high = (curve["risk"][key] for key in (name, f"{name}_low", f"{name}_high"))
+        if bound := curve["risk"]["bound"]:
+            ends = {"at least": (low,), "at most": (high,), "between": (low, high)}[bound]
+            return Markup(f"{bound} {' and '.join(map(percent, ends))}\u00a0%")
+        between = "" if low is None else f" ({interval(percent(low), percent(high))})"
+        return Markup(f"{percent(value)}\u00a0%{between}")
 
     return written
 
@@ -115,4 +165,6 @@ def percent(p: float) -> str:
 
 
 def _contributing(curve: Curve) -> Markup:
+    if curve["risk"]["bound"]:
+        return Markup("")
     return interval(*(f"{curve['risk'][name]:.2g}" for name in ("contributing_from", "contributing_to")))

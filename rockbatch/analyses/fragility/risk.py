@@ -14,7 +14,8 @@ import numpy as np
 
 from rockbatch.analyses.fragility.curves import Curve, Fitted
 from rockbatch.analyses.fragility.hazard import Hazard
-from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.analyses.fragility.lognormal import Interval, NoCurve, Values
+from rockbatch.analyses.fragility.statistics import rate_bounds
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.common.lazy import pd
 from rockbatch.motions.hazard import MOST_RATE, HazardCurve
@@ -42,8 +43,9 @@ class Risk:
         Its curve with the added dispersion.
     rate : float
         Mean annual rate of exceedance.
-    interval : tuple of two floats
-        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known.
+    interval : tuple of two floats, or None
+        What the fit of the fragility leaves open; the upper bound may be infinite. The hazard is taken as known. None of too few
+        stations.
     undecided : tuple of two floats or None
         The rates with all undecided runs counted as within the limit, and as beyond it; None without any.
     below, above : float
@@ -59,7 +61,7 @@ class Risk:
     curve: Curve
     total: Fitted
     rate: float
-    interval: tuple[float, float]
+    interval: Interval | None
     undecided: tuple[float, float] | None
     below: float
     above: float
@@ -68,13 +70,45 @@ class Risk:
     contributing: tuple[float, float]
 
 
+@dataclass(frozen=True)
+class RiskBound:
+    """Bounds of the rate of a case of which no more than bounds of the median are known.
+
+    ``bounds`` are those of :func:`rate_bounds`, by the shares of the records at the levels; the greater may be infinite.
+    """
+
+    curve: Curve
+    bounds: Interval
+
+    @property
+    def kind(self) -> str:
+        """Return "at least", "at most" or "between", as far as the rate is bounded."""
+        least, most = self.bounds
+        return "at least" if math.isinf(most) else "between" if least > 0 else "at most"
+
+
+def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBound]:
+    """Return bounds of the rate of every curve that has a bound in place of its median; none without a hazard."""
+    if spec.hazard is None:
+        return []
+    hazard = spec.hazard.curve
+    bounds = []
+    for curve in curves:
+        if isinstance(curve.fitted, NoCurve) and curve.fitted.is_bound:
+            levels, least, most = curve.shares
+            bounds.append(RiskBound(curve, rate_bounds(levels, least, most, hazard.rate(levels))))
+    return bounds
+
+
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
     """Return the risk of every curve that has a fit; none without a hazard."""
     hazard = spec.hazard
     if hazard is None:
         return []
     x, rates = hazard.curve.quadrature()
-    return [_risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, str)]
+    return [
+        _risk(curve, curve.fitted, spec, hazard, x, rates) for curve in curves if not isinstance(curve.fitted, NoCurve)
+    ]
 
 
 def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: Values, rates: Values) -> Risk:
@@ -93,7 +127,7 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
         curve,
         total,
         rate,
-        (least, most),
+        None if math.isnan(least) else (least, most),
         _undecided(curve, spec.added, x, rates),
         float(yearly[x < first].sum()),
         above,
@@ -114,7 +148,7 @@ def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[fl
         return None
     bounds = []
     for reading, rate_of_tail in ((curve.readings.withstood, 0.0), (curve.readings.exceeded, math.inf)):
-        bounds.append(rate_of_tail if isinstance(reading, str) else reading.widened(added).rate(x, rates)[0])
+        bounds.append(rate_of_tail if isinstance(reading, NoCurve) else reading.widened(added).rate(x, rates)[0])
     return min(bounds), max(bounds)
 
 
@@ -122,7 +156,7 @@ def note(risk: Risk, spec: FragilitySpec) -> str:
     """Return what the number does not say by itself; empty if there is nothing."""
     assert spec.hazard is not None
     notes, points = [], spec.hazard.curve.levels
-    if math.isinf(risk.interval[1]):
+    if risk.interval is not None and math.isinf(risk.interval[1]):
         notes.append(
             "the records leave the upper bound of the rate open: more often than the weakest motions of the hazard"
         )
@@ -165,34 +199,78 @@ def risk_table(
 ) -> "pd.DataFrame":
     """Return fragility_risk.csv: a row for each curve, with the fields of :class:`Risk`; an open bound is empty.
 
-    Of a curve that could not be fitted there is the reason, as its ``note``.
+    ``bound`` is "at least", "at most" or "between" of a curve of whose median a bound alone is known, and else empty. There
+    ``rate_per_year`` is empty, and ``rate_least`` and ``rate_most`` are the bounds. Without both there is the reason, as
+    its ``note``.
     """
-    finite = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
-    rows = [finite.get(id(curve)) or curve.identity(varied) | {"note": str(curve.fitted)} for curve in curves]
-    return pd.DataFrame(rows, columns=list(next(iter(finite.values()), rows[0] if rows else {})))
+    known = {id(risk.curve): _row(risk, spec, varied) for risk in risks}
+    known |= {id(risk.curve): _row_of_bound(risk, spec, varied) for risk in rate_bounds_of(curves, spec)}
+    rows = [known.get(id(curve)) or curve.identity(varied) | {"note": _reason(curve)} for curve in curves]
+    names = [name for name in _names(spec) if any(name in row for row in rows)]
+    return pd.DataFrame(rows, columns=[*(curves[0].identity(varied) if curves else ()), *names])
+
+
+def _reason(curve: Curve) -> str:
+    assert isinstance(curve.fitted, NoCurve)
+    return curve.fitted.reason
+
+
+def _names(spec: FragilitySpec) -> list[str]:
+    """Return the columns of fragility_risk.csv behind those that name a curve."""
+    assert spec.hazard is not None
+    periods = [f"p_in_{years:g}_years{end}" for years in spec.hazard.years for end in ("", "_low", "_high")]
+    rates = ["rate_per_year", "bound", "rate_low", "rate_high", "rate_if_withstood", "rate_if_exceeded"]
+    parts = [
+        "rate_below_points",
+        "rate_above_points",
+        "rate_least",
+        "rate_most",
+        "rate_below_levels",
+        "rate_above_levels",
+    ]
+    about = ["measure", "unit", "median", "dispersion", "dispersion_added", "dispersion_total"]
+    return [*about, *rates, *parts, "contributing_from", "contributing_to", *periods, "note"]
+
+
+def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
+    assert spec.hazard is not None
+    least, most = risk.bounds
+    row: dict[str, Any] = risk.curve.identity(varied) | {"measure": spec.label, "unit": spec.unit}
+    row |= {"bound": risk.kind, "rate_least": least, "rate_most": finite_or_nan(most)}
+    for years in spec.hazard.years:
+        row |= {
+            f"p_in_{years:g}_years_low": _probability(least, years),
+            f"p_in_{years:g}_years_high": _probability(most, years),
+        }
+    return row | {"note": "a bound by the shares of the records at the levels, without a curve"}
+
+
+def _probability(rate: float, years: float) -> float:
+    return -math.expm1(-rate * years)
 
 
 def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
     curve, hazard = risk.curve, spec.hazard
     assert hazard is not None
-    assert not isinstance(curve.fitted, str)
+    assert not isinstance(curve.fitted, NoCurve)
     row = curve.identity(varied) | {"measure": spec.label, "unit": spec.unit, "median": risk.total.median}
     row |= {
         "dispersion": curve.fitted.dispersion,
         "dispersion_added": spec.added,
         "dispersion_total": risk.total.dispersion,
     }
-    low, high = map(finite_or_nan, risk.interval)
+    ends = risk.interval or (math.nan, math.nan)
+    low, high = map(finite_or_nan, ends)
     within, beyond = map(finite_or_nan, risk.undecided or (math.nan, math.nan))
-    row |= {"rate_per_year": risk.rate, "rate_low": low, "rate_high": high}
+    row |= {"rate_per_year": risk.rate, "bound": math.nan, "rate_low": low, "rate_high": high}
     row |= {"rate_if_withstood": within, "rate_if_exceeded": beyond}
     row |= {"rate_below_points": risk.below, "rate_above_points": risk.above}
     row |= {"rate_least": risk.bounds[0], "rate_most": risk.bounds[1]}
     row |= {"rate_below_levels": risk.beyond_levels[0], "rate_above_levels": risk.beyond_levels[1]}
     row |= {"contributing_from": risk.contributing[0], "contributing_to": risk.contributing[1]}
     for years in hazard.years:
-        for end, rate in zip(("", "_low", "_high"), (risk.rate, *risk.interval), strict=True):
-            row[f"p_in_{years:g}_years{end}"] = -math.expm1(-rate * years)
+        for end, rate in zip(("", "_low", "_high"), (risk.rate, *ends), strict=True):
+            row[f"p_in_{years:g}_years{end}"] = _probability(rate, years)
     return row | {"note": note(risk, spec)}
 
 
@@ -261,10 +339,19 @@ def described_hazard(spec: FragilitySpec) -> dict[str, Any] | None:
     }
 
 
+def described_bound(risk: RiskBound, spec: FragilitySpec) -> dict[str, Any]:
+    """Return the bounds of a rate for fragility.json, under the names of a rate, None for what is not known."""
+    return dict.fromkeys(_names(spec)) | _without_nan(_row_of_bound(risk, spec, ()))
+
+
+def _without_nan(row: dict[str, Any]) -> dict[str, Any]:
+    named = {name: value for name, value in row.items() if name not in ("case", "limit_state")}
+    return {name: value if isinstance(value, str) or math.isfinite(value) else None for name, value in named.items()}
+
+
 def described(risk: Risk, spec: FragilitySpec) -> dict[str, Any]:
     """Return the risk of a curve for fragility.json, with the share of the rate per unit of ln x as it is drawn."""
-    row = {name: value for name, value in _row(risk, spec, ()).items() if name not in ("case", "limit_state")}
-    content = {name: value if isinstance(value, str) or math.isfinite(value) else None for name, value in row.items()}
+    content = _without_nan(_row(risk, spec, ()))
     if spec.hazard is not None and risk.rate > 0:
         curve, (low, high) = spec.hazard.curve, risk.contributing
         x = np.geomspace(low / 2.0, high * 2.0, 80)

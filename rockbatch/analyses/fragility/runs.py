@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.analyses.fragility.clusters import clusters
 from rockbatch.analyses.fragility.limit_states import LEFT_OUT, demands, states
+from rockbatch.analyses.fragility.measures import as_they_come, over_uplift
 from rockbatch.analyses.fragility.stripes import members
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.uncertain import Drawn, Draws
@@ -16,8 +18,6 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
-from rockbatch.motions.measures import pgv
-from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.columns import StudyRun
@@ -34,13 +34,13 @@ class Point(NamedTuple):
 
 
 class ScaledRuns(Made):
-    """The runs of some points in one polarity; ``unscaled`` are the intensities of the motions."""
+    """The runs of some points in one polarity, scaled by the plan of the case of each."""
 
     def __init__(
         self,
         points: Sequence[Point],
         motions: Sequence[Motion],
-        unscaled: Sequence[float],
+        plans: "Sequence[LevelPlan]",
         case_at: Callable[[Point], Case],
         polarity: str,
     ) -> None:
@@ -48,8 +48,10 @@ class ScaledRuns(Made):
 
         def make(number: int) -> StudyRun:
             point = points[number]
-            motion, intensity, _ = point
-            return StudyRun(motions[motion], polarity, intensity / unscaled[motion], case_at(point))
+            motion, intensity, case = point
+            drawn = case_at(point)
+            on_axis = motions[motion].exchanged if drawn.across_of else motions[motion]
+            return StudyRun(on_axis, polarity, plans[case].scale(motion, intensity), drawn)
 
         super().__init__(len(points), make)
 
@@ -57,20 +59,30 @@ class ScaledRuns(Made):
 class LevelPlan(NamedTuple):
     """Levels at which each motion is run.
 
-    ``unscaled`` are the intensities of the motions as they come, and ``earlier`` the factors by which the study has scaled them
-    to its target before. ``used`` has the intensity at each level at which a motion is run, by the level: the level itself, or
-    what a given factor comes to; ``not_used`` those at which its factor is beyond the limits of the study.
+    ``unscaled`` are the intensities of the motions as they come, which grow with the scale to ``power``, and ``earlier``
+    the factors by which the study has scaled them to its target before. ``used`` has the intensity at each level at which a
+    motion is run, by the level: the level itself, or what a given factor comes to; ``not_used`` those at which its factor is
+    beyond the limits of the study.
     """
 
     unscaled: list[float]
     earlier: list[float]
     used: list[dict[float, float]]
     not_used: list[dict[float, float]]
+    power: float = 1.0
+
+    def scale(self, motion: int, intensity: float) -> float:
+        """Return the factor that brings a motion, as it comes, to an intensity."""
+        return float((intensity / self.unscaled[motion]) ** (1.0 / self.power))
+
+    def reached(self, motion: int, scale: float) -> float:
+        """Return the intensity of a motion, as it comes, times a factor."""
+        return float(self.unscaled[motion] * scale**self.power)
 
     def factor(self, motion: int, level: float) -> float:
         """Return the factor at a level on a motion as it was recorded."""
         intensity = (self.used[motion] | self.not_used[motion])[level]
-        return self.earlier[motion] * intensity / self.unscaled[motion]
+        return self.earlier[motion] * self.scale(motion, intensity)
 
     def number(self, motion: int, intensity: float) -> int:
         """Return the number of the level, among all of a motion, at which it is run with an intensity."""
@@ -78,20 +90,43 @@ class LevelPlan(NamedTuple):
         return next(n for n, level in enumerate(levels) if self.used[motion].get(level) == intensity)
 
 
-def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> LevelPlan:
-    """Return the levels of every motion; raises ``InputError`` if there is no run at all, or a stripe names no record."""
-    unscaled = intensities(motions, spec, study.cases[0].pier.gravity)
-    plan = LevelPlan(unscaled, [motion.factor for motion in motions], [{} for _ in motions], [{} for _ in motions])
-    if spec.method == "cloud":
-        for used, x in zip(plan.used, unscaled, strict=True):
-            used.update({x * scale: x * scale for scale in study.motions.scale})
-        return plan
+def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> list[LevelPlan]:
+    """Return the levels of every motion for each case: the same ones, unless intensities are relative to its pier.
+
+    Raises ``InputError`` if there is no run at all, or a stripe names no record.
+    """
+    gravity = study.cases[0].pier.gravity
+    unscaled = intensities(motions, spec, gravity)
     scales_by_level = members(study.file(), spec.stripes, [motion.name for motion in motions])
+    if not spec.of_pier:
+        return [_level_plan(study, spec, motions, unscaled, scales_by_level)] * len(study.cases)
+    crosswise = any(case.across_of for case in study.cases)
+    across = intensities([motion.exchanged for motion in motions], spec, gravity) if crosswise else []
+    relative = (
+        [x * over_uplift(spec.measure, case.pier) for x in (across if case.across_of else unscaled)]
+        for case in study.cases
+    )
+    return [_level_plan(study, spec, motions, of_case, scales_by_level) for of_case in relative]
+
+
+def _level_plan(
+    study: Study,
+    spec: FragilitySpec,
+    motions: Sequence[Motion],
+    unscaled: list[float],
+    scales_by_level: Sequence[dict[int, float | None]],
+) -> LevelPlan:
+    earlier = [motion.factor for motion in motions]
+    plan = LevelPlan(unscaled, earlier, [{} for _ in motions], [{} for _ in motions], spec.power)
+    if spec.method == "cloud":
+        for m, used in enumerate(plan.used):
+            used.update({x: x for x in (plan.reached(m, scale) for scale in study.motions.scale)})
+        return plan
     for i, level in enumerate(spec.levels):
         scales = scales_by_level[i] if scales_by_level else dict.fromkeys(range(len(motions)))
         for m, scale in scales.items():
-            intensity = level if scale is None else scale * unscaled[m] / motions[m].factor
-            factor = motions[m].factor * intensity / unscaled[m]
+            intensity = level if scale is None else plan.reached(m, scale / earlier[m])
+            factor = earlier[m] * plan.scale(m, intensity)
             (plan.used if spec.allows(factor) else plan.not_used)[m][level] = intensity
     if not any(plan.used):
         limits = f"least_scale = {spec.least_scale:g} and most_scale = {spec.most_scale:g}"
@@ -103,9 +138,9 @@ def level_plan(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) -> 
 
 def first_intensities(spec: FragilitySpec, plan: LevelPlan, motion: int, case: Case) -> dict[float, float]:
     """Return the intensities of a motion's runs that depend on no others, by level; those in the windows by themselves."""
-    used, factor = plan.used[motion], plan.earlier[motion] / plan.unscaled[motion]
+    used, earlier = plan.used[motion], plan.earlier[motion]
     around = (x for level in used for x in samples(level, spec.window_on(case.base)))
-    return used | {x: x for x in around if spec.allows(factor * x)}
+    return used | {x: x for x in around if spec.allows(earlier * plan.scale(motion, x))}
 
 
 Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
@@ -126,22 +161,15 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
     )
 
 
-def intensities(motions: Iterable[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
+def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
     """Return the intensity measure of every motion as it is, in the unit of the levels; raises ``InputError`` if one has none."""
-    measures, wrong = [], []
-    for motion in motions:
-        if spec.measure == "PGA":
-            value = motion.pga / gravity
-        elif spec.measure == "PGV":
-            value = pgv(motion.horizontal, motion.dt, motion.initial)
-        else:
-            value = spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0] / gravity
-        if not value > 0:
-            wrong.append(
-                f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
-                "take it out of [motions]"
-            )
-        measures.append(float(value))
+    measures = as_they_come([*motions], spec, gravity)
+    wrong = [
+        f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
+        "take it out of [motions]"
+        for motion, value in zip(motions, measures, strict=True)
+        if not value > 0
+    ]
     if wrong:
         raise InputError(*wrong)
     return measures
@@ -151,9 +179,15 @@ class RecordRuns:
     """All runs of an analysis, each once, with their rows."""
 
     def __init__(
-        self, study: Study, spec: FragilitySpec, motions: Sequence[Motion], plan: LevelPlan, simulate: Simulate
+        self,
+        study: Study,
+        spec: FragilitySpec,
+        motions: Sequence[Motion],
+        plans: Sequence[LevelPlan],
+        simulate: Simulate,
     ) -> None:
-        self.study, self.motions, self.plan, self.simulate = study, motions, plan, simulate
+        self.study, self.motions, self.plans, self.simulate = study, motions, plans, simulate
+        self.clusters = clusters(motions)
         self.draws = Draws(spec.uncertain, study.cases, len(motions))
         self.draws_by_level = bool(spec.uncertain.inputs) and spec.method != "ida"
         self.status: dict[Point, str] = {}
@@ -163,19 +197,19 @@ class RecordRuns:
         """Carry out one wave of runs."""
         points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
-        runs = ScaledRuns(points, self.motions, self.plan.unscaled, lambda point: self.drawn(point).case, polarity)
+        runs = ScaledRuns(points, self.motions, self.plans, lambda point: self.drawn(point).case, polarity)
         table = self.simulate(runs)
         self.status |= dict(zip(points, table["status"], strict=True))
         self._last = {point: i for i, point in enumerate(points)}, Rows(table)
 
     def drawn(self, point: Point) -> Drawn:
         """Return the case of a run, as it is drawn once for its motion, or for its motion and level."""
-        level = self.plan.number(point.motion, point.intensity) if self.draws_by_level else 0
+        level = self.plans[point.case].number(point.motion, point.intensity) if self.draws_by_level else 0
         return self.draws.at(point.case, point.motion, level)
 
     def status_at(self, motion: int, level: float, case: int) -> str:
         """Return the status of the run of a motion at a level, or at an intensity between the levels."""
-        return self.status[Point(motion, self.plan.used[motion].get(level, level), case)]
+        return self.status[Point(motion, self.plans[case].used[motion].get(level, level), case)]
 
     def demands(self, rule: Rule, points: Sequence[Point]) -> npt.NDArray[np.float64]:
         """Return the demands of runs of the last wave of one case, shape (n,)."""

@@ -9,6 +9,7 @@ from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
+from rockbatch.study import Case
 
 SCALES = "fragility_scales.csv"
 
@@ -16,42 +17,54 @@ FAR = 0.1
 """Relative distance of an intensity from its level from which a remark says so."""
 
 
-def scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> "pd.DataFrame":
-    """Return fragility_scales.csv: a row for each record and level that it is meant for.
+def scales(
+    plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str], cases: Sequence[Case], varied: Sequence[str]
+) -> "pd.DataFrame":
+    """Return fragility_scales.csv: a row for each record and level that it is meant for, and each case where piers differ.
 
     ``scale`` is the factor on the record as it was recorded, also what the study's target has done, ``unscaled`` its intensity
     then, and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
     """
+    of_cases: list[tuple[dict[str, Any], LevelPlan]] = [({}, plans[0])]
+    if spec.of_pier:
+        names_of: list[dict[str, Any]] = [
+            {"case": case.name, **{name: case.columns.get(name) for name in varied}} for case in cases
+        ]
+        of_cases = [*zip(names_of, plans, strict=True)]
+    unit = {"measure": spec.label, "unit": spec.unit}
     rows = [
-        {"record": name, "measure": spec.label, "unit": spec.unit, "unscaled": plan.unscaled[m] / plan.earlier[m]}
+        {"record": name, **identity, **unit, "unscaled": plan.reached(m, 1.0 / plan.earlier[m])}
         | {"level": level, "intensity": intensity, "scale": plan.factor(m, level), "used": level in plan.used[m]}
+        for identity, plan in of_cases
         for m, name in enumerate(names)
         for level, intensity in sorted((plan.used[m] | plan.not_used[m]).items())
     ]
     return pd.DataFrame(rows)
 
 
-def described_scales(plan: LevelPlan, spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
+def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
-    if spec.method == "cloud":
-        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plan, spec)}
+    if spec.method == "cloud" or spec.of_pier:
+        return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}
+    plan = plans[0]
     factors, used = [], []
     for m in range(len(names)):
         intensities = plan.used[m] | plan.not_used[m]
         factors.append([plan.factor(m, x) if x in intensities else None for x in spec.levels])
         used.append([x in plan.used[m] for x in spec.levels])
     limits = [spec.least_scale or None, spec.most_scale if np.isfinite(spec.most_scale) else None]
-    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": in_words(plan, spec)}
+    return {"records": list(names), "factors": factors, "used": used, "limits": limits, "said": in_words(plans, spec)}
 
 
-def in_words(plan: LevelPlan, spec: FragilitySpec) -> str:
+def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
     """Return in words how far records are scaled, and how many are left at each level."""
-    factors = [plan.factor(m, x) for m, used in enumerate(plan.used) for x in used]
+    plan = plans[0]
+    factors = [each.factor(m, x) for each in plans for m, used in enumerate(each.used) for x in used]
     if min(factors) == max(factors) == 1.0:
         return "records are taken as they were recorded"
     parts = [f"records are scaled by {min(factors):.2g} to {max(factors):.2g} (median {np.median(factors):.2g})"]
     if spec.method == "cloud" and max(map(len, plan.used)) > 1:
-        parts.append("each counts once at every scale, as if these were records of their own: intervals are too narrow")
+        parts.append("each counts once at every scale")
     beyond = {x: sum(x in used for used in plan.not_used) for x in spec.levels}
     if any(beyond.values()):
         limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"

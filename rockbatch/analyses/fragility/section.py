@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rockbatch.analyses.fragility import answer
-from rockbatch.analyses.fragility.figures import clouds, curves, label, risk
+from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, label, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves, of_rates, power
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.markup import Markup, tag
@@ -59,7 +59,10 @@ def _factors(info: Mapping[str, Any]) -> Markup:
         return Markup("")
     heads = [
         Head("record"),
-        *(Head(f"{level:g}", group=f"{info['measure']} [{info['unit']}]") for level in info["levels"]),
+        *(
+            Head(f"{level:g}", group=f"{info['measure']} {in_brackets(info['unit'])}".strip())
+            for level in info["levels"]
+        ),
     ]
     rows = [
         [name, *(_factor(factor, use) for factor, use in zip(factors, used, strict=True))]
@@ -85,7 +88,8 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("record", value="record"),
         Head("limit", value="limit_state"),
         Head("case", value=case),
-        Head(f"exceeded from [{analysis.info['unit']}]", ".4g", "empty: not up to the highest level", value="at_most"),
+        Head(f"exceeded from {in_brackets(analysis.info['unit'])}".strip(), ".4g",
+             "empty: not up to the highest level", value="at_most"),
         Head("as scale", ".4g", value="scale_at_most"),
         Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below",
              value=lambda row: 100.0 * float(row["widest_step"])),

@@ -1,7 +1,8 @@
-"""Fragility curves of arrays, without a study: counts at levels, and clouds of demands."""
+"""Fragility curves of arrays, without a study: counts and records at levels, capacities, clouds of demands; bounds of rates."""
 
-from collections.abc import Sequence
-from typing import TypeVar
+import math
+from collections.abc import Hashable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -9,10 +10,11 @@ import numpy.typing as npt
 from rockbatch.analyses.fragility import cloud as clouds
 from rockbatch.analyses.fragility import lognormal
 from rockbatch.analyses.fragility.cloud import Cloud
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal
+from rockbatch.analyses.fragility.lognormal import Capacities, Interval, Lognormal, NoCurve, Numbers
 from rockbatch.common.errors import InputError
 
 Curve = TypeVar("Curve", Lognormal, Cloud)
+Stations = Sequence[Hashable] | npt.NDArray[Any]
 
 CENSORED_BELOW = 0.01
 """Demands below this share of the limit are known only to be below it: a pier that hardly lifts off has none."""
@@ -35,7 +37,8 @@ def fragility(
     Returns
     -------
     Lognormal
-        Median, dispersion, their intervals, ``probability(x)`` and ``band(x)``.
+        Median, dispersion, their intervals, ``probability(x)`` and ``band(x)``; β² is that of the
+        maximum likelihood plus the variance of ln θ, as of a sample.
 
     Raises
     ------
@@ -62,12 +65,116 @@ def fragility(
     return _curve(lognormal.fit(Capacities(low[used], high[used], count[used]), confidence))
 
 
+def stripes(
+    levels: npt.ArrayLike, exceeded: npt.ArrayLike, *, stations: Stations | None = None, confidence: float = 0.95
+) -> Lognormal:
+    """Fit a lognormal fragility curve to the same records at all levels.
+
+    Parameters
+    ----------
+    levels : array_like, shape (k,)
+        Intensities of the stripes, above 0, in any unit.
+    exceeded : array_like of bool, shape (n, k)
+        Which of n records exceeded the limit at each level.
+    stations : sequence, shape (n,), optional
+        Station of each record, by name or number; of a station by itself if it is not given. Intervals are by stations.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    Lognormal
+        As of :func:`fragility`; its intervals are None of fewer than five stations.
+
+    Raises
+    ------
+    InputError
+        If the arrays are impossible, or if they determine no curve, with the reason.
+    """
+    x, beyond = np.asarray(levels, dtype=np.float64), np.asarray(exceeded, dtype=np.bool_).astype(np.float64)
+    if x.ndim != 1 or beyond.ndim != 2 or beyond.shape[1] != len(x):
+        raise InputError("exceeded: must have a row for each record, with a value for each of the levels")
+    _refuse(x > 0, "levels", "above 0")
+    station = _numbers(stations, len(beyond))
+    return _curve(lognormal.fit(Capacities.of_same_records(x, 1.0 - beyond, beyond, station), confidence))
+
+
+def capacities(
+    low: npt.ArrayLike, high: npt.ArrayLike, *, stations: Stations | None = None, confidence: float = 0.95
+) -> Lognormal:
+    """Fit a lognormal fragility curve to the brackets of capacities, as of an incremental dynamic analysis.
+
+    Parameters
+    ----------
+    low, high : array_like, shape (n,)
+        Each record withstands ``low``, 0 if no lower intensity is known, and exceeds the limit at ``high``, infinite if it
+        never does.
+    stations : sequence, shape (n,), optional
+        Station of each record, by name or number; of a station by itself if it is not given. Intervals are by stations.
+    confidence : float
+        Of the intervals.
+
+    Returns
+    -------
+    Lognormal
+        As of :func:`stripes`.
+
+    Raises
+    ------
+    InputError
+        If the arrays are impossible, or if they determine no curve, with the reason.
+
+    Examples
+    --------
+    >>> from rockbatch.analyses.fragility.statistics import capacities
+    >>> x = np.array([0.41, 0.52, 0.55, 0.63, 0.78, 0.94])
+    >>> curve = capacities(0.999 * x, 1.001 * x)
+    >>> round(curve.median, 3), round(curve.dispersion, 3), round(float(np.log(x).std(ddof=1)), 3)
+    (0.616, 0.3, 0.3)
+    """
+    below, above = np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64)
+    if below.ndim != 1 or below.shape != above.shape:
+        raise InputError("low and high: must be as long as each other")
+    _refuse(below >= 0, "low", "0 or above")
+    _refuse(above > below, "high", "above low")
+    return _curve(lognormal.fit(Capacities.of_brackets(below, above, _numbers(stations, len(below))), confidence))
+
+
+def rate_bounds(levels: npt.ArrayLike, least: npt.ArrayLike, most: npt.ArrayLike, rates: npt.ArrayLike) -> Interval:
+    """Return the least and the greatest annual rate of exceedance that shares at levels allow, whatever the curve between them.
+
+    Parameters
+    ----------
+    levels : array_like, shape (k,)
+        Intensities, rising.
+    least, most : array_like, shape (k,)
+        Share of the records that exceed the limit there, with undecided ones within it, and beyond it. It does not fall with the
+        intensity.
+    rates : array_like, shape (k,)
+        Annual rates at which the levels are exceeded.
+
+    The greatest is infinite if some record exceeds the limit at the lowest level: weaker motions are not bounded.
+
+    Examples
+    --------
+    >>> from rockbatch.analyses.fragility.statistics import rate_bounds
+    >>> rate_bounds([0.5, 1.0], [0.0, 0.0], [0.0, 0.0], [1e-2, 1e-3])
+    (0.0, 0.001)
+    """
+    passed = -np.diff(np.append(np.asarray(rates, dtype=np.float64), 0.0))  # motions from each level up to the next
+    low, high = (np.maximum.accumulate(np.asarray(shares, dtype=np.float64)) for shares in (least, most))
+    assert len(low) == len(high) == len(passed) == len(np.asarray(levels))
+    greatest = math.inf if high[0] > 0 else float(np.append(high[1:], 1.0) @ passed)
+    return float(low @ passed), greatest
+
+
 def cloud(
     im: npt.ArrayLike,
     demand: npt.ArrayLike,
     limit: float,
     *,
     overturned: Sequence[bool] | npt.NDArray[np.bool_] | None = None,
+    stations: Stations | None = None,
     censored_below: float = CENSORED_BELOW,
     confidence: float = 0.95,
 ) -> Cloud:
@@ -82,6 +189,8 @@ def cloud(
         Above 0.
     overturned : array_like of bool, shape (n,), optional
         Which runs overturned, and so exceed any limit.
+    stations : sequence, shape (n,), optional
+        Station of each record, by name or number; of a station by itself if it is not given. Intervals are by stations.
     censored_below : float
         Share of the limit below which a demand is known only to be below it.
     confidence : float
@@ -113,7 +222,9 @@ def cloud(
     _refuse(fell | (d >= 0), "demand", "0 or above")
     if not limit > 0:
         raise InputError(f"limit = {limit:g}: must be above 0")
-    runs = clouds.Demands(x, np.where(fell, 0.0, d), fell, np.zeros(x.shape, dtype=np.bool_))
+    runs = clouds.Demands(
+        x, np.where(fell, 0.0, d), fell, np.zeros(x.shape, dtype=np.bool_), _numbers(stations, len(x))
+    )
     return _curve(clouds.fit(runs, limit, censored_below * limit, confidence))
 
 
@@ -123,7 +234,18 @@ def _refuse(right: npt.NDArray[np.bool_], name: str, bounds: str) -> None:
         raise InputError(f"{name}[{int(np.argmin(right))}]: must be {bounds}")
 
 
-def _curve(fitted: Curve | str) -> Curve:
-    if isinstance(fitted, str):
-        raise InputError(f"no curve: {fitted}")
+def _numbers(stations: Stations | None, records: int) -> Numbers:
+    """Return the number of the station of each record."""
+    if stations is None:
+        return np.arange(records)
+    names = [*stations]
+    if len(names) != records:
+        raise InputError(f"stations: {len(names)}, and there are {records} records")
+    first = {name: n for n, name in reversed([*enumerate(names)])}
+    return np.array([first[name] for name in names], dtype=np.int64)
+
+
+def _curve(fitted: Curve | NoCurve) -> Curve:
+    if isinstance(fitted, NoCurve):
+        raise InputError(f"no curve: {fitted.reason}")
     return fitted

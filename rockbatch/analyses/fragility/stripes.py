@@ -33,6 +33,7 @@ STRIPE = Section(("fragility", "stripe"), (
 ), {
     "level_g": Key(positive, "0.4", "Level of PGA or Sa.", usual=IN_G),
     "level_m_s": Key(positive, "0.5", "Level of PGV.", usual=IN_M_S),
+    "level": Key(positive, "1.5", "Level of another measure, in its unit."),
     "records": Key(text, '["RSN821*", "RSN1063_RRS228"]',
         "Names of the records as results have them, or patterns of names with * and ?.", many=True),
     "scales": Key(positive, "[1.7, 0.9]",
@@ -56,7 +57,7 @@ def read_stripes(file: TomlFile, levels: str) -> tuple[StripeRecords, ...]:
     for table in file.tables("fragility", "stripe", title=key):
         problems_before = len(file.problems)
         read = table.read(STRIPE)
-        for wrong_key in {"level_g", "level_m_s"} - {key} & table.data.keys():
+        for wrong_key in {"level_g", "level_m_s", "level"} - {key} & table.data.keys():
             table.complain(f"{wrong_key}: the measure of [fragility] has {key}; write that", wrong_key)
         if key not in table.data:
             table.complain(f"{key} is missing; write for example {key} = {STRIPE[key].example}")

@@ -18,6 +18,7 @@ from rockbatch.analyses.fragility.hazard import (
     read_hazard,
     root_of_squares,
 )
+from rockbatch.analyses.fragility.measures import LEVELS, MEASURES, OwnMeasure, given_measure, measure_of_file
 from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
 from rockbatch.analyses.fragility.uncertain import SECTIONS as OF_UNCERTAIN
 from rockbatch.analyses.fragility.uncertain import Uncertain, read_uncertain
@@ -31,9 +32,8 @@ from rockbatch.study.target import PERIOD
 from rockbatch.toml.kinds import Number, choice, positive, share, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table
-from rockbatch.toml.section import CONFIRM, Key, Section
+from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-MEASURES = ("PGA", "PGV", "Sa")
 OVERTURNING = Rule("overturning", "overturned", at_most=0, reason="collapse of a rocking pier")
 """The limit state that every study has."""
 
@@ -45,16 +45,14 @@ WINDOW = 0.02
 """Relative half-width of the windows about the levels on rigid ground, unless the study gives another."""
 
 
-LEVELS = {"PGA": "levels_g", "Sa": "levels_g", "PGV": "levels_m_s"}
-
-
 @dataclass(frozen=True)
 class FragilitySpec:
     """[fragility]: how intensity is measured, where fragility is sampled, and the limits.
 
     :data:`FRAGILITY` says what each key means. ``levels`` rise, in :attr:`unit`; ``limits`` are overturning, then the checks,
     each held against every record by itself, with runs that flew or failed undecided unless the check leaves them out.
-    ``stripes`` are those with records of their own, one for each level.
+    ``stripes`` are those with records of their own, one for each level. ``own`` is the engineer's own measure in place of
+    ``measure``, which is then empty.
     """
 
     method: str
@@ -74,6 +72,7 @@ class FragilitySpec:
     censored_below: float = 0.01
     stripes: tuple[StripeRecords, ...] = ()
     uncertain: Uncertain = field(default_factory=Uncertain)
+    own: OwnMeasure | None = None
 
     @property
     def of_runs(self) -> "FragilitySpec":
@@ -101,13 +100,27 @@ class FragilitySpec:
 
     @property
     def unit(self) -> str:
-        """Return the unit of the levels."""
-        return "m/s" if self.measure == "PGV" else "g"
+        """Return the unit of the levels; empty without one."""
+        return self.own.unit if self.own else MEASURES[self.measure].unit
 
     @property
     def label(self) -> str:
         """Return the measure in words: "Sa(1 s, 5 %)"."""
-        return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)" if self.measure == "Sa" else self.measure
+        if self.own:
+            return self.own.name
+        if self.measure == "Sa":
+            return f"Sa({self.period_s:g} s, {100 * self.damping:g} %)"
+        return self.measure.replace("alpha", "α")
+
+    @property
+    def of_pier(self) -> bool:
+        """Return whether intensities are relative to a pier, so that piers share a curve."""
+        return self.own is None and MEASURES[self.measure].of_pier
+
+    @property
+    def power(self) -> float:
+        """Return the power by which the measure grows with the scale of a motion."""
+        return self.own.power if self.own else 1.0
 
 
 _BELOW_ONE = Number("a number, 0 or above and below 1", low=0.0, high=1.0, below=True)
@@ -120,7 +133,15 @@ FRAGILITY = Section(("fragility",), (
         '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit; '
         '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
         default="stripes"),
-    "measure": Key(choice(*MEASURES), '"PGV"', "Intensity measure of the horizontal component.", required=True),
+    "measure": Key(choice(*MEASURES), '"PGV"',
+        "Intensity measure of the horizontal component. Of the two over g tan alpha, which are relative to a pier, all piers of "
+        "a case share one curve, and both axes of a pier."),
+    "measure_file": Key(text, '"avgsa.csv"',
+        "A CSV file with an intensity measure of your own in place of measure, relative to the study: a column record, and one "
+        "of values of the records as they were recorded, with the unit in its heading, such as AvgSa [g]."),
+    "measure_power": Key(positive, "2.0",
+        "Power by which the measure of measure_file grows with the scale of a motion: 2 for an Arias intensity, 1 for a spectral "
+        "acceleration.", default=1.0),
     "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA, usual=PERIOD),
     "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
     "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
@@ -129,6 +150,8 @@ FRAGILITY = Section(("fragility",), (
     "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
         "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED,
         usual=IN_M_S),
+    "levels": Key(positive, "[0.5, 1.0, 1.5, 2.0]",
+        "Levels of a measure over g tan alpha, or of measure_file in its unit.", many=True, only=_SCALED),
     "least_scale": Key(positive, "0.25",
         "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
         only=_SCALED),
@@ -151,8 +174,11 @@ FRAGILITY = Section(("fragility",), (
         "given.", many=True),
     "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
     **CONFIRM,
-}, homes=(FragilitySpec,), also=names({
-    "measure": "im intensity intensitymeasure", ("levels_g", "levels_m_s"): "levels", "checks": "limits limitstates",
+}, homes=(FragilitySpec,), clashes=(
+    Clash(("measure", "measure_file"), "measure and measure_file are given; keep one"),
+    Clash(("measure_power",), "measure_power is of measure_file; write that, or leave it out", lacking=("measure_file",)),
+), also=names({
+    "measure": "im intensity intensitymeasure", "checks": "limits limitstates",
     "method": "type analysis",
 }))  # fmt: skip
 
@@ -160,8 +186,8 @@ SECTIONS = (FRAGILITY, HAZARD, DISPERSION, STRIPE, *OF_UNCERTAIN)
 """Its tables in a study file."""
 
 
-def read_fragility(study: Study) -> FragilitySpec:
-    """Return the settings of the table [fragility] of a loaded study.
+def read_fragility(study: Study, im: Any = None) -> FragilitySpec:
+    """Return the settings of the table [fragility] of a loaded study; ``im``, if given, is a measure in place of its own.
 
     Raises ``InputError`` with every mistake in it, with its line.
     """
@@ -169,9 +195,10 @@ def read_fragility(study: Study) -> FragilitySpec:
     table = file.table("fragility", required='[fragility] with measure = "PGV" and levels_m_s = [0.25, 0.5, 1.0, 1.5]')
     read = table.read(FRAGILITY, other=("hazard", "dispersion", "stripe", "uncertain")) if table else {}
     limits = _limits(table, study.checks, read.pop("checks", None)) if table else ()
-    stripes = read_stripes(file, LEVELS[read["measure"]]) if "measure" in read else ()
-    levels = _levels(table, read, stripes) if table else ()
-    hazard = read_hazard(file, LEVELS[read["measure"]]) if "measure" in read else None
+    key = _measure(table, read, im) if table else None
+    stripes = read_stripes(file, key) if key else ()
+    levels = _levels(table, read, stripes, key) if table else ()
+    hazard = read_hazard(file, key) if key else None
     uncertain = read_uncertain(file, study)
     dispersions = read_dispersions(file, uncertain.names)
     file.finish()
@@ -179,16 +206,35 @@ def read_fragility(study: Study) -> FragilitySpec:
     return FragilitySpec(levels=levels, limits=(OVERTURNING, *limits), uncertain=uncertain, **settings)
 
 
-def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords]) -> tuple[float, ...]:
+def _measure(table: Table, read: dict[str, Any], im: Any) -> str | None:
+    """Put the engineer's own measure into ``read``, and return the key of the levels; None without a measure, which is noted."""
+    power, name = read.pop("measure_power", 1.0), read.pop("measure_file", None)
+    if im is not None or name is not None:
+        with table.noting("measure_file"):
+            own = given_measure(im, power) if im is not None else measure_of_file(table.file.path.parent / name, power)
+            read["own"], read["measure"] = own, ""
+            by_unit = {"g": "levels_g", "m/s": "levels_m_s"}.get(own.unit, "levels")
+            return by_unit if table.has(by_unit) else next(filter(table.has, LEVELS), "levels")
+        return None
+    if "measure" in read:
+        return MEASURES[read["measure"]].levels
+    if not table.has("measure"):
+        table.complain('measure is missing; write for example measure = "PGV", or measure_file = "avgsa.csv"')
+    return None
+
+
+def _levels(table: Table, read: dict[str, Any], stripes: Sequence[StripeRecords], key: str | None) -> tuple[float, ...]:
     """Return the levels in the unit of the measure, those of ``stripes`` if there are any; mistakes are noted."""
-    written = {name: read.pop(name, ()) for name in ("levels_g", "levels_m_s")}
+    written = {name: read.pop(name, ()) for name in LEVELS}
     if read.get("least_scale", 0.0) > read.get("most_scale", math.inf):
         table.complain(
             f"least_scale = {read['least_scale']:g}: more than most_scale; no factor lies between", "least_scale"
         )
-    if "measure" not in read:
+    if key is None:
         return ()
-    key = LEVELS[read["measure"]]
+    for other in LEVELS:
+        if other != key and written[other]:
+            table.complain(f"{other}: the measure has {key}; write that", other)
     if table.file.has((*table.key_path, "stripe")):
         if written[key]:
             table.complain(f"{key}: each [[fragility.stripe]] has its level; leave {key} out", key)

@@ -13,13 +13,22 @@ from rockbatch.analyses.fragility.cloud_tables import described_cloud, note_on_c
 from rockbatch.analyses.fragility.curves import Curve
 from rockbatch.analyses.fragility.ida import Capacity
 from rockbatch.analyses.fragility.limit_states import words
-from rockbatch.analyses.fragility.lognormal import Contribution, Values
-from rockbatch.analyses.fragility.risk import Risk, described_hazard, finite_or_nan
+from rockbatch.analyses.fragility.lognormal import STATIONS_OF_INTERVAL, Contribution, Lognormal, NoCurve, Values
+from rockbatch.analyses.fragility.quantities import bound_in_words
+from rockbatch.analyses.fragility.risk import (
+    Risk,
+    described_bound,
+    described_hazard,
+    finite_or_nan,
+    rate_bounds_of,
+)
 from rockbatch.analyses.fragility.risk import described as described_risk
+from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows
+from rockbatch.batch.listening import count
 from rockbatch.common.lazy import pd
-from rockbatch.study import Study
+from rockbatch.study import Case, Study
 
 POINTS, CAPACITIES, RUNS = "fragility.csv", "fragility_capacities.csv", "fragility_runs.csv"
 SAMPLES = 80
@@ -40,7 +49,9 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
         x = np.array([stripe.level for stripe in curve.stripes])  # of a cloud, several runs may have the same
         p = _probabilities(curve, x)
         if spec.added:
-            p["p_total"] = p["p"] if isinstance(curve.fitted, str) else curve.fitted.widened(spec.added).probability(x)
+            p["p_total"] = (
+                p["p"] if isinstance(curve.fitted, NoCurve) else curve.fitted.widened(spec.added).probability(x)
+            )
         if spec.method == "ida":
             p |= _of_windows(curve.windows, spec)
         rows += [
@@ -52,7 +63,7 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
 
 def _probabilities(curve: Curve, x: Values) -> dict[str, Values]:
     """Return P(x) of a curve, and what it lies between; NaN without a curve."""
-    p = np.full(len(x), np.nan) if isinstance(curve.fitted, str) else curve.fitted.probability(x)
+    p = np.full(len(x), np.nan) if isinstance(curve.fitted, NoCurve) else curve.fitted.probability(x)
     low, high = curve.readings.probability(x) if curve.readings else (p, p)
     return {"p": p, "p_low": np.fmin(low, p), "p_high": np.fmax(high, p)}
 
@@ -63,13 +74,18 @@ def _of_windows(windows: Windows | None, spec: FragilitySpec) -> dict[str, npt.N
     if windows is None:
         return dict.fromkeys(("window_share", "window_n", "window_undecided", "window_p"), nothing)
     fitted = windows.fitted
-    p = nothing if isinstance(fitted, str) else fitted.probability(np.array(spec.levels))
+    p = nothing if isinstance(fitted, NoCurve) else fitted.probability(np.array(spec.levels))
     counts = {"window_n": np.array(windows.records), "window_undecided": np.array(windows.undecided)}
     return {"window_share": np.array(windows.shares), **counts, "window_p": p}
 
 
 def capacities(
-    curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str], names: Sequence[str], unscaled: Sequence[float]
+    curves: Sequence[Curve],
+    spec: FragilitySpec,
+    varied: Sequence[str],
+    names: Sequence[str],
+    plans: Sequence[LevelPlan],
+    cases: Sequence[Case],
 ) -> "pd.DataFrame":
     """Return fragility_capacities.csv: a row for each curve and record.
 
@@ -77,20 +93,21 @@ def capacities(
     scales of the record. Below it ``undecided`` runs are not: it is at most ``if_exceeded`` if they exceed the limit, and above
     ``if_withstood`` if they withstand it. ``widest_step`` is the greatest relative step between runs below it: an island of
     exceedance that is narrower may have been missed.
-    ``names`` and ``unscaled`` are those of the motions, and their intensities as they are.
+    ``names`` are those of the motions; ``plans`` have the intensities of the ``cases``, of which each record has its own.
     """
     rows: list[dict[str, Any]] = []
     for curve in curves:
-        for motion, cap in curve.capacities:
+        for (number, motion), cap in curve.capacities:
+            of_pier = {"case": cases[number].name} | {name: cases[number].columns.get(name) for name in varied}
             bounds = {"above": cap.decided.low, "at_most": finite_or_nan(cap.decided.high)}
             otherwise = {
                 "if_exceeded": finite_or_nan(cap.if_exceeded.high) if cap.undecided else math.nan,
                 "if_withstood": cap.if_withstood.low if cap.undecided else math.nan,
             }
             rows.append(
-                {"record": names[motion], **curve.identity(varied), "measure": spec.label, "unit": spec.unit}
+                {"record": names[motion], **curve.identity(varied), **of_pier, "measure": spec.label, "unit": spec.unit}
                 | {"found": _state(cap), **bounds}
-                | {f"scale_{name}": bound / unscaled[motion] for name, bound in bounds.items()}
+                | {f"scale_{name}": plans[number].scale(motion, bound) for name, bound in bounds.items()}
                 | {"undecided": cap.undecided, **otherwise, "returns": cap.returns, "widest_step": cap.widest_step}
             )
     return pd.DataFrame(rows)
@@ -109,6 +126,7 @@ def described(
 ) -> dict[str, Any]:
     """Return the content of fragility.json: what was asked, and every curve; an open bound of an interval is null."""
     of_curves = {id(risk.curve): described_risk(risk, spec) for risk in risks}
+    of_curves |= {id(risk.curve): described_bound(risk, spec) for risk in rate_bounds_of(curves, spec)}
     return {
         "method": spec.method,
         "measure": spec.label,
@@ -171,10 +189,16 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
         "columns": curve.case.columns,
         "limit_state": curve.limit.name,
         "words": words(curve.limit),
+        "piers": curve.cases,
         "reason": curve.limit.reason,
         "counting": curve.limit.counting,
         "median": None,
+        "median_bound": _bound(curve),
+        "median_interval": None,
         "dispersion": None,
+        "dispersion_interval": None,
+        "no_curve": fitted.reason if isinstance(fitted, NoCurve) else None,
+        "stations": None if isinstance(fitted, NoCurve) else fitted.stations,
         "note": note(curve, spec),
         "undecided": curve.undecided._asdict(),
         "says_little": curve.inconclusive,
@@ -196,15 +220,19 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
     if readings:
         p = _probabilities(curve, x)
         content["open"] = _rounded({"x": x, "low": p["p_low"], "high": p["p_high"]})
-    if not isinstance(fitted, str):
-        drawn = dict(zip(("x", "p", "low", "high"), (x, fitted.probability(x), *fitted.band(x)), strict=True))
+    if not isinstance(fitted, NoCurve):
+        drawn, band = {"x": x, "p": fitted.probability(x)}, fitted.band(x)
+        if band is not None:
+            drawn |= {"low": band[0], "high": band[1]}
         content |= {
             "median": _or_none(fitted.median),
-            "median_interval": _finite(fitted.median_interval),
+            "median_interval": _finite_or_none(fitted.median_interval),
             "dispersion": _or_none(fitted.dispersion),
-            "dispersion_interval": _finite(fitted.dispersion_interval),
+            "dispersion_interval": _finite_or_none(fitted.dispersion_interval),
             "curve": _rounded(drawn),
         }
+        if isinstance(fitted, Lognormal):
+            content["most_likely_dispersion"] = fitted.most_likely_dispersion
         if spec.added:
             total = fitted.widened(spec.added)
             content["dispersion_total"] = _or_none(total.dispersion)
@@ -216,10 +244,10 @@ def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, 
     """Return the shares of the windows and the curve through them, also how far its median is above that of the ``first``."""
     shares = [_or_none(share) for share in windows.shares]
     content: dict[str, Any] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
-    if not isinstance(fitted := windows.fitted, str):
+    if not isinstance(fitted := windows.fitted, NoCurve):
         content |= {
             "median": _or_none(fitted.median),
-            "median_interval": _finite(fitted.median_interval),
+            "median_interval": _finite_or_none(fitted.median_interval),
             "dispersion": _or_none(fitted.dispersion),
             "above": windows.above(first),
             "curve": _rounded({"x": x, "p": fitted.probability(x)}),
@@ -246,6 +274,28 @@ def _or_none(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def _bound(curve: Curve) -> dict[str, Any] | None:
+    """Return the bound of a median that is not known: "below", "above" or "between", with its intensities; None without one.
+
+    ``exceeded`` of ``records`` are beyond the limit at the bound; of a cloud, of all runs.
+    """
+    fitted = curve.fitted
+    if not isinstance(fitted, NoCurve) or not fitted.is_bound:
+        return None
+    low, high = fitted.above or None, _or_none(fitted.below)
+    kind = "above" if high is None else "below" if low is None else "between"
+    level = fitted.above if high is None else fitted.below
+    at = [s for s in curve.stripes if curve.cloud or math.isclose(s.level, level)]
+    exceeded, records = (
+        sum(numbers) for numbers in zip(*((s.exceeded, s.records - s.undecided) for s in at), strict=True)
+    )
+    return {"is": kind, "above": low, "below": high, "exceeded": exceeded, "records": records}
+
+
+def _finite_or_none(bounds: tuple[float, float] | None) -> list[float | None] | None:
+    return None if bounds is None else _finite(bounds)
+
+
 def _finite(bounds: tuple[float, float]) -> list[float | None]:
     """Return ``bounds`` with None for infinity, which JSON does not have."""
     return [bound if math.isfinite(bound) else None for bound in bounds]
@@ -254,19 +304,28 @@ def _finite(bounds: tuple[float, float]) -> list[float | None]:
 def note(curve: Curve, spec: FragilitySpec) -> str:
     """Return remarks on a curve, or why there is none."""
     fitted = curve.fitted
-    notes = [_about_undecided(curve), fitted if isinstance(fitted, str) else ""]
-    if not isinstance(fitted, str):
-        if fitted.median > spec.levels[-1]:
-            notes.append("the median is extrapolated beyond the highest level")
-        elif fitted.median < spec.levels[0]:
-            notes.append("the median is extrapolated below the lowest level")
-        if any(math.isinf(bound) for bound in (*fitted.median_interval, *fitted.dispersion_interval)):
+    notes = [_about_undecided(curve)]
+    if isinstance(fitted, NoCurve):
+        bound = _bound(curve)
+        notes.append(f"the median is {bound_in_words(bound, spec.label, spec.unit)}" if bound else fitted.reason)
+    else:
+        if not spec.levels[0] <= fitted.median <= spec.levels[-1]:  # of a cloud, whose line goes on
+            notes.append("the median is extrapolated beyond the intensities that were run")
+        if fitted.median_interval is None:
+            stations = count(fitted.stations, "station")
+            notes.append(
+                f"no intervals: records of {stations}, and {STATIONS_OF_INTERVAL} are needed to tell their scatter"
+            )
+        ends = [bound for interval in (fitted.median_interval, fitted.dispersion_interval) for bound in interval or ()]
+        if any(map(math.isinf, ends)):
             notes.append("the records leave the intervals open: more of them, or other levels, would close them")
+    if curve.cases > 1:
+        notes.append(f"shared by {curve.cases} piers, each axis counted as one")
     if curve.cloud:
         notes += note_on_cloud(curve, spec)
     notes.append(_about_drawn(curve))
-    if curve.windows and isinstance(curve.windows.fitted, str):
-        notes.append(f"no median by shares: {curve.windows.fitted}")
+    if curve.windows and isinstance(curve.windows.fitted, NoCurve) and curve.windows.fitted != fitted:
+        notes.append(f"no median by shares: {curve.windows.fitted.reason}")
     if returning := sum(cap.returns > 0 for _, cap in curve.capacities):
         notes.append(f"{returning} of {len(curve.capacities)} records withstand a level above their first exceedance")
     return "; ".join(filter(None, notes))
@@ -280,7 +339,8 @@ def _about_undecided(curve: Curve) -> str:
     if curve.readings is None:
         return f"{remark}, above the first exceedance of their records, where they change nothing"
     beyond, within = (
-        f"no curve ({fit})" if isinstance(fit, str) else f"a median of {fit.median:.4g}" for fit in curve.readings
+        f"no curve ({fit.reason})" if isinstance(fit, NoCurve) else f"a median of {fit.median:.4g}"
+        for fit in curve.readings
     )
     remark += f"; they count for nothing here: as beyond the limit they would give {beyond}, as within it {within}"
     return f"says little: {remark}" if curve.inconclusive else remark
@@ -289,7 +349,8 @@ def _about_undecided(curve: Curve) -> str:
 def _about_drawn(curve: Curve) -> str:
     """Return what each drawn input changes about the capacity, or why that is not known; empty if nothing is drawn."""
     share = curve.drawn_share
-    if share is None or share == curve.fitted:  # there is no curve, for the same reason
+    reason = curve.fitted.reason if isinstance(curve.fitted, NoCurve) else ""
+    if share is None or share == reason:  # there is no curve, for the same reason
         return ""
     if isinstance(share, str):
         return f"what the drawn inputs contribute is not known: {share}"

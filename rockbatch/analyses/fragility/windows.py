@@ -11,7 +11,7 @@ import numpy as np
 
 from rockbatch.analyses.fragility.ida import Looks
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, Numbers, fit
 
 SAMPLES = 20
 """Runs of a record in a window, one in the middle of each of as many equal parts."""
@@ -28,7 +28,7 @@ class Windows(NamedTuple):
     shares: tuple[float, ...]
     records: tuple[int, ...]
     undecided: tuple[int, ...]
-    fitted: Lognormal | str
+    fitted: Lognormal | NoCurve
 
     def above(self, other: object) -> float | None:
         """Return how far the median lies above that of the ``other`` curve, relative to it; None without both."""
@@ -44,7 +44,9 @@ def samples(level: float, width: float | None) -> list[float]:
     return [level * (1.0 + width * ((2 * i + 1) / SAMPLES - 1.0)) for i in range(SAMPLES)]
 
 
-def windows(looks: Sequence[Looks], levels: Sequence[float], width: float, confidence: float) -> Windows:
+def windows(
+    looks: Sequence[Looks], levels: Sequence[float], width: float, station: Numbers, confidence: float
+) -> Windows:
     """Return the shares of the windows of all ``levels`` by the states of every record, and the curve through them.
 
     The likelihood is the binomial one of stripes, in which a record counts with its share as beyond the limit and with the
@@ -57,7 +59,7 @@ def windows(looks: Sequence[Looks], levels: Sequence[float], width: float, confi
     decided = exceeded + withstood
     beyond, within = (number / np.maximum(decided, 1) for number in (exceeded, withstood))
     records = (decided > 0).sum(axis=0)
-    fitted = fit(Capacities.of_same_records(np.array(levels), within, beyond), confidence)
+    fitted = fit(Capacities.of_same_records(np.array(levels), within, beyond, station), confidence)
     shares = np.where(records > 0, beyond.sum(axis=0) / np.maximum(records, 1), np.nan)
     left = undecided.sum(axis=0)
     return Windows(width, tuple(shares.tolist()), tuple(records.tolist()), tuple(left.tolist()), fitted)

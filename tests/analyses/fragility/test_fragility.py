@@ -15,11 +15,11 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.command import table
-from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided, assess
+from rockbatch.analyses.fragility.curves import Curve, Member, Readings, Undecided, assess
 from rockbatch.analyses.fragility.hazard import Hazard
 from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
 from rockbatch.analyses.fragility.runs import ScaledRuns, intensities, output
 from rockbatch.analyses.fragility.section import section
@@ -268,15 +268,21 @@ def test_notes_say_why_there_is_no_curve_and_what_one_rests_on():
     def said(fitted, undecided=(0, 0, 0, 0), **more):
         return note(Curve(case, OVERTURNING, (), fitted, Undecided(*undecided), **more), spec)
 
-    assert (said("no record counts"), said(fitted)) == ("no record counts", "")
-    for median, words in ((0.19, "below the lowest level"), (0.2, ""), (0.8, ""), (0.81, "beyond the highest level")):
-        assert said(replace(fitted, median=median)) == bool(words) * f"the median is extrapolated {words}"
+    assert (said(NoCurve("no record counts")), said(fitted)) == ("no record counts", "")
+    for median, beyond in ((0.19, True), (0.2, False), (0.8, False), (0.81, True)):
+        words = "the median is extrapolated beyond the intensities that were run"
+        assert said(replace(fitted, median=median)) == beyond * words
+    few = replace(fitted, median_interval=None, dispersion_interval=None, stations=4)
+    assert said(few) == "no intervals: records of 4 stations, and 5 are needed to tell their scatter"
     for name in ("median_interval", "dispersion_interval"):
         assert said(replace(fitted, **{name: (0.3, math.inf)})).startswith("the records leave the intervals open")
     assert (
-        said(fitted, windows=Windows(0.02, (0.0,), (1,), (0,), "none exceeds")) == "no median by shares: none exceeds"
+        said(fitted, windows=Windows(0.02, (0.0,), (1,), (0,), NoCurve("none exceeds")))
+        == "no median by shares: none exceeds"
     )
-    returning = tuple((m, Capacity(*3 * (Bracket(0.3, 0.31),), 0, returns, 0.1)) for m, returns in enumerate((0, 2, 1)))
+    returning = tuple(
+        (Member(0, m), Capacity(*3 * (Bracket(0.3, 0.31),), 0, returns, 0.1)) for m, returns in enumerate((0, 2, 1))
+    )
     assert said(fitted, capacities=returning) == "2 of 3 records withstand a level above their first exceedance"
     assert said(fitted, (10, 1, 2, 0)).startswith(
         "3 of 10 runs undecided: 1 flew, 2 failed, above the first exceedance of"
@@ -380,7 +386,7 @@ def test_the_readings_are_those_of_all_undecided_runs_counted_either_way(tmp_pat
 def test_without_a_curve_undecided_runs_leave_no_median_open(tmp_path):
     """All that is decided stands: only those that failed could give a curve."""
     (curve,), *_ = made_up(tmp_path, STRIPES, lambda motion, x: "failed" if motion % 3 == 0 and x > 0.4 else "ok")
-    assert isinstance(curve.fitted, str)
+    assert isinstance(curve.fitted, NoCurve)
     assert curve.readings is not None
     assert not curve.inconclusive
 
@@ -427,16 +433,20 @@ def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
     rule = Rule("half way", "theta_max_over_alpha", at_most=0.5, overturned="unknown")
     (curve,), _, _ = made_up(tmp_path, STRIPES, stands_or_falls, limits=(rule,))
     assert [stripe.exceeded for stripe in curve.stripes] == [0, 0, 0, 0]
-    assert curve.fitted == curve.readings.withstood == "no record exceeds the limit up to 0.8: the median is beyond"
+    assert (
+        curve.fitted
+        == curve.readings.withstood
+        == NoCurve("no record exceeds the limit up to 0.8: the median is above", 0.8)
+    )
     assert curve.readings.medians == (curve.readings.exceeded.median, math.inf)
     assert curve.undecided.other == curve.undecided.number > 0
     x, beyond = np.array([0.3, 0.5]), curve.readings.exceeded
     for readings, expected in (
         (curve.readings, (np.zeros(2), beyond.probability(x))),
-        (Readings("none", beyond), (beyond.probability(x), np.ones(2))),
+        (Readings(NoCurve("none"), beyond), (beyond.probability(x), np.ones(2))),
     ):
         np.testing.assert_array_equal(readings.probability(x), expected)
-    assert Readings("none", beyond).medians == (0.0, beyond.median)
+    assert Readings(NoCurve("none"), beyond).medians == (0.0, beyond.median)
 
 
 def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
@@ -481,12 +491,12 @@ def test_undecided_runs_come_first_in_the_table_the_files_and_the_report(tmp_pat
 
 
 @pytest.mark.parametrize(("stations", "said"), [(30, False), (15, True)])
-def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said(tmp_path, stations, said):
+def test_intervals_by_station_are_said_to_be_so(tmp_path, stations, said):
     (curve,), spec, study = made_up(tmp_path, STRIPES, stands_or_falls)
     told = described([curve], spec, study, 30) | {"stations": stations, "study": {"sha256": "here"}}
     (tmp_path / "fragility.json").write_text(json.dumps(told), encoding="utf-8")
     page = section(Contents(tmp_path, told["study"]))
-    words = "The 30 records are components of 15 stations, each counted by itself: the intervals are too narrow."
+    words = "Intervals are by station: the 30 records are components of 15 stations."
     first, figure = page.split("<figure", 1)
     assert (words in first) == said
     for shown in (
@@ -502,7 +512,7 @@ def test_components_of_one_station_make_bands_that_are_too_narrow_and_it_is_said
 
 @pytest.mark.parametrize(("fragility", "words"), [
     ("", ["measure is missing"]),
-    ('measure = "PGD"', ['measure = "PGD": expected one of "PGA", "PGV", "Sa"']),
+    ('measure = "PGD"', ['measure = "PGD": expected one of "PGA", "PGV", "Sa", ']),
     ('measure = "PGA"', ["levels_g is missing"]),
     ('measure = "PGA"\nlevels_m_s = [0.2, 0.4]',
      ['levels_m_s = [0.2, 0.4]: does not apply to measure = "PGA"', "levels_g is missing"]),

@@ -13,6 +13,9 @@ INFO = {
 }  # fmt: skip
 
 
+BELOW = {"is": "below", "above": None, "below": 0.2, "exceeded": 10, "records": 10}
+
+
 def curve(case="rigid", limit="overturning", median=None, exceeded=(0, 2, 6, 9), interval=None, **more):
     """A curve of ten records, of which so many exceed the limit at each level."""
     undecided = more.pop("undecided", (0, 0, 0, 0))
@@ -58,19 +61,20 @@ def test_the_lowest_median_of_each_limit_is_said_whatever_the_order_of_cases():
 
 def test_a_limit_that_is_exceeded_after_overturning_is_not_called_the_first():
     (line,), _ = said(curve(median=0.6), curve(limit="settlement", median=0.9))
-    assert line.endswith("dispersion of 0.40. The other limits are not exceeded earlier.")
+    assert line.endswith("dispersion of 0.40. No other limit has a lower median.")
 
 
 def test_a_curve_without_a_fit_that_is_weaker_than_all_others_comes_first():
     """Every record exceeds the limit at the lowest level on pads: their median is not known, but below that of rock."""
-    (line, lost), marked = said(curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10)))
+    (line,), marked = said(curve("rock", median=0.6), curve("pads", exceeded=(10, 10, 10, 10), median_bound=BELOW))
     assert line == (
-        "Overturning is reached by every record from PGV 0.2 m/s on for pads, the lowest of 2 cases: its median is below that."
+        "Overturning has a median below PGV 0.2 m/s: every record exceeds it there (pads, the lowest of 2 cases)."
     )
-    (same, *_), _ = said(curve("rock", median=0.6), curve("pads", exceeded=(8, 10, 9, 10), undecided=(2, 0, 1, 0)))
-    assert same.startswith(line.removesuffix("."))
-    assert lost == "1 of 2 curves could not be fitted: the table says why."
-    assert marked == [lost]
+    assert not marked
+    (line,), _ = said(curve("rock", median=0.6), curve("rock", "tilt", exceeded=(10, 10, 10, 10), median_bound=BELOW))
+    assert line.endswith(
+        "The limit exceeded first, tilt (theta > 1), has a median below PGV 0.2 m/s: every record exceeds it there."
+    )
 
 
 @pytest.mark.parametrize(("cases", "words"), [(1, "10 records."), (2, "10 records, in any of 2 cases.")])
@@ -138,17 +142,15 @@ def test_a_curve_whose_shares_do_not_grow_has_no_median():
 
 
 def test_a_cloud_with_few_records_beyond_the_limit_says_how_few():
-    (line, narrow), _ = said(curve(median=0.8, exceeded=(0, 0, 1, 1), cloud={}), method="cloud", records=2, stations=2)
+    (line,), _ = said(curve(median=0.8, exceeded=(0, 0, 1, 1), cloud={}), method="cloud", records=2, stations=2)
     assert line.endswith("from 40 records: 0.64 to 1.04) and a dispersion of 0.40; only 2 records beyond the limit.")
-    assert narrow.startswith("Each record counts at every scale as one of its own")
-    assert len(said(curve(median=0.8, cloud={}), method="cloud", records=4, stations=4)[0]) == 1
 
 
-def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
+def test_what_intervals_count_and_what_makes_medians_too_high_is_a_line_each():
     alone = {"looked": [[level, level] for level in LEVELS[:2]]}
     lines, marked = said(curve("pads", median=0.8, **alone), curve("rock", median=0.9, looked=[[0.2, 2.0]]), stations=5)
     assert lines[1:] == [
-        "The 10 records are components of 5 stations, each counted by itself: the intervals are too narrow.",
+        "Intervals are by station: the 10 records are components of 5 stations.",
         "Between the levels nothing was run in pads: a first exceedance there is missed, and medians may be too high.",
     ]
     assert marked == lines[1:]
@@ -160,7 +162,7 @@ def test_what_makes_intervals_too_narrow_and_medians_too_high_is_a_line_each():
 def rate(per_year, **more):
     return {
         "rate_per_year": per_year, "rate_low": 0.5 * per_year, "rate_high": 3 * per_year, "rate_if_withstood": None,
-        "rate_if_exceeded": None, "rate_below_points": 0.0, "rate_above_points": 0.0, "rate_below_levels": 0.0,
+        "rate_if_exceeded": None, "bound": "", "rate_below_points": 0.0, "rate_above_points": 0.0, "rate_below_levels": 0.0,
         "rate_above_levels": 0.0, "p_in_50_years": 50 * per_year, "p_in_50_years_low": 25 * per_year, "p_in_50_years_high": 0.5,
     } | more  # fmt: skip
 
@@ -275,3 +277,56 @@ def test_a_case_of_which_nothing_is_known_may_be_weaker_down_to_0(others):
     unknown = curve("pads", median=1.0, **open_, median_undecided=[None, 1.1])
     (line, _), _ = said(curve("rock", median=0.8), *several, unknown)
     assert line.endswith("; pads may be weaker, down to 0, as runs of it are undecided.")
+
+
+def test_a_median_by_shares_that_is_far_from_the_other_stands_beside_it():
+    for above, beside in ((0.38, True), (0.05, False)):
+        windows = {"median": 0.8 * (1 + above), "above": above}
+        (line,), _ = said(curve(median=0.8, windows=windows))
+        assert (f"0.64 to 1.04), by shares PGV {0.8 * (1 + above):.3g} m/s (+38 %), and a disp" in line) == beside
+
+
+def test_without_intervals_the_stations_stand_in_their_place():
+    three = curve(median=0.8, stations=3) | {"median_interval": None}
+    (line,), _ = said(three)
+    assert "a median of PGV 0.8 m/s (from 10 records, no interval: 3 stations) and a dispersion of 0.40" in line
+
+
+@pytest.mark.parametrize(
+    ("exceeded", "words"),
+    [
+        ((0, 0, 0, 0), "No other limit is exceeded up to PGV 2 m/s."),
+        ((0, 0, 0, 1), "No other limit has a lower median."),
+    ],
+)
+def test_only_a_limit_that_no_record_exceeds_is_said_not_to_be_exceeded(exceeded, words):
+    above = {"is": "above", "above": 2.0, "below": None, "exceeded": exceeded[-1], "records": 10}
+    (line,), _ = said(curve(median=0.6), curve(limit="tilt", exceeded=exceeded, median_bound=above))
+    assert line.endswith(words)
+
+
+@pytest.mark.parametrize(
+    ("bound", "ends", "words"),
+    [
+        (
+            "at least",
+            {"rate_least": 2e-4, "rate_most": None},
+            "at least 1 % in 50 years, a mean rate of at least 2.0·10⁻⁴ a year",
+        ),
+        (
+            "at most",
+            {"rate_least": 0.0, "rate_most": 4e-4},
+            "at most 2 % in 50 years, a mean rate of at most 4.0·10⁻⁴ a year",
+        ),
+        (
+            "between",
+            {"rate_least": 2e-4, "rate_most": 4e-4},
+            "between 1 % and 2 % in 50 years, a mean rate of between 2.0·10⁻⁴ and 4.0·10⁻⁴ a year",
+        ),
+    ],
+)
+def test_a_rate_that_is_a_bound_is_said_so(bound, ends, words):
+    risk = rate(0.0) | {"rate_per_year": None, "bound": bound, "p_in_50_years": None} | ends
+    risk |= {"p_in_50_years_low": 0.01, "p_in_50_years_high": 0.02}
+    (line,), _ = said(curve(risk=risk), by=of_rates, hazard=HAZARD)
+    assert line == f"Overturning has a probability of {words}."

@@ -13,12 +13,13 @@ from report_page import Page
 from scipy.integrate import quad
 from scipy.optimize import minimize
 from scipy.stats import norm
+from scipy.stats import t as student
 from studies import SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.analyses.fragility.curves import Curve, Readings, Undecided
 from rockbatch.analyses.fragility.hazard import Dispersion, Hazard
-from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, fit
+from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
 from rockbatch.analyses.fragility.risk import Risk, described, note, risk_table, risks
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.commands.cli import main
@@ -111,7 +112,7 @@ def by_bisection(capacities, limit):
 
 
 def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
-    """Least and greatest rate where ℓ has fallen by half the χ² quantile at most, by SLSQP; 3e-4: between two of 360 rays."""
+    """Least and greatest rate where ℓ has fallen by n/2 ln(1 + t²/n) at most, by SLSQP; 3e-4: between two of 360 rays."""
     capacities = suite(np.random.default_rng(7))
     fitted = by_bisection(capacities, 0.8)
     low = np.where(capacities > 0.8, 0.8, capacities / 1.005)
@@ -121,11 +122,12 @@ def test_the_interval_of_a_rate_is_that_of_its_profile_likelihood():
         brackets = norm.cdf((np.log(high) - mu) / sigma) - norm.cdf((np.log(low) - mu) / sigma)
         return np.log(np.maximum(brackets, 1e-300)).sum()
 
-    least = likelihood(math.log(fitted.median), fitted.dispersion) - 0.5 * norm.ppf(0.975) ** 2
+    t, n, wider = student(29).ppf(0.975), 30, fitted.dispersion / fitted.most_likely_dispersion
+    least = likelihood(math.log(fitted.median), fitted.most_likely_dispersion) - 0.5 * n * math.log1p(t**2 / n)
     x, rates = TABLE.quadrature()
 
     def log_rate(at):
-        return math.log(norm.cdf((np.log(x) - at[0]) / math.exp(at[1])) @ rates)
+        return math.log(norm.cdf((np.log(x) - at[0]) / (wider * math.exp(at[1]))) @ rates)
 
     ends = []
     for sign in (1.0, -1.0):
@@ -161,8 +163,10 @@ def test_intervals_of_rates_hold_the_truth_about_as_often_as_they_say(through, a
 
 
 def test_where_the_dispersion_is_open_the_rate_is_too():
-    beyond = np.array([[False, True, False, True]])
-    fitted = fit(Capacities.of_same_records(np.array([0.1, 0.2, 0.3, 0.4]), ~beyond, beyond))
+    beyond = np.array(
+        [[False, True, True], [True, False, True], [False, True, False], [False, False, True], [True, True, False]]
+    )
+    fitted = fit(Capacities.of_same_records(np.array([0.1, 0.2, 0.3]), ~beyond, beyond))
     _, low, high = fitted.rate(*TABLE.quadrature())
     assert 0 <= low < high == math.inf
 
@@ -198,7 +202,7 @@ def test_the_row_of_a_rate_is_what_sums_over_fine_steps_of_intensity_say():
     fitted, total = exactly(0.4, 0.3), math.hypot(0.3, 1.2)
     levels, years = (0.2, 0.6), (50.0, 10.0)
     spec = FragilitySpec("ida", "PGA", levels, (), hazard=Hazard(TABLE, years), dispersions=(Dispersion("a", 1.2),))
-    curve = curve_of(fitted, Readings(exactly(0.35, 0.3), "none"))
+    curve = curve_of(fitted, Readings(exactly(0.35, 0.3), NoCurve("none")))
     edges = np.geomspace(1e-5, 1e3, 400_001)
     x, rare = np.sqrt(edges[1:] * edges[:-1]), TABLE.rate([0.7])[0]
     parts = norm.cdf(np.log(x / 0.4) / total) * -np.diff(TABLE.rate(edges))
@@ -309,10 +313,14 @@ def test_without_a_hazard_there_are_no_rates_and_the_points_are_as_they_were(tmp
         found.risk()
 
 
-def test_a_curve_that_could_not_be_fitted_has_its_reason_in_place_of_a_rate(tmp_path):
+def test_a_limit_that_no_record_exceeds_has_the_rate_of_the_highest_level_as_bound(tmp_path):
     levels = {"measure": "PGA", "levels_g": [0.01, 0.02]}
     found = rb.fragility(study(tmp_path, HAZARD, fragility=levels))
-    assert found.fragility_risk["note"].to_list() == ["no record exceeds the limit up to 0.02: the median is beyond"]
+    (row,) = found.fragility_risk.to_dict("records")
+    at_most = 1 / 475 * (0.02 / 0.2) ** (math.log(50 / 475) / math.log(0.2 / 0.05))
+    assert (row["bound"], row["rate_most"], row["rate_least"]) == ("at most", pytest.approx(at_most), 0.0)
+    assert "rate_per_year" not in row
+    assert found.info["curves"][0]["risk"]["rate_per_year"] is None
     assert found.fragility_deaggregation is None
 
 
@@ -323,7 +331,7 @@ def test_one_point_and_a_slope_are_said_to_be_that_and_no_curve_no_table(tmp_pat
     assert "est point" not in found.fragility_risk["note"].iloc[0]  # neither the highest nor the lowest
     weak = study(tmp_path, one, fragility={"measure": "PGA", "levels_g": [0.01, 0.02]}, name="weak.toml")
     assert main(["fragility", str(weak), "--out", str(tmp_path / "weak")]) == 0
-    assert "No annual rates: no curve could be fitted" in capsys.readouterr().out
+    assert "at most" in capsys.readouterr().out
 
 
 def test_rates_under_another_hazard_need_no_run(tmp_path):

@@ -10,7 +10,8 @@ from scipy.stats import binom, norm
 from studies import seven_pulses, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.analyses.fragility.runs import level_plan
+from rockbatch.analyses.fragility.lognormal import NoCurve
+from rockbatch.analyses.fragility.runs import level_plans
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
@@ -70,7 +71,7 @@ def test_the_factor_is_that_on_the_record_as_it_was_recorded(tmp_path):
     halved = rb.load_study(path, motions=motions).with_(motions={"pulse": None, "target": {"pga_g": 0.2}})
     read = ground_motions(halved).motions
     assert [motion.factor for motion in read] == pytest.approx([0.5, 0.5], rel=0.01)
-    plan = level_plan(halved, read_fragility(halved), read)
+    plan = level_plans(halved, read_fragility(halved), read)[0]
     assert plan.factor(0, 0.4) == pytest.approx(1.0, rel=0.01)
 
 
@@ -106,7 +107,7 @@ def test_each_stripe_runs_its_own_records_and_the_curve_is_the_binomial_one(tmp_
 
     searched = minimize(negative, [0.5, 0.4], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
     (curve,) = found.curves
-    assert (curve.fitted.median, curve.fitted.dispersion) == pytest.approx(tuple(searched.x), rel=1e-4)
+    assert (curve.fitted.median, curve.fitted.most_likely_dispersion) == pytest.approx(tuple(searched.x), rel=1e-4)
 
 
 def test_given_factors_are_taken_as_they_are(tmp_path):
@@ -156,5 +157,5 @@ def test_mistakes_of_stripes_are_named_with_their_line(tmp_path, fragility, mess
 
 def test_one_stripe_tells_no_dispersion(tmp_path):
     (curve,) = rb.fragility(study(tmp_path, stripes((0.5, {"records": ["sine_*", "cosine_*"]})))).curves
-    assert isinstance(curve.fitted, str)
+    assert isinstance(curve.fitted, NoCurve)
     assert math.isfinite(curve.stripes[0].scale_most)

@@ -1,0 +1,40 @@
+"""What records share: their station, or their earthquake; intervals count these, as components of one are not independent."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockbatch.analyses.fragility.lognormal import STATIONS_OF_INTERVAL, Numbers
+from rockbatch.motions import Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Clusters:
+    """Groups of records that are independent of each other.
+
+    Attributes
+    ----------
+    of_motion : ndarray, shape (n,)
+        Number of the group of each motion.
+    kind : str
+        "station" or "event".
+    stations, events : int
+        Number of stations, and of earthquakes among them, 0 if that of some record is unknown.
+    """
+
+    of_motion: Numbers
+    kind: str
+    stations: int
+    events: int
+
+
+def clusters(motions: Sequence[Motion]) -> Clusters:
+    """Return the earthquakes of the records if all are known and five or more, enough for intervals; else their stations."""
+    by_station = [motion.of_station for motion in motions]
+    by_event = [motion.origin.event for motion in motions]
+    stations, events = len(set(by_station)), len(set(by_event)) if all(by_event) else 0
+    of_events = STATIONS_OF_INTERVAL <= events < stations
+    shared = by_event if of_events else by_station
+    _, numbers = np.unique(shared, return_inverse=True)
+    return Clusters(numbers.astype(np.int64), "event" if of_events else "station", stations, events)

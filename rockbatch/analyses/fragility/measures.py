@@ -1,0 +1,135 @@
+"""Intensity measures of a fragility: those of a motion, those over what lifts a pier off, and an engineer's own, from a table."""
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rockbatch.common.errors import InputError
+from rockbatch.common.grouping import closest
+from rockbatch.common.showing import shown
+from rockbatch.motions import Motion
+from rockbatch.motions.measures import pgv
+from rockbatch.motions.spectrum import spectral_acceleration
+from rockbatch.pier import Pier
+from rockbatch.toml.csv_columns import columns_of, heading_of
+from rockbatch.toml.kinds import positive, text
+
+
+class Measure(NamedTuple):
+    """A measure that a study names: the key of its levels, their unit, and whether it is relative to a pier."""
+
+    levels: str
+    unit: str
+    of_pier: bool = False
+
+
+MEASURES = {
+    "PGA": Measure("levels_g", "g"),
+    "PGV": Measure("levels_m_s", "m/s"),
+    "Sa": Measure("levels_g", "g"),
+    "PGA/(g tan alpha)": Measure("levels", "", of_pier=True),
+    "p PGV/(g tan alpha)": Measure("levels", "", of_pier=True),
+}
+LEVELS = ("levels_g", "levels_m_s", "levels")
+
+_HEADING = re.compile(r"(?P<name>.*?\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
+
+
+@dataclass(frozen=True)
+class OwnMeasure:
+    """An engineer's own measure: its name and unit, a value of each record as it was recorded, and the power by which it grows
+    with the motion's scale.
+    """
+
+    name: str
+    unit: str
+    values: tuple[tuple[str, float], ...]
+    power: float = 1.0
+
+    def of_records(self, names: Sequence[str]) -> list[float]:
+        """Return the value of each record; raises ``InputError`` with every record that has none."""
+        values = dict(self.values)
+        if missing := [name for name in names if name not in values]:
+            raise InputError(
+                *(f"{name}: the measure {shown(self.name)} has no value of it{_near(name, values)}" for name in missing)
+            )
+        return [values[name] for name in names]
+
+
+def _near(name: str, values: Mapping[str, float]) -> str:
+    nearest = closest(name, values)
+    return f", but of {nearest}" if nearest else ""
+
+
+def own_measure(name: str, values: Iterable[tuple[str, float]], power: float) -> OwnMeasure:
+    """Return the measure of a column with the heading ``name``, "AvgSa [g]"; raises ``InputError`` for what it cannot be."""
+    match = _HEADING.fullmatch(name.strip())
+    if match is None:
+        raise InputError(
+            f"{shown(name)}: its heading has no unit; write {shown(f'{name} [g]')}, or {shown(f'{name} [-]')} without one"
+        )
+    listed = [(str(record), float(value)) for record, value in values]
+    wrong = [
+        f"{record}: {match['name']} = {value:g}: must be above 0"
+        for record, value in listed
+        if not 0 < value < math.inf
+    ]
+    names = [record for record, _ in listed]
+    wrong += [
+        f"{record}: it has several values of {match['name']}"
+        for record in dict.fromkeys(names)
+        if names.count(record) > 1
+    ]
+    if wrong:
+        raise InputError(*wrong)
+    unit = match["unit"].strip()
+    return OwnMeasure(match["name"], "" if unit in ("-", "1") else unit, tuple(listed), power)
+
+
+def measure_of_file(path: Path, power: float) -> OwnMeasure:
+    """Return the measure of a CSV file: a column ``record``, and one of values with the unit in its heading."""
+    headings = heading_of(path)
+    others = [name for name in headings if name != "record"]
+    if "record" not in headings or len(others) != 1:
+        raise InputError(
+            f"{path}: its columns are {', '.join(headings)}; it needs record, and one of values, such as AvgSa [g]"
+        )
+    columns = columns_of(path, {"record": text, others[0]: positive})
+    try:
+        return own_measure(others[0], zip(columns["record"], columns[others[0]], strict=True), power)
+    except InputError as error:
+        raise InputError(*(f"{path}: {problem}" for problem in error.problems)) from None
+
+
+def given_measure(im: Any, power: float) -> OwnMeasure:
+    """Return the measure that a Python caller gives: values by record, as of a Series whose name has the unit, or a CSV file."""
+    if isinstance(im, str | Path):
+        return measure_of_file(Path(im), power)
+    name = getattr(im, "name", None)
+    values = im.items() if hasattr(im, "items") else im
+    return own_measure(str(name) if name else "IM [-]", values, power)
+
+
+def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[float]:
+    """Return the measure of every motion as it comes, in g or m/s, or the unit of the engineer's own."""
+    if spec.own is not None:
+        values = spec.own.of_records([motion.name for motion in motions])
+        return [value * motion.factor**spec.own.power for value, motion in zip(values, motions, strict=True)]
+    if spec.measure.startswith("PGA"):
+        return [float(motion.pga) / gravity for motion in motions]
+    if "PGV" in spec.measure:
+        return [float(pgv(motion.horizontal, motion.dt, motion.initial)) for motion in motions]
+    return [
+        float(spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0]) / gravity
+        for motion in motions
+    ]
+
+
+def over_uplift(measure: str, pier: Pier) -> float:
+    """Return what the measure of a motion in g or m/s is multiplied by on a pier: 1 unless it is over g tan α."""
+    if not MEASURES[measure].of_pier:
+        return 1.0
+    return (pier.p / pier.gravity if "PGV" in measure else 1.0) / math.tan(pier.alpha)
