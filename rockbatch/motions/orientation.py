@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.direction_words import WORDS, folded, pairs, words
 
 
 @dataclass(frozen=True)
@@ -30,36 +31,33 @@ def unknown(label: str = "") -> Orientation:
 UNKNOWN = unknown()
 """Of a file that does not say."""
 
-_UP = {
-    *("UP", "UD", "U", "UPDOWN", "UPDN", "UPWARD", "UPWARDS"),
-    *("V", "VER", "VERT", "VRT", "VERTIC", "VERTICAL", "VERTICALE"),
-    *("Z", "AZ", "ZUP", "UPZ", "VUP", "VERUP", "VERTUP", "VERTICALUP"),
-}
-_DOWN = {
-    *("DWN", "DN", "DOWN", "DOWNWARD", "DOWNWARDS"),
-    *(f"{axis}{down}" for axis in ("Z", "V", "VER", "VERT", "VERTICAL") for down in ("DWN", "DN", "DOWN")),
-    "DOWNZ",
-}
+_VERTICAL = words("vertical") | pairs("up", "down") | pairs("above", "below")
+_UP, _DOWN = words("up"), words("down")
 _AZIMUTHS = {
-    **dict.fromkeys(("N", "NS", "SN", "NORTH", "NORTHSOUTH", "NORTHWARD", "NORTE"), 0.0),
-    **dict.fromkeys(("E", "EW", "WE", "EAST", "EASTWEST", "EASTWARD", "ESTE"), 90.0),
-    **dict.fromkeys(("S", "SOUTH", "SOUTHWARD", "SUR"), 180.0),
-    **dict.fromkeys(("W", "WEST", "WESTWARD", "OESTE"), 270.0),
+    **dict.fromkeys(words("north") | words("ns") | pairs("north", "south"), 0.0),
+    **dict.fromkeys(words("east") | words("ew") | pairs("east", "west"), 90.0),
+    **dict.fromkeys(words("south"), 180.0),
+    **dict.fromkeys(words("west"), 270.0),
 }
-_HORIZONTAL = {
-    *("L", "T", "LN", "TR", "LONG", "LONGI", "LONGIT", "LONGITUDINAL", "TRAN", "TRANS", "TRANSV"),
-    *("TRANSVERSE", "TRANSVERSAL", "RAD", "RADIAL", "TANG", "TANGENTIAL"),
-    *("H", "H1", "H2", "HOR", "HOR1", "HOR2", "HORIZ", "HORIZ1", "HORIZ2", "HORIZONTAL", "HORIZONTAL1", "HORIZONTAL2"),
-    *("X", "Y", "AX", "AY", "FN", "FP", "R"),
-}
+_HORIZONTAL = words("horizontal")
+_ENGLISH = {word for of_meaning in WORDS["English"].values() for word in of_meaning.split()}
+_ELSEWHERE_IN_NAMES = (
+    {  # places are called Nord and Est, and people have initials
+        word for meaning in ("north", "south", "east", "west", "ns", "ew") for word in words(meaning)
+    }
+    - _ENGLISH
+    - {"NORTE", "SUR", "ESTE", "OESTE"}
+)
 
 # SEED channel codes with or without location: band, instrument (N, L, G: accelerometers; H: seismometers), direction.
 _CHANNEL = re.compile(r"(?!CH\d)[BCDEFGHLMSV][NLGH]([ZUVNE12RTXY])(?:\d\d)?")
 _CHANNEL_IN_NAME = re.compile(r"[BEHLS][NLGH][ZNE12](?:\d\d)?")  # three letters of a name may be anything else
 _SENSOR = re.compile(r"(UD|NS|EW)[12]")  # KiK-net: 1 in the borehole, 2 at the surface
 _QUADRANT = re.compile(r"([NS])(\d{1,2})([EW])")
+_FILLING = "|".join(sorted(words("filling"), key=len, reverse=True))
 _NOISE = re.compile(
-    r"^A(?=[-_ ])|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[^A-Z0-9]*[A-Z])|AXIS|DIRECTION|DIR|DEG(?:REES)?|[^A-Z0-9]"
+    rf"^A(?=[-_ ])|{_FILLING}|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[\W\d_]*[^\W\d_])|AXIS|DIRECTION|DIR|"
+    r"DEG(?:REES)?|[\W_]"
 )
 
 
@@ -69,8 +67,8 @@ def orientation_of(label: str) -> Orientation | None:
     A number of one or two digits behind a word is no azimuth: "COMP 3" is the third component, not 3°.
     """
     label = label.strip()
-    key = _NOISE.sub("", label.upper())
-    if key in _UP:
+    key = _key(label)
+    if key in _VERTICAL or key in _UP:
         return Orientation(label, vertical=True)
     if key in _DOWN:
         return Orientation(label, vertical=True, down=True)
@@ -94,6 +92,11 @@ def orientation_of(label: str) -> Orientation | None:
     return None
 
 
+def _key(label: str) -> str:
+    """Return the letters and digits of a label in capitals, without accents and without words such as "component"."""
+    return _NOISE.sub("", folded(label))
+
+
 def orientation_in(label: str) -> Orientation:
     """Return the orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
 
@@ -108,13 +111,15 @@ def orientation_in(label: str) -> Orientation:
     )
 
 
+_LETTER = r"[^\W\d_]"
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
 _ENDS = tuple(
     re.compile(rf"{site}(?P<label>{label})")
     for site, label in (
-        (_PART, r"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|North-South|East-West|[A-Z]+-axis|[A-Z]+-(?:up|d(?:ow|w)?n))"),
+        (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
+        (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
         (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
-        (_PART, r"[A-Za-z]+|\d{3}|[A-Za-z]+\d+[A-Za-z]*"),
+        (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
         (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
         (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
         (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
@@ -149,7 +154,7 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
             match = end.fullmatch(site)
             if match is None or _is_number(match["site"], match["label"], site):
                 continue
-            if orientation := orientation_of(match["label"]):
+            if orientation := _in_name(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
         processing = _PROCESSING.fullmatch(site)
         if processing is None:
@@ -159,6 +164,13 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
+
+
+def _in_name(label: str) -> Orientation | None:
+    """Return the orientation of a label at the end of a name; ``None`` for what is the name of a place as well."""
+    key = _key(label)
+    pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
+    return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
 
 
 def _channels(stem: str) -> list[Orientation]:
