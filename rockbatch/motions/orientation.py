@@ -105,7 +105,11 @@ def orientation_in(label: str) -> Orientation:
     bare = label.strip()
     if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
         return unknown(bare)
-    orientation = orientation_of(bare) or split_stem(bare)[1]
+    site, at_end = split_stem(bare)
+    before = orientation_of(site) if at_end else None
+    if before and at_end and (before.vertical, before.azimuth) != (at_end.vertical, at_end.azimuth):
+        at_end = None  # two directions are none
+    orientation = orientation_of(bare) or at_end
     return (
         Orientation(bare, orientation.vertical, orientation.azimuth, orientation.down) if orientation else unknown(bare)
     )

@@ -143,7 +143,7 @@ def _title(line: str) -> tuple[str, str, str, str]:
     if date is None:
         fields = _fields(line)
         place = _component_of(fields)
-        return ("", "", "", _bare(fields[place]) if 0 < place else "")
+        return ("", "", "", _bare(fields[place]) if place > 0 else "")
     event = ", ".join(_fields(line[: date.start()]))
     behind = line[date.end() :]
     same_field = re.match(r"[^,(]*", behind)
