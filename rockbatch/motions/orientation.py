@@ -97,6 +97,16 @@ def _key(label: str) -> str:
     return _NOISE.sub("", folded(label))
 
 
+def is_upward(label: str) -> bool:
+    """Return whether a label says that a component is positive up, and not only that it is vertical."""
+    return _key(label) in _UP
+
+
+def is_place_or_direction(label: str) -> bool:
+    """Return whether a label at the end of a name may be part of that of a place: "North", "West"."""
+    return len(key := _key(label)) > 2 and key in _ENGLISH and key in _AZIMUTHS
+
+
 def orientation_in(label: str) -> Orientation:
     """Return the orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
 
@@ -177,6 +187,15 @@ def _in_name(label: str) -> Orientation | None:
     return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
 
 
+def direction_of_suffix(suffix: str) -> Orientation | None:
+    """Return the orientation that a file's suffix is, as K-NET's .EW and .UD2; ``None`` if it is none."""
+    label = suffix.lstrip(".")
+    if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
+        return None
+    orientation = _in_name(label)
+    return orientation if orientation and (orientation.vertical or orientation.azimuth is not None) else None
+
+
 def _channels(stem: str) -> list[Orientation]:
     """Return orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
@@ -207,10 +226,41 @@ def counted(stems: Iterable[str]) -> set[str]:
     """Return stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
     numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
-        azimuths = {int(stem[-3:]) for stem in group}
-        if any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(azimuths, 2)):
+        if _in_series(int(stem[-3:]) for stem in group):
             numbered.update(group)
     return numbered
+
+
+def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
+    """Return station and orientation of stems that differ in one word only, another direction in each: a_UP_corr, a_000_corr.
+
+    Words that may mean something else in a single name, such as nord, count; numbers of files do not.
+    """
+    found: dict[str, tuple[str, Orientation]] = {}
+    groups: dict[tuple[str, ...], dict[str, Orientation]] = {}
+    for stem in dict.fromkeys(stems):
+        for separator in (r"([_. ]+)", r"([-_. ]+)"):  # norte-sur is one word, or two
+            words = re.split(separator, stem)
+            for i in range(0, len(words), 2):
+                orientation = orientation_of(words[i])
+                if orientation and (not words[i].isdigit() or len(words[i]) == 3):
+                    groups.setdefault((*words[:i], "", *words[i + 1 :]), {})[stem] = orientation
+    for around, group in groups.items():
+        directions = {(o.vertical, o.azimuth, o.azimuth is None and o.label.upper()) for o in group.values()}
+        numbers = [int(o.label) for o in group.values() if o.label.isdigit()]
+        upright = any(o.vertical for o in group.values())
+        azimuths = [o.azimuth for o in group.values() if o.azimuth is not None]
+        square = any(not not_square(a, b, "") for a, b in combinations(azimuths, 2))  # N and S may be streets
+        if 1 < len(group) == len(directions) and (upright or square) and not _in_series(numbers):
+            site = re.sub(r"([-_. ])[-_. ]*", r"\1", "".join(around)).strip("-_. ")
+            for stem, orientation in group.items():
+                found.setdefault(stem, (site, orientation))
+    return found
+
+
+def _in_series(numbers: Iterable[int]) -> bool:
+    """Return whether numbers are counted, and no azimuths, which are square to each other."""
+    return any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(set(numbers), 2))
 
 
 SAME_AZIMUTH = 1.0

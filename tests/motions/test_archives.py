@@ -323,7 +323,7 @@ def test_other_archives_lead_on(tmp_path, name):
 
 
 def test_a_vertical_named_z_is_no_archive(tmp_path):
-    write_at2(tmp_path, "ABBAR.N", wiggle(50, 1))
+    write_at2(tmp_path, "ABBAR.N", wiggle(50, 1), title="Made-up, 1/17/1994, Test Station, N")
     write_at2(tmp_path, "ABBAR.Z", wiggle(50, 2), title="Made-up, 1/17/1994, Test Station, UP")
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical_source == "ABBAR.Z"

@@ -17,7 +17,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_of, split_stem
+from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.record_file import RecordFile, unstated
 
@@ -82,8 +82,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     except ValueError as error:
         raise InputError(f"header: {error}") from None
     notes = (*recording.notes, *file.options.overruled(unit, recording.dt, file.gravity))
-    orientation = orientation_of(recording.label) or split_stem(file.stem)[1]
-    return to_components(file, [replace(recording, unit=unit, orientation=orientation, notes=notes)])
+    return to_components(file, [replace(recording, unit=unit, notes=notes)])
 
 
 def _parse(text: str) -> list[Recording]:
