@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from rockbatch.motions.component import Component
 from rockbatch.motions.formats import is_usual
 from rockbatch.motions.likeness import Pairs, factor_between, pairs_of_one_recording, sets_of, suffix_of
 from rockbatch.motions.motion import Finding, LeftOut
+from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.plausible import gross_findings, in_a_borehole
 from rockbatch.motions.stations import in_one_event
 
@@ -36,8 +37,8 @@ def without_boreholes(components: Sequence[Component]) -> tuple[list[Component],
         if used is None:
             used_components.append(component)
         else:
-            reason = f"in a borehole below {used.source}, which is used; use = true in motions.toml takes it too"
-            left_out.append(LeftOut(component.name, component.source, reason))
+            reason = f"in a borehole below {used.source}"
+            left_out.append(LeftOut(component.name, component.source, reason, of=used.source))
     return used_components, left_out
 
 
@@ -51,7 +52,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     that of a unit, both have to be. A vertical that is in two sets of other horizontals is used with both, which say so.
     """
     components, below = without_boreholes(components)
-    pairs, scaled = pairs_of_one_recording(components)
+    pairs, scaled, denied = pairs_of_one_recording(components)
     factors = {(i, j): factor_between(components[i], components[j]) for i, copies in pairs.items() for j in copies}
     rank = _ranks(components, pairs, factors)
     used: set[int] = set()
@@ -71,7 +72,7 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
     left_out = []
     for i, j in sorted(stands_for.items()):
         copy, original, factor = components[i], components[j], factors[i, j]
-        left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor)))
+        left_out.append(LeftOut(copy.name, copy.source, _reason(copy, original, factor), of=original.source))
         decided = original.preferred or rank[i][1:4] != rank[j][1:4]
         if finding := _difference(copy, original, factor, decided):
             findings.setdefault(j, []).append(finding)
@@ -85,6 +86,10 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
             else:
                 text += "; both are used, and count as one record"
             findings.setdefault(k, []).append(Finding("factor", text, gross=_is_unit(factor)))
+    for i, j in (pair for pair in denied if not stands_for.keys() & pair):
+        for k, other in ((i, components[j]), (j, components[i])):
+            text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
+            findings.setdefault(k, []).append(Finding("header", text))
     remaining = [
         replace(component, findings=(*component.findings, *findings[i])) if i in findings else component
         for i, component in enumerate(components)
@@ -132,7 +137,7 @@ def _ranks(
         across = sum(not c.orientation.vertical for c in of_set)
         rank = (
             not any(c.preferred for c in of_set),
-            any(gross_findings(c) for c in of_set),
+            any(c.contradiction or gross_findings(c) for c in of_set),
             _CORRECTED[first.processed],
             any(_SCALED.search(c.source) for c in of_set),
             -min(2, across) - (across < len(of_set)),
@@ -154,14 +159,27 @@ def _is_unit(factor: float) -> bool:
 
 
 def _reason(copy: Component, used: Component, factor: float | None) -> str:
-    """Return why ``copy`` is left out: which other one is used, and what it has that this one does not."""
+    """Return why ``copy`` is left out: for which other one, and what that has that this one does not."""
     same = copy.dt == used.dt and np.array_equal(copy.acceleration, used.acceleration)
     words = "a copy of" if same else "the same recording as"
     if _CORRECTED[used.processed] < _CORRECTED[copy.processed]:
         words = "the same recording, less corrected, as"
     if factor is not None:
         words = f"{words.removesuffix(' as')}, {factor:.4g} times as large, as"
-    return f"{words} {used.source}, which is used; write use = true in motions.toml to use this one"
+    return f"{words} {used.source}"
+
+
+def with_fates(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
+    """Return what is left out for another component, which tells whether ``motions`` have that one."""
+    used = {source for motion in motions for source in (*motion.source.split(" + "), motion.vertical_source)}
+    refused = {source for file in motions.unusable for source in file.source.split(", ")}
+
+    def fate(file: LeftOut) -> str:
+        if file.of in used:
+            return ", which is used; write use = true in motions.toml to use this one"
+        return ", which is not used either, for a reason of its own" if file.of in refused else ""
+
+    return [replace(file, reason=file.reason + fate(file)) if file.of else file for file in left_out]
 
 
 def _difference(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:

@@ -4,7 +4,7 @@ import difflib
 import os
 import re
 import sys
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Literal
@@ -19,15 +19,17 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
 from rockbatch.motions.component import Component, file_of
-from rockbatch.motions.doubles import without_doubles
+from rockbatch.motions.directions import judged
+from rockbatch.motions.doubles import with_fates, without_doubles
+from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
-from rockbatch.motions.formats import format_of, read_record, usable
+from rockbatch.motions.formats import format_of, read_record, usable, with_name
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.leaving_out import LeaveOut, Reading
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
+from rockbatch.motions.orientation import Orientation, counted, direction_of_suffix, is_clock, split_stem, told_apart
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, with_sequences
@@ -47,7 +49,7 @@ class _ReadSettings:
     options: ReadOptions
     gravity: float
     offset: Offset
-    numbered: Container[Path]  # files whose names end in a number that is no azimuth
+    names: Mapping[Path, tuple[str, Orientation | None]]  # station and direction by the names of files
 
 
 @checked
@@ -119,13 +121,13 @@ def read_motions(
     packaged = _packaged(roots, fema, gravity)
     readings, _, sequences = read_files(roots, options=options, gravity=gravity, offset=offset)
     leaving_out = LeaveOut(leave_out)
-    readings = leaving_out.readings(readings)
+    readings = judged(leaving_out.readings(readings))
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
     placed = _with_stations(readings, paired)
     unusable = [*(reading for reading in placed if isinstance(reading, Unusable)), *paired.unusable]
-    left_out = [*(reading for reading in placed if isinstance(reading, LeftOut)), *doubles]
+    left_out = [*(reading for reading in placed if isinstance(reading, LeftOut)), *with_fates(doubles, paired)]
     motions = leaving_out.motions(MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out))
     leaving_out.finish()
     for manifest, listed in grouped(sequences, lambda pair: pair[0]).items():
@@ -186,22 +188,29 @@ def read_files(
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *neighbours] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files))
+    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files))
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
-    readings = [reading for file, state, its_readings in read for reading in _unless_changed(its_readings, file, state)]
+    readings = [
+        reading
+        for file, state, its_readings in read
+        for reading in _unless_changed(its_readings, file, state, settings.names[file.path][0])
+    ]
     companions = _without_companions(_without_renamed(readings, files))
     return companions, {file.source: file.path for file in files}, manifest.sequences
 
 
-def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...]) -> list[Reading]:
-    """Return the readings of a file, but no records of one that was in another ``state`` before: it is being written."""
+def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...], name: str) -> list[Reading]:
+    """Return the readings of a file, but no records of one that was in another ``state`` before: it is being written.
+
+    ``name`` is the station's part of its name.
+    """
     records = any(isinstance(reading, Component) for reading in readings)
     if not records or archives.state(file.path) in (state, ()):
         return readings
     path = archives.bare(file.path)
-    return [Unusable(path.stem, file.source, CHANGED, station=_site(path, split_stem(path.stem)[0]))]
+    return [Unusable(path.stem, file.source, CHANGED, station=_site(path, name))]
 
 
 def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
@@ -266,11 +275,17 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
         return b""
 
 
-def _numbered(files: Sequence[SourceFile]) -> set[Path]:
-    """Return files whose names end in a number that is no azimuth, as those beside them tell."""
-    folders = grouped((archives.bare(file.path) for file in files), lambda path: path.parent)
-    numbers = {folder: counted(path.stem for path in paths) for folder, paths in folders.items()}
-    return {file.path for file in files if archives.bare(file.path).stem in numbers[file.path.parent]}
+def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | None]]:
+    """Return the station's part and the direction of the names of files, of which those beside them tell what is a number."""
+    names: dict[Path, tuple[str, Orientation | None]] = {}
+    for paths in grouped((file.path for file in files), lambda path: path.parent).values():
+        stems = {path: archives.bare(path).stem for path in paths}
+        numbered, apart = counted(stems.values()), told_apart(stems.values())
+        for path, stem in stems.items():
+            alone = (stem, None) if stem in numbered else split_stem(stem)
+            site, direction = alone if alone[1] else apart.get(stem, alone)
+            names[path] = site, direction or direction_of_suffix(archives.bare(path).suffix)
+    return names
 
 
 def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
@@ -279,7 +294,7 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
     """
     path = archives.bare(file.path)
-    site = _site(path, path.stem if file.path in settings.numbered else split_stem(path.stem)[0])
+    site = _site(path, settings.names[file.path][0])
     lacks: tuple[str, ...] = ()
     companion = None
     try:
@@ -323,7 +338,9 @@ def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
             reason = unwanted[0].unused if unwanted else ""
             readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
     components = [
-        _placed(reading, path, file.path in settings.numbered) for reading in read if isinstance(reading, Component)
+        _placed(reading, path, settings.names[file.path], alone=len(read) == 1)
+        for reading in read
+        if isinstance(reading, Component)
     ]
     for component, used in described(components, entries, settings.gravity, refused):
         if used:
@@ -342,13 +359,10 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     return read_record(RecordFile(path, file.source, data, options, settings.gravity, file.root))
 
 
-def _placed(component: Component, path: Path, numbered: bool) -> Component:
-    """Return a component with its folder, and its station by its file's name; without an azimuth that is a file's number."""
-    site, by_name = split_stem(path.stem)
-    if numbered:
-        site = path.stem
-        if component.orientation == by_name:
-            component = replace(component, orientation=unknown())
+def _placed(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
+    """Return a component with its folder, its station by its file's name and, if it is alone in it, its direction by that."""
+    site, direction = name
+    component = with_name(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
 
 
@@ -364,7 +378,8 @@ def _finished(component: Component, settings: _ReadSettings) -> Component | Unus
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)
         notes = (*component.notes, f"direction not known: {role}, as stated")
-        component = replace(component, orientation=orientation, notes=notes)
+        statements = (Statement(Kind.USER, f"stated to be {role}", orientation),)
+        component = replace(component, orientation=orientation, statements=statements, notes=notes)
     try:
         return usable(corrected(component, settings.offset))
     except InputError as error:

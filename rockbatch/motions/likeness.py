@@ -1,9 +1,8 @@
 """Which components are of one recording.
 
-Two components are if they point alike, and their headers name one sensor and one event, their samples are the same, or, where
-headers do not decide, they correlate once aligned. Two sets are, as wholes, if both are alike in some frame: copies are cut,
-turned, filtered, or labelled otherwise. The parts of a long recording, which claim one time of triggering, are not: each file
-is a whole set of components, processed alike, and its samples do not correlate.
+Two components are if they point alike and their samples are the same, or correlate once aligned: well where their headers name
+one sensor and one event, very well where these do not tell. Headers propose, samples decide. Two sets are, as wholes, if both
+are alike in some frame: copies are cut, turned, filtered, or labelled otherwise.
 """
 
 import hashlib
@@ -54,11 +53,18 @@ Indices = npt.NDArray[np.int64]
 Truths = npt.NDArray[np.bool_]
 
 
-def pairs_of_one_recording(components: Sequence[Component]) -> tuple[Pairs, list[tuple[int, int]]]:
-    """Return the components that are of the same recording as each component; those without any are missing.
+class Recordings(NamedTuple):
+    """Which components are of one recording, by their places."""
 
-    And copies by a factor of which nothing but their samples says that they are one recording, in order.
-    """
+    pairs: Pairs  # those of the same recording as each component; those without any are missing
+    scaled: list[
+        tuple[int, int]
+    ]  # copies by a factor of which nothing but their samples says that they are one, in order
+    denied: list[tuple[int, int]]  # those of which headers say so, and samples do not
+
+
+def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
+    """Return which components are of one recording, by headers and samples."""
     table = _Table(components)
     pairs: Pairs = {}
     scaled = []
@@ -67,9 +73,15 @@ def pairs_of_one_recording(components: Sequence[Component]) -> tuple[Pairs, list
         pairs.setdefault(i, set()).add(j)
         pairs.setdefault(j, set()).add(i)
 
+    denied = []
     for i in range(len(components)):
-        for j in (*table.copies(i), *table.same_by_headers(i)):
+        for j in table.copies(i):
             join(i, j)
+        for j in table.same_by_headers(i):
+            if j in pairs.get(i, ()) or likeness_of(components[i], components[j]) >= _ALIKE:
+                join(i, j)
+            elif not table.may_be_parts(i, j):
+                denied.append((i, j))
     for i, j in table.alike():
         first, second = components[i], components[j]
         if j in pairs.get(i, ()) or first.sensor.is_distinct_from(second.sensor):
@@ -81,7 +93,7 @@ def pairs_of_one_recording(components: Sequence[Component]) -> tuple[Pairs, list
             join(i, j)
     for i, j in _of_sets(components, pairs, scaled, table):
         join(i, j)
-    return pairs, sorted(scaled)
+    return Recordings(pairs, sorted(scaled), [(i, j) for i, j in denied if j not in pairs.get(i, ())])
 
 
 def _of_sets(
@@ -315,10 +327,7 @@ class _Table:
         ]
 
     def same_by_headers(self, i: int) -> list[int]:
-        """Return later components that headers say are of the same recording; those in one file are of different sensors.
-
-        Two whole files of one step that are processed alike may be parts of one recording; their samples decide.
-        """
+        """Return later components that headers say are of the same recording; those in one file are of different sensors."""
         if self.sensor[i] < 0:
             return []
         near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]
@@ -331,8 +340,13 @@ class _Table:
             k
             for k in j[same_event & ~differ & self._pointing_alike(i, j)].tolist()
             if first.sensor.may_be_same_as(parts[k].sensor)
-            and not (self.whole_file[i] and self.whole_file[k] and _are_parts(first, parts[k]))
         ]
+
+    def may_be_parts(self, i: int, j: int) -> bool:
+        """Return whether components may be of two parts of a recording: of whole files of one step that are processed alike."""
+        a, b = self.components[i], self.components[j]
+        alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
+        return bool(self.whole_file[i] and self.whole_file[j]) and alike
 
     def alike(self) -> Iterator[tuple[int, int]]:
         """Return pairs whose ∫a² dt grows alike in time, and whose spectra are alike, whatever their scale, start and step.
@@ -388,10 +402,10 @@ def _amplitudes(component: Component) -> Samples:
     return np.asarray(np.sqrt(np.maximum(np.diff(energy[ends]), 0.0) / (energy[-1] or 1.0)))
 
 
-def _are_parts(a: Component, b: Component) -> bool:
-    """Return whether components that headers say are of one recording are parts of it: alike, but with other samples."""
-    alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
-    return alike and correlation(a.acceleration, b.acceleration) < _ALIKE
+def likeness_of(a: Component, b: Component) -> float:
+    """Return the largest correlation of the samples of two components, brought to one step, over all shifts."""
+    dt = max(a.dt, b.dt)
+    return correlation(_at_step(a, dt), _at_step(b, dt))
 
 
 def _correlate(a: Component, b: Component) -> bool:

@@ -21,6 +21,7 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import kinds
 from rockbatch.motions.archives import archive_of, is_member
 from rockbatch.motions.component import Component
+from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.record_file import LAYOUTS, ReadOptions
@@ -240,10 +241,13 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         name = component.origin.station if joined else values["station"]
         component = replace(component, station=values["station"], site="", event=values["station"])
         component = replace(component, origin=replace(component.origin, station=name))
+    orientation = _orientation(component.orientation, entry)
+    if orientation is not component.orientation:
+        component = replace(component, statements=(Statement(Kind.USER, f"{file} says", orientation),))
     return replace(
         component,
         acceleration=component.acceleration * factor if factor != 1.0 else component.acceleration,
-        orientation=_orientation(component.orientation, entry),
+        orientation=orientation,
         magnitude=values.get("magnitude", component.magnitude),
         distance_km=values.get("distance_km", component.distance_km),
         confirmed=tuple(key for key in _CONFIRM if values.get(key, key in component.confirmed)),

@@ -11,6 +11,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import Component
+from rockbatch.motions.directions import judged
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.motion import Unusable
@@ -56,6 +57,7 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
     As long as it is not edited it changes no name and no number.
     """
     readings, paths, _ = read_files([folder], options=options)
+    readings = judged(readings)
     components = [reading for reading in readings if isinstance(reading, Component)]
     doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
@@ -102,9 +104,8 @@ def _table(
         lines.append(("unit", component.unit))
     text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
     if not orientation.known:
-        text += (
-            '# role = "horizontal"   # or "vertical": nothing tells its direction; it is not used until this is said\n'
-        )
+        why = legible(component.contradiction) or "nothing tells its direction"
+        text += f'# role = "horizontal"   # or "vertical": {why}; it is not used until this is said\n'
     if not orientation.vertical:
         text += "# azimuth =\n" if orientation.azimuth is None else ""
         text += "".join(f"# {f.key} = true   # {legible(f.text)}\n" for f in gross_findings(component))

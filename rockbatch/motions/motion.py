@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, fields, replace
+from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -443,6 +444,13 @@ class Motion(Shown):
         return times
 
 
+class Problem(Enum):
+    """A kind of problem for which a file, or a component, is not used until somebody says what is right."""
+
+    DIRECTION = "its direction is not known"
+    CONTRADICTION = "what states its direction, or its recording, contradicts itself"
+
+
 @dataclass(frozen=True)
 class Unusable:
     """A file that could not be used, and why; it stays in the tables as a row with its reason.
@@ -451,6 +459,7 @@ class Unusable:
     ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
     in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
     those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
+    ``problem`` is the kind of what has to be said, if it is one of ``Problem``.
     """
 
     name: str
@@ -461,6 +470,7 @@ class Unusable:
     number: int = 0
     companion: str | None = None
     station: str = ""
+    problem: Problem | None = None
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"
@@ -470,7 +480,8 @@ class Unusable:
 class LeftOut:
     """A file or record that is left out on purpose, and why: not selected, not to be used, a copy, or no record.
 
-    If a manifest or the study names it, it is ``named``, and ``station`` is what it would count as.
+    If a manifest or the study names it, it is ``named``, and ``station`` is what it would count as. ``of`` is the file, or
+    component in it, for which it is left out: the original of a copy.
     """
 
     name: str
@@ -478,6 +489,7 @@ class LeftOut:
     reason: str
     station: str = ""
     named: bool = False
+    of: str = ""
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

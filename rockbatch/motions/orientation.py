@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from rockbatch.common.grouping import grouped
+from rockbatch.motions.direction_words import WORDS, folded, pairs, words
 
 
 @dataclass(frozen=True)
@@ -30,36 +31,33 @@ def unknown(label: str = "") -> Orientation:
 UNKNOWN = unknown()
 """Of a file that does not say."""
 
-_UP = {
-    *("UP", "UD", "U", "UPDOWN", "UPDN", "UPWARD", "UPWARDS"),
-    *("V", "VER", "VERT", "VRT", "VERTIC", "VERTICAL", "VERTICALE"),
-    *("Z", "AZ", "ZUP", "UPZ", "VUP", "VERUP", "VERTUP", "VERTICALUP"),
-}
-_DOWN = {
-    *("DWN", "DN", "DOWN", "DOWNWARD", "DOWNWARDS"),
-    *(f"{axis}{down}" for axis in ("Z", "V", "VER", "VERT", "VERTICAL") for down in ("DWN", "DN", "DOWN")),
-    "DOWNZ",
-}
+_VERTICAL = words("vertical") | pairs("up", "down") | pairs("above", "below")
+_UP, _DOWN = words("up"), words("down")
 _AZIMUTHS = {
-    **dict.fromkeys(("N", "NS", "SN", "NORTH", "NORTHSOUTH", "NORTHWARD", "NORTE"), 0.0),
-    **dict.fromkeys(("E", "EW", "WE", "EAST", "EASTWEST", "EASTWARD", "ESTE"), 90.0),
-    **dict.fromkeys(("S", "SOUTH", "SOUTHWARD", "SUR"), 180.0),
-    **dict.fromkeys(("W", "WEST", "WESTWARD", "OESTE"), 270.0),
+    **dict.fromkeys(words("north") | words("ns") | pairs("north", "south"), 0.0),
+    **dict.fromkeys(words("east") | words("ew") | pairs("east", "west"), 90.0),
+    **dict.fromkeys(words("south"), 180.0),
+    **dict.fromkeys(words("west"), 270.0),
 }
-_HORIZONTAL = {
-    *("L", "T", "LN", "TR", "LONG", "LONGI", "LONGIT", "LONGITUDINAL", "TRAN", "TRANS", "TRANSV"),
-    *("TRANSVERSE", "TRANSVERSAL", "RAD", "RADIAL", "TANG", "TANGENTIAL"),
-    *("H", "H1", "H2", "HOR", "HOR1", "HOR2", "HORIZ", "HORIZ1", "HORIZ2", "HORIZONTAL", "HORIZONTAL1", "HORIZONTAL2"),
-    *("X", "Y", "AX", "AY", "FN", "FP", "R"),
-}
+_HORIZONTAL = words("horizontal")
+_ENGLISH = {word for of_meaning in WORDS["English"].values() for word in of_meaning.split()}
+_ELSEWHERE_IN_NAMES = (
+    {  # places are called Nord and Est, and people have initials
+        word for meaning in ("north", "south", "east", "west", "ns", "ew") for word in words(meaning)
+    }
+    - _ENGLISH
+    - {"NORTE", "SUR", "ESTE", "OESTE"}
+)
 
 # SEED channel codes with or without location: band, instrument (N, L, G: accelerometers; H: seismometers), direction.
 _CHANNEL = re.compile(r"(?!CH\d)[BCDEFGHLMSV][NLGH]([ZUVNE12RTXY])(?:\d\d)?")
 _CHANNEL_IN_NAME = re.compile(r"[BEHLS][NLGH][ZNE12](?:\d\d)?")  # three letters of a name may be anything else
 _SENSOR = re.compile(r"(UD|NS|EW)[12]")  # KiK-net: 1 in the borehole, 2 at the surface
 _QUADRANT = re.compile(r"([NS])(\d{1,2})([EW])")
+_FILLING = "|".join(sorted(words("filling"), key=len, reverse=True))
 _NOISE = re.compile(
-    r"^A(?=[-_ ])|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[^A-Z0-9]*[A-Z])|AXIS|DIRECTION|DIR|DEG(?:REES)?|[^A-Z0-9]"
+    rf"^A(?=[-_ ])|{_FILLING}|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[\W\d_]*[^\W\d_])|AXIS|DIRECTION|DIR|"
+    r"DEG(?:REES)?|[\W_]"
 )
 
 
@@ -69,8 +67,8 @@ def orientation_of(label: str) -> Orientation | None:
     A number of one or two digits behind a word is no azimuth: "COMP 3" is the third component, not 3°.
     """
     label = label.strip()
-    key = _NOISE.sub("", label.upper())
-    if key in _UP:
+    key = _key(label)
+    if key in _VERTICAL or key in _UP:
         return Orientation(label, vertical=True)
     if key in _DOWN:
         return Orientation(label, vertical=True, down=True)
@@ -94,6 +92,21 @@ def orientation_of(label: str) -> Orientation | None:
     return None
 
 
+def _key(label: str) -> str:
+    """Return the letters and digits of a label in capitals, without accents and without words such as "component"."""
+    return _NOISE.sub("", folded(label))
+
+
+def is_upward(label: str) -> bool:
+    """Return whether a label says that a component is positive up, and not only that it is vertical."""
+    return _key(label) in _UP
+
+
+def is_place_or_direction(label: str) -> bool:
+    """Return whether a label at the end of a name may be part of that of a place: "North", "West"."""
+    return len(key := _key(label)) > 2 and key in _ENGLISH and key in _AZIMUTHS
+
+
 def orientation_in(label: str) -> Orientation:
     """Return the orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
 
@@ -102,19 +115,25 @@ def orientation_in(label: str) -> Orientation:
     bare = label.strip()
     if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
         return unknown(bare)
-    orientation = orientation_of(bare) or split_stem(bare)[1]
+    site, at_end = split_stem(bare)
+    before = orientation_of(site) if at_end else None
+    if before and at_end and (before.vertical, before.azimuth) != (at_end.vertical, at_end.azimuth):
+        at_end = None  # two directions are none
+    orientation = orientation_of(bare) or at_end
     return (
         Orientation(bare, orientation.vertical, orientation.azimuth, orientation.down) if orientation else unknown(bare)
     )
 
 
+_LETTER = r"[^\W\d_]"
 _PART = r"(?P<site>.*[^-_. ])[-_. ]+"
 _ENDS = tuple(
     re.compile(rf"{site}(?P<label>{label})")
     for site, label in (
-        (_PART, r"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|North-South|East-West|[A-Z]+-axis|[A-Z]+-(?:up|d(?:ow|w)?n))"),
+        (_PART, rf"(?i:N-S|S-N|E-W|W-E|U-D|Up-D(?:ow)?n|{_LETTER}+-axis|{_LETTER}+-(?:up|d(?:ow|w)?n))"),
+        (_PART, rf"{_LETTER}+-{_LETTER}+"),  # Norte-Sur
         (_PART, r"[A-Z][NLGH][ZNE12][-_. ]+\d\d"),
-        (_PART, r"[A-Za-z]+|\d{3}|[A-Za-z]+\d+[A-Za-z]*"),
+        (_PART, rf"{_LETTER}+|\d{{3}}|[A-Za-z]+\d+[A-Za-z]*"),
         (r"(?P<site>.*[A-Za-z0-9])", r"\d{3}|DWN|UP|(?:UD|EW|NS)[12]?|VER|VERT|VRT"),
         (r"(?P<site>.*\d)", r"(?i:DWN|UP|UD|EW|NS|VERT?|VRT)"),
         (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
@@ -149,7 +168,7 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
             match = end.fullmatch(site)
             if match is None or _is_number(match["site"], match["label"], site):
                 continue
-            if orientation := orientation_of(match["label"]):
+            if orientation := _in_name(match["label"]):
                 return (stem, None) if _contradicted(orientation, stem) else (match["site"] + behind, orientation)
         processing = _PROCESSING.fullmatch(site)
         if processing is None:
@@ -159,6 +178,22 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
         if not _contradicted(orientation, stem):
             return re.sub(rf"(^|[-_. ]+){re.escape(orientation.label)}(?=[-_. ])", "", stem, count=1), orientation
     return stem, None
+
+
+def _in_name(label: str) -> Orientation | None:
+    """Return the orientation of a label at the end of a name; ``None`` for what is the name of a place as well."""
+    key = _key(label)
+    pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
+    return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
+
+
+def direction_of_suffix(suffix: str) -> Orientation | None:
+    """Return the orientation that a file's suffix is, as K-NET's .EW and .UD2; ``None`` if it is none."""
+    label = suffix.lstrip(".")
+    if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
+        return None
+    orientation = _in_name(label)
+    return orientation if orientation and (orientation.vertical or orientation.azimuth is not None) else None
 
 
 def _channels(stem: str) -> list[Orientation]:
@@ -191,10 +226,41 @@ def counted(stems: Iterable[str]) -> set[str]:
     """Return stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
     numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
-        azimuths = {int(stem[-3:]) for stem in group}
-        if any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(azimuths, 2)):
+        if _in_series(int(stem[-3:]) for stem in group):
             numbered.update(group)
     return numbered
+
+
+def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
+    """Return station and orientation of stems that differ in one word only, another direction in each: a_UP_corr, a_000_corr.
+
+    Words that may mean something else in a single name, such as nord, count; numbers of files do not.
+    """
+    found: dict[str, tuple[str, Orientation]] = {}
+    groups: dict[tuple[str, ...], dict[str, Orientation]] = {}
+    for stem in dict.fromkeys(stems):
+        for separator in (r"([_. ]+)", r"([-_. ]+)"):  # norte-sur is one word, or two
+            words = re.split(separator, stem)
+            for i in range(0, len(words), 2):
+                orientation = orientation_of(words[i])
+                if orientation and (not words[i].isdigit() or len(words[i]) == 3):
+                    groups.setdefault((*words[:i], "", *words[i + 1 :]), {})[stem] = orientation
+    for around, group in groups.items():
+        directions = {(o.vertical, o.azimuth, o.azimuth is None and o.label.upper()) for o in group.values()}
+        numbers = [int(o.label) for o in group.values() if o.label.isdigit()]
+        upright = any(o.vertical for o in group.values())
+        azimuths = [o.azimuth for o in group.values() if o.azimuth is not None]
+        square = any(not not_square(a, b, "") for a, b in combinations(azimuths, 2))  # N and S may be streets
+        if 1 < len(group) == len(directions) and (upright or square) and not _in_series(numbers):
+            site = re.sub(r"([-_. ])[-_. ]*", r"\1", "".join(around)).strip("-_. ")
+            for stem, orientation in group.items():
+                found.setdefault(stem, (site, orientation))
+    return found
+
+
+def _in_series(numbers: Iterable[int]) -> bool:
+    """Return whether numbers are counted, and no azimuths, which are square to each other."""
+    return any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(set(numbers), 2))
 
 
 SAME_AZIMUTH = 1.0

@@ -16,7 +16,7 @@ from rockbatch.motions.azimuths import rotated_to
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Finding, Motion, Unusable
+from rockbatch.motions.motion import Finding, Motion, Problem, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
@@ -27,6 +27,7 @@ _NO_VERTICAL = (
     "has no vertical component, and the study requires it; put it beside the record, or write vertical = true under "
     "[motions]"
 )
+_NEVER_MOVES = 1e-6  # of the horizontal peak: what is left of an offset that was taken off
 _MOST_OF_IT = 0.95  # of the horizontal peak: what a vertical that ends early may cost
 
 
@@ -50,11 +51,11 @@ def to_motions(
     for their PGA), come back as unusable with the reason.
     """
     unusable = [
-        Unusable(c.name, c.source, _question(c), c.orientation.label, station=station_of(c))
+        Unusable(c.name, c.source, _question(c), c.orientation.label, station=station_of(c), problem=problem)
         for c in components
-        if not c.orientation.known
+        if (problem := _problem(c)) is not None
     ]
-    components = _with_packaged([c for c in components if c.orientation.known], packaged)
+    components = _with_packaged([c for c in components if _problem(c) is None], packaged)
     stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
     known_as = station_names(stations)
@@ -119,8 +120,20 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
     return MotionSet(motions, unusable)
 
 
+def _problem(component: Component) -> Problem | None:
+    """Return why a component has to wait until somebody says what it is; ``None`` if it does not."""
+    if component.contradiction:
+        return Problem.CONTRADICTION
+    return None if component.orientation.known else Problem.DIRECTION
+
+
 def _question(component: Component) -> str:
-    """Return which statement a component of unknown direction lacks, and where to write it."""
+    """Return which statement a component of unknown direction lacks, or which contradict each other, and where to write it."""
+    if component.contradiction:
+        return (
+            f"{component.contradiction}; in motions.toml, which `rockbatch motions FOLDER --write-manifest` drafts, write what "
+            'is right of each that contradicts itself: role = "horizontal" or "vertical", azimuth = …, or use = false'
+        )
     label = component.orientation.label
     one_of_several = bool(label) and component.source.endswith(f"({label})")
     place = f"component = {shown(label)}" if one_of_several else "it"
@@ -174,13 +187,19 @@ def _candidates(horizontal: Component, station: int, verticals: Sequence[Sequenc
 
 def _partner(h: Component, together: Sequence[Component]) -> tuple[Component | None, list[tuple[Component, str]]]:
     """Return which of the vertical components of its station and time goes with a horizontal one; the others, and why not."""
-    judged = [(v, too_unlike(h, v)) for v in together]
+    judged = [(v, _dead(h, v) or too_unlike(h, v)) for v in together]
     refused, fitting = [pair for pair in judged if pair[1]], [v for v, obstacle in judged if not obstacle]
     if len(fitting) < 2:
         return (fitting[0] if fitting else None), refused
     names = ", ".join(v.source for v in fitting)
     reason = f"several vertical components of one station ({names}): keep one of them"
     return None, [*refused, *((v, reason) for v in fitting)]
+
+
+def _dead(h: Component, v: Component) -> str:
+    """Return that a vertical component never moves, while the horizontal one does; empty where it does."""
+    still = float(np.ptp(v.acceleration)) <= _NEVER_MOVES * h.pga
+    return "it never moves: a dead channel" if still and h.pga > 0.0 else ""
 
 
 def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:

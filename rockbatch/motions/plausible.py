@@ -26,6 +26,14 @@ which not even an unprocessed acceleration drifts: it may be a velocity."""
 UNEQUAL = 5.0
 """Ratio of the PGAs of two horizontal components of a station beyond which one gain is likelier wrong than right."""
 
+FAINT = 20.0
+"""Ratio of the PGA of the horizontal components of a station to that of its vertical one, beyond which a gain is likelier wrong;
+real records have 0.4 to 3."""
+
+STEADY = 0.12
+"""Distance of the growth of ∫a² dt from a straight line below which a vertical component is noise, if its horizontal one has
+twice as much; real records have 0.24 and more, white noise of a few hundred samples some 0.05."""
+
 ALTERNATION = 0.25
 """Share of the PGA that swings to and fro, sample by sample, eight samples long, beyond which it is an instrument's."""
 
@@ -37,6 +45,7 @@ ANY = ("*",)
 """Confirms every record."""
 
 _SWINGS = 7
+_SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
 _ENOUGH = 8  # samples: fewer tell nothing about their mean
 _GROUND = re.compile(
     r"free.?field|\bground|basement|\bsurface\b|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
@@ -165,6 +174,51 @@ def unequal_horizontals(judged: Judged) -> Finding | None:
     return Finding("unequal", text)
 
 
+def copied_horizontal(judged: Judged) -> Finding | None:
+    """Find a horizontal component with the samples of the other one of its station."""
+    others = [c for c, _ in judged.peaks if c is not judged.component and len(judged.peaks) == 2]
+    copied = [c.name for c in others if _factor(judged.component.acceleration, c.acceleration)]
+    text = f"it has the samples of {', '.join(copied)}, square to it: check their files"
+    return Finding("copy", text) if copied else None
+
+
+def unlike_vertical(judged: Judged) -> Finding | None:
+    """Find a vertical component that is none of this ground: a copy of a horizontal one, noise, or of another gain."""
+    motion = judged.motion
+    if motion.vertical is None or not np.any(motion.vertical):
+        return None
+    peers = {c.name: c.acceleration for c, _ in judged.peaks} | {motion.name: motion.horizontal}
+    factors = ((name, factor) for name, a in peers.items() if (factor := _factor(motion.vertical, a)))
+    if copied := next(factors, None):
+        name, factor = copied
+        times = "" if (same := abs(abs(factor) - 1.0) <= _SAME_SHAPE) else f" times {abs(factor):.3g}"
+        text = f"its vertical component has the samples of the horizontal one {name}{times}: check the file"
+        return Finding("vertical", text, gross=same)
+    most = max([motion.pga, *(peak for _, peak in judged.peaks)])
+    ratio = np.abs(motion.vertical).max() / max(most, 1e-300)
+    if not 1.0 / FAINT <= ratio <= UNEQUAL:
+        text = f"PGA of its vertical component is {ratio:.3g} times that of the horizontal ones: check their gains"
+        return Finding("vertical", text, gross=True)
+    if _growth_apart(motion.vertical) < STEADY and _growth_apart(motion.horizontal) > 2.0 * STEADY:
+        text = "its vertical component shakes alike from the first to the last sample, and the ground does not: noise"
+        return Finding("vertical", text, gross=True)
+    return None
+
+
+def _factor(a: Samples, b: Samples) -> float:
+    """Return the factor by which samples are those of ``b``; 0 if they are others."""
+    if len(a) != len(b) or not b.any():
+        return 0.0
+    factor = float(a @ b) / float(b @ b)
+    return factor if np.abs(a - factor * b).max() <= _SAME_SHAPE * np.abs(a).max() else 0.0
+
+
+def _growth_apart(samples: Samples) -> float:
+    """Return how far the share of ∫a² dt that has grown is apart from that of the time, at most."""
+    energy = np.cumsum(np.square(samples))
+    return float(np.abs(energy / (energy[-1] or 1.0) - np.arange(1, len(energy) + 1) / len(energy)).max())
+
+
 def in_a_structure(judged: Judged) -> Finding | None:
     """Return that a sensor is on an upper floor, a deck or a crest, or in a borehole, by its place or its station's name."""
     if depth := in_a_borehole(judged.component):
@@ -202,6 +256,8 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
     alternation,
     displacement,
     unequal_horizontals,
+    copied_horizontal,
+    unlike_vertical,
     in_a_structure,
     differing_copies,
     unprocessed,

@@ -42,7 +42,13 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
     by_header = grouped(components, lambda c: (c.folder, c.station or id(c)))
     stations: list[list[Component]] = []
     by_name: dict[tuple[str, str, bool], list[Component]] = {}
-    for group in (part for whole in by_header.values() for record in _by_time(whole) for part in _by_file(record)):
+    for group in (
+        part
+        for whole in by_header.values()
+        for record in _by_time(whole)
+        for of_file in _by_file(record)
+        for part in _by_name(of_file)
+    ):
         folder, headed = group[0].folder, bool(group[0].station)
         sites = list(dict.fromkeys(component.site for component in group if component.site))
         of_name = (by_name.get((folder, site, headed and not is_numbered(site))) for site in sites)
@@ -66,8 +72,7 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
     each name of a station, is one.
     """
     if not all(component.dated for component in group):
-        directions = {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in group}
-        if all(component.event for component in group) or len(directions) == len(group):
+        if all(component.event for component in group) or len(_directions(group)) == len(group):
             return [group]
         files = Counter(file_of(component.source) for component in group)
         return list(grouped(group, lambda c: (f, "") if files[f := file_of(c.source)] > 1 else ("", c.site)).values())
@@ -92,6 +97,20 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
     remainder = [component for components in files.values() if not _is_whole(components) for component in components]
     if remainder:
         yield remainder
+
+
+def _by_name(record: list[Component]) -> list[list[Component]]:
+    """Return one set for each name of a station, if a direction comes again and none does within a name of several; else all."""
+    sites = grouped(record, lambda c: c.site)
+    if len(_directions(record)) == len(record) or len(sites) < 2:
+        return [record]
+    whole = all(1 < len(_directions(members)) == len(members) for members in sites.values())
+    return list(sites.values()) if whole else [record]
+
+
+def _directions(components: Iterable[Component]) -> set[tuple[bool, float | None, str]]:
+    """Return the directions of components, by azimuth and label."""
+    return {(c.orientation.vertical, c.orientation.azimuth, c.orientation.label) for c in components}
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
@@ -136,6 +155,7 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
     firsts = [stations[i][0] for i in records]
     names = distinct(
         list(map(station_of, firsts)),
+        lambda i, name: f"{firsts[i].sensor.network or ''}.{name}".strip("."),
         lambda i, name: f"{name} {firsts[i].event}".strip(),
         lambda i, name: f"{name} {firsts[i].folder.rsplit('/', 1)[-1]}".strip(),
     )

@@ -53,7 +53,7 @@ def _shake() -> str:
 
 
 def _unam_in_exponents() -> str:
-    samples = np.array([wiggle(3, i, 50.0) for i in range(43)])
+    samples = np.array([wiggle(43, i, 50.0) for i in (1, 2, 3)]).T
     text = unam_text(columns=samples.T, **{"FORMATO DATOS (FORTRAN,10 campos/dato)": "3E16.7"})
     rows = "".join("".join(f"{value:16.7E}" for value in row) + "\n" for row in samples)
     head = text[: text.index("DATOS DE ACELERACION")].replace("ACEL. MAX.(Gal)", "ACEL. MAX. (Gal)")

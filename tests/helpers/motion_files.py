@@ -15,6 +15,7 @@ with warnings.catch_warnings():
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import Component
 from rockbatch.motions.folder import read_files
+from rockbatch.motions.orientation import split_stem
 
 RECORDS = Path(os.environ.get("ROCKBATCH_RECORDS", "no-records"))
 """Folder of real records, most of which may not be redistributed; its path comes from the environment."""
@@ -73,8 +74,10 @@ def at2_text(
 
 
 def write_at2(folder: Path, name: str, values, **header) -> Path:
-    """Write an AT2 file into ``folder``."""
+    """Write an AT2 file into ``folder``; unless a ``title`` is given, it says the direction that the name does, or 228°."""
     folder.mkdir(parents=True, exist_ok=True)
+    by_name = split_stem(Path(name).stem)[1]
+    header.setdefault("title", f"Made-up, 1/17/1994, Test Station, {by_name.label if by_name else 228}")
     path = folder / name
     path.write_bytes(at2_text(values, **header).encode("latin-1"))
     return path

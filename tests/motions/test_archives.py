@@ -15,7 +15,7 @@ import pytest
 from agency_files import knet_text
 from archive_files import tarred, write_zip
 from motion_files import at2_text, wiggle, write_at2
-from waveform_files import channel_xml, station_xml, trace, write_mseed
+from waveform_files import COUNTS, channel_xml, station_xml, trace, write_mseed
 
 from rockbatch.motions import archives, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
@@ -323,7 +323,7 @@ def test_other_archives_lead_on(tmp_path, name):
 
 
 def test_a_vertical_named_z_is_no_archive(tmp_path):
-    write_at2(tmp_path, "ABBAR.N", wiggle(50, 1))
+    write_at2(tmp_path, "ABBAR.N", wiggle(50, 1), title="Made-up, 1/17/1994, Test Station, N")
     write_at2(tmp_path, "ABBAR.Z", wiggle(50, 2), title="Made-up, 1/17/1994, Test Station, UP")
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical_source == "ABBAR.Z"
@@ -383,7 +383,7 @@ def test_a_folder_is_looked_through_for_station_xml_once(tmp_path, monkeypatch):
     plain = archives.files_in
     monkeypatch.setattr(archives, "files_in", lambda folder: (looked.append(folder), plain(folder))[1])
     for channel in ("HNE", "HNN", "HNZ"):
-        write_mseed(tmp_path / f"{channel}.mseed", trace(channel))
+        write_mseed(tmp_path / f"{channel}.mseed", trace(channel, COUNTS // (2 if channel == "HNZ" else 1)))
     station_xml(tmp_path, *map(channel_xml, ("HNE", "HNN", "HNZ")))
     assert not read_motions(tmp_path).unusable
     assert looked == [tmp_path]

@@ -158,3 +158,26 @@ def test_the_direction_is_that_of_the_header_else_that_of_the_name(title, azimut
     data = at2_text(wiggle(), title=title).encode()
     (component,) = read_record(RecordFile(Path("x_090.AT2"), "x_090.AT2", data))
     assert component.orientation.azimuth == azimuth
+
+
+@pytest.mark.parametrize(
+    ("title", "event", "date", "station", "component"),
+    [
+        ("Big One, 1/17/1994, Some Dam (upper left), 104", "Big One", "1/17/1994", "Some Dam (upper left)", "104"),
+        ("BIG ONE 2/9/71 14:00, SOME DAM (LEFT, TOE), UP", "BIG ONE", "2/9/71 14:00", "SOME DAM (LEFT, TOE)", "UP"),
+        ("BIG ONE 04/25/92 1806, STURNO (STN), 270, (ENEL)", "BIG ONE", "04/25/92 1806", "STURNO (STN)", "270"),
+        ("AFTERSHOCK 09/20/99 2146, XYZ039, W, CWB", "AFTERSHOCK", "09/20/99 2146", "XYZ039", "W"),
+        ("Big One, 1994/01/17, 12:31, Town Hall, 090 (cut off, as", "Big One", "1994/01/17 12:31", "Town Hall", "090"),
+        ("Kobe, 1995.01.16, KJMA (JMA), DWN (JMA)", "Kobe", "1995.01.16", "KJMA (JMA)", "DWN"),
+        ("Big One, 17 Jan 1994, 04:31:02 UTC, CEM, L", "Big One", "17 Jan 1994 04:31:02 UTC", "CEM", "L"),
+        ("Big One, January 17, 1994, 0431, CEM, L", "Big One", "January 17, 1994 0431", "CEM", "L"),
+        ("Big One, 10/29/83, 23:29 CEM, UP", "Big One", "10/29/83 23:29", "CEM", "UP"),
+        ("Big One, 10/29/83, 1336, 000", "Big One", "10/29/83", "1336", "000"),  # four digits may be a station
+        ("Big One, 19990921, Some Town", "Big One", "19990921", "Some Town", ""),
+    ],
+)
+def test_parentheses_agencies_dates_and_clocks_of_a_title_stay_out_of_each_other(
+    title, event, date, station, component
+):
+    at2 = read(at2_text(VALUES, title=title)).stats.at2
+    assert (at2.event, at2.date, at2.station, at2.component) == (event, date, station, component)

@@ -109,7 +109,7 @@ def test_one_file_per_channel_is_paired_within_its_location(tmp_path):
     for number, (label, place) in enumerate(
         [("Up", "Freefield"), ("360 Deg", "Freefield"), ("Up", "Basement"), ("90 Deg", "Basement")], start=1
     ):
-        text = one_channel(label, number=number, place=place)
+        text = one_channel(label, A if number % 2 else B, number=number, place=place)
         (tmp_path / f"CHAN{number:02d}.V2").write_bytes(text.encode("latin-1"))
     found = read_motions(tmp_path)
     assert [(motion.name, motion.vertical_source) for motion in found.motions] == [

@@ -14,6 +14,7 @@ from waveform_files import COUNTS, START, trace, write_mseed
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.manifest_draft import draft
+from rockbatch.motions.motion import Problem
 
 
 def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:
@@ -142,13 +143,21 @@ def test_the_same_recording_in_another_unit_is_recognised_by_its_header(tmp_path
     assert left_out(found)["RSN7_X_STA000.AT2"].startswith("the same recording as sta.AT2")
 
 
-def test_of_two_parts_the_one_with_the_shaking_is_used(tmp_path):
+def test_of_two_files_that_claim_one_component_with_other_samples_none_is_used_until_somebody_says(tmp_path):
     strong, weak = wiggle(60, 1), wiggle(60, 2) / 20
     write_at2(tmp_path, "a_part1.AT2", weak, title=title("0"))
     write_at2(tmp_path, "a_part2.AT2", strong, title=title("0"))
     found = read_motions(tmp_path)
-    assert [motion.source for motion in found.motions] == ["a_part2.AT2"]
-    assert left_out(found)["a_part1.AT2"].startswith("the same recording as a_part2.AT2")
+    assert not found.motions
+    assert {unusable.problem for unusable in found.unusable} == {Problem.CONTRADICTION}
+    for unusable in found.unusable:
+        assert "a_part1.AT2" in unusable.reason
+        assert "a_part2.AT2" in unusable.reason
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "a_part1.AT2"\nuse = false\n')
+    assert [motion.source for motion in read_motions(tmp_path).motions] == ["a_part2.AT2"]
+    entries = (f'[[record]]\nfile = "a_part{i}.AT2"\nazimuth = 0\n' for i in (1, 2))
+    (tmp_path / "motions.toml").write_text("".join(entries))
+    assert len(read_motions(tmp_path).motions) == 2
 
 
 def test_a_set_with_its_vertical_goes_before_one_without(tmp_path):
@@ -229,8 +238,7 @@ def test_the_drafted_manifest_has_the_line_that_takes_the_other_one(tmp_path):
     text = draft(tmp_path)
     lines = [line for line in text.splitlines() if line.startswith("# use = true   ")]
     assert lines == [
-        f"# use = true   # the same recording, less corrected, as STA.V2A ({way}), which is used"
-        for way in ("N28W", "S62W", "Up")
+        f"# use = true   # the same recording, less corrected, as STA.V2A ({way})" for way in ("N28W", "S62W", "Up")
     ]
     before = read_motions(tmp_path)
     (tmp_path / "motions.toml").write_text(text)

@@ -332,9 +332,9 @@ def test_at2_without_a_unit_takes_the_stated_one_or_none(tmp_path):
 @pytest.mark.parametrize("late", [0.004, 0.0895])
 def test_a_vertical_without_two_samples_in_common_with_its_horizontal_is_not_used(late):
     """They overlap by 6 ms without a sample in common, or by half a millisecond."""
-    h, v = component([0, 1, 0, 1, 0, 1, 0, 1, 0, 1], start=100.0), component([5, 5], vertical=True, start=99.996)
+    h, v = component([0, 1, 0, 1, 0, 1, 0, 1, 0, 1], start=100.0), component([5, 6], vertical=True, start=99.996)
     if late > 0.01:
-        v = component([5, 5, 5], vertical=True, start=100.0 + late)
+        v = component([5, 6, 5], vertical=True, start=100.0 + late)
     (motion,) = to_motions([h, v]).motions
     assert (motion.npts, motion.vertical) == (10, None)
     assert any("does not last over the horizontal peak" in note for note in motion.notes)

@@ -57,18 +57,19 @@ def test_the_input_unit_of_a_station_xml_is_understood_in_its_spellings(tmp_path
 
 
 def test_a_vertical_channel_with_positive_dip_points_down(tmp_path):
-    write_mseed(tmp_path / "all.mseed", trace("HNN"), trace("HNZ"))
+    write_mseed(tmp_path / "all.mseed", trace("HNN"), trace("HNZ", COUNTS * 2))
     station_xml(tmp_path, channel_xml("HNN"), channel_xml("HNZ", dip=90.0))
     (motion,) = read_motions(tmp_path).motions
     assert motion.vertical is not None
-    np.testing.assert_allclose(motion.vertical, -motion.horizontal)
+    np.testing.assert_allclose(motion.vertical, -2 * motion.horizontal)
     assert any("positive down" in note for note in motion.notes)
 
 
 @pytest.mark.parametrize(
     ("channel", "azimuth"),
     [
-        (channel_xml("HNE", 360.0), 0.0),
+        (channel_xml("HNE", 450.0), 90.0),
+        (channel_xml("HNE", 328.0), 328.0),  # of a sensor that is turned
         (channel_xml("HNE").replace("<Azimuth>0.0</Azimuth>", ""), 90.0),
         (channel_xml("HNE").replace("<Dip>0.0</Dip>", ""), 90.0),
     ],
@@ -80,7 +81,7 @@ def test_a_direction_is_that_of_the_station_xml_else_that_of_the_channels_code(t
 
 
 def test_a_file_of_several_channels_names_them_by_channel_id(tmp_path):
-    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), trace("HNZ"))
+    write_mseed(tmp_path / "all.mseed", trace("HNE"), trace("HNN"), trace("HNZ", COUNTS * 2))
     found = read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))
     assert [motion.name for motion in found.motions] == ["CI.LRL..HNE", "CI.LRL..HNN"]
     assert all(motion.vertical is not None for motion in found.motions)
@@ -198,7 +199,7 @@ def test_only_a_gap_far_longer_than_the_record_lies_between_two_events(tmp_path,
 def test_two_events_of_one_knet_station_are_turned_each_on_its_own(tmp_path):
     for event, minute, seed in (("A", "38", 1), ("B", "58", 2)):
         for direction, suffix in (("E-W", "EW"), ("N-S", "NS"), ("U-D", "UD")):
-            text = knet_text(direction, seed=seed)[0].replace("19:51:38", f"19:{minute}:38")
+            text = knet_text(direction, seed=seed + 10 * (suffix == "UD"))[0].replace("19:51:38", f"19:{minute}:38")
             (tmp_path / f"TST{event}.{suffix}").write_text(text)
     found = read_motions(tmp_path, azimuths=(30.0,))
     assert [motion.name for motion in found.motions] == ["TSTA_az030", "TSTB_az030"]
@@ -279,8 +280,9 @@ def test_sac_without_a_stated_unit_is_refused_with_the_remedy(tmp_path):
 
 
 def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):
-    for direction, suffix in (("E-W", "EW"), ("U-D", "UD")):
-        text, counts = knet_text(direction)
+    counts = knet_text()[1]
+    for seed, (direction, suffix) in enumerate((("E-W", "EW"), ("U-D", "UD")), start=1):
+        text = knet_text(direction, seed=seed)[0]
         (tmp_path / f"TST0031801241951.{suffix}").write_text(text)
     (motion,) = read_motions(tmp_path).motions
     expected = (counts - counts.mean()) * 7845 / 8223790 / 100
@@ -293,7 +295,7 @@ def test_knet_counts_times_scale_without_their_offset_are_m_s2(tmp_path):
 
 def test_kiknet_borehole_and_surface_are_two_stations(tmp_path):
     for direction, suffix in ((2, "EW1"), (3, "UD1"), (5, "EW2"), (6, "UD2")):
-        (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction))[0])
+        (tmp_path / f"TST.{suffix}").write_text(knet_text(str(direction), seed=direction)[0])
     found = read_motions(tmp_path)
     assert [(m.name, m.vertical_source) for m in found.motions] == [("TST", "TST.UD2")]
     assert {left.source: left.reason.partition(",")[0] for left in found.left_out} == dict.fromkeys(

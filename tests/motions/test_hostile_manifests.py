@@ -77,7 +77,7 @@ def test_more_mistakes_than_are_reported_are_announced(folder):
 def test_a_large_manifest_without_a_mistake_is_read(folder):
     names = [f"x{i:04d}_HNE.AT2" for i in range(3)]
     for i, name in enumerate(names):
-        write_at2(folder, name, wiggle(seed=i + 2), title=f"X, 1/17/1994, S{i}, 000")
+        write_at2(folder, name, wiggle(seed=i + 2), title=f"X, 1/17/1994, S{i}, 090")
     lines = "".join(f'[[record]]\nfile = "{name}"\nscale = 2.0\n# {"." * 100_000}\n\n' for name in names)
     (folder / "motions.toml").write_text(lines + "\n" * 1_000_000)
     with bounds(10, 500):

@@ -136,3 +136,42 @@ def test_the_name_of_a_column_tells_its_direction_or_nothing():
         assert orientation_in(label) == Orientation(label, vertical=True, azimuth=None)
     for label in ("12", "45", "A_12"):
         assert orientation_in(label) == Orientation(label, vertical=False, azimuth=None, known=False)
+
+
+@pytest.mark.parametrize(
+    ("north", "east", "upright"),
+    [
+        ("Sur-Norte", "Componente Este - Oeste", "Aceleración vertical"),
+        ("Norte-Sul", "LESTE-OESTE", "vertical"),
+        ("Composante Nord-Sud", "Est-Ouest", "VERTICALE"),
+        ("Nord - Sud", "est-ovest", "Componente verticale"),
+        ("NORD-SÜD", "Ostkomponente", "senkrecht"),
+        ("Sued-Nord", "O-W", "auf-ab"),
+        ("Kuzey-Güney", "DOĞU-BATI", "Düşey bileşen"),
+        ("K-G", "D-B", "yukarı-aşağı"),
+        ("Βορράς-Νότος", "Ανατολή-Δύση", "Κατακόρυφη συνιστώσα"),
+        ("Север-Юг", "В-З", "вертикальная"),
+        ("sever-yug", "vostok-zapad", "vertikal"),
+        ("南北動", "東西成分", "上下"),
+        ("Nanboku", "Tōzai", "Jōge"),
+        ("南北向", "东西", "竖向"),
+        ("شمالی - جنوبی", "شرقی-غربی", "قائم"),
+        ("shomal-jonub", "shargh-gharb", "ghaem"),
+        ("Utara-Selatan", "timur-barat", "tegak"),
+        ("남북", "동서", "수직"),
+    ],
+)
+def test_directions_are_understood_in_the_languages_of_those_who_record_them(north, east, upright):
+    for label, azimuth in ((north, 0.0), (east, 90.0)):
+        assert (orientation_in(label).vertical, orientation_in(label).azimuth) == (False, azimuth)
+    assert (orientation_in(upright).vertical, orientation_in(upright).down) == (True, False)
+
+
+@pytest.mark.parametrize("label", ["O", "Este-Sur", "Nord-Ost", "Alto", "bas"])
+def test_words_that_mean_two_directions_are_none(label):
+    assert not orientation_in(label).known
+
+
+@pytest.mark.parametrize("stem", ["Palo_Alto", "Bologna_Nord", "Roma_Est", "x_DB"])
+def test_names_of_places_are_no_directions(stem):
+    assert split_stem(stem) == (stem, None)

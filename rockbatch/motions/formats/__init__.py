@@ -5,13 +5,17 @@ joins by a line in ``FORMATS``. Formats whose header does not tell them from all
 are read in files of their suffixes only, and ObsPy is never left to guess (see ``with_obspy``).
 """
 
+import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
+from rockbatch.motions.evidence import Kind, Statement, settled
 from rockbatch.motions.formats import (
     afad,
     at2,
@@ -35,6 +39,7 @@ from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
+from rockbatch.motions.orientation import Orientation, is_place_or_direction, split_stem
 from rockbatch.motions.record_file import RecordFile
 from rockbatch.motions.texts import with_legible_texts
 
@@ -112,7 +117,26 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     if form is None:
         raise InputError(_not_recognised(file))
     with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-        return [usable(with_legible_texts(reading)) for reading in form.read(file)]
+        readings = [with_legible_texts(reading) for reading in form.read(file)]
+    if len(readings) == 1 and isinstance(only := readings[0], Component):
+        readings = [with_name(only, file.path.name, split_stem(file.stem)[1])]
+    return [usable(reading) for reading in readings]
+
+
+def with_name(component: Component, name: str, orientation: Orientation | None) -> Component:
+    """Return the only component of a file with what the file's name states of its direction, instead of what was said of that.
+
+    Digits that the station's name ends in are no azimuth.
+    """
+    statements = tuple(s for s in component.statements if s.kind is not Kind.NAME)
+    station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)
+    if orientation and not (orientation.label.isdigit() and station.endswith(orientation.label)):
+        weak = is_place_or_direction(orientation.label) or len(Path(name).stem) == 1
+        statements += (Statement(Kind.NAME, f"its file is called {shown(name)}", orientation, weak=weak),)
+    if statements == component.statements:
+        return component
+    orientation = settled(statements, component.orientation.label)
+    return replace(component, statements=statements, orientation=orientation)
 
 
 def usable(reading: Component | Unusable) -> Component | Unusable:

@@ -17,7 +17,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_of, split_stem
+from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.record_file import RecordFile, unstated
 
@@ -32,7 +32,19 @@ _COUNT_AND_STEP = tuple(
 )
 _UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORECASE)
 _IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # of El Centro 1940 as it goes from hand to hand
-_DATE = re.compile(r"\d{1,2}/\d{1,2}/\d{2,4}|\d{4}-\d{2}-\d{2}")
+_MONTH = r"(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?"
+_DATE = re.compile(
+    r"(?<!\d)(?:(?:19|20)\d\d([-/.])\d{1,2}\1\d{1,2}|(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])"
+    rf"|\d{{1,2}}/\d{{1,2}}/\d{{2,4}}|\d{{1,2}}([-.])\d{{1,2}}\2(?:19|20)\d\d"
+    rf"|\d{{1,2}}[- ]{_MONTH}[- ](?:19|20)\d\d|{_MONTH} +\d{{1,2}},? +(?:19|20)\d\d)(?!\d)",
+    re.IGNORECASE,
+)
+_CLOCK = re.compile(
+    r"(?:[01]?\d|2[0-4]):[0-5]\d(?::[0-5]\d(?:\.\d+)?)?(?: *(?:UTC?|GMT|Z|[AP]\.?M\.?|LOCAL|[A-Z]{1,3}[SD]T))?(?![\w:])|"
+    r"(?:[01]\d|2[0-3])[0-5]\d$",
+    re.IGNORECASE,
+)
+_FIELD = re.compile(r"(?:[^,(]|\([^()]*(?:\)|$))+")  # between commas, which may stand in parentheses, too
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
 _HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
 _HEADER_BYTES = 2048
@@ -70,8 +82,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     except ValueError as error:
         raise InputError(f"header: {error}") from None
     notes = (*recording.notes, *file.options.overruled(unit, recording.dt, file.gravity))
-    orientation = orientation_of(recording.label) or split_stem(file.stem)[1]
-    return to_components(file, [replace(recording, unit=unit, orientation=orientation, notes=notes)])
+    return to_components(file, [replace(recording, unit=unit, notes=notes)])
 
 
 def _parse(text: str) -> list[Recording]:
@@ -124,19 +135,42 @@ def _count_and_step(line: str) -> re.Match[str] | None:
 def _title(line: str) -> tuple[str, str, str, str]:
     """Return event, date, station and component of header line 2; empty where it does not say.
 
-    "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG
-    …)".
+    "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG …)". What stands
+    behind the component is of the agency; parentheses before it are of the station: "Pacoima Dam (upper left), 104".
     """
-    fields = [field.strip() for field in re.sub(r"\(.*", "", line).split(",")]
-    place = next((i for i, field in enumerate(fields) if _DATE.search(field)), None)
-    if place is None:
-        return ("", "", "", fields[-1] if len(fields) > 1 and orientation_of(fields[-1]) else "")
-    start = _DATE.search(fields[place])
-    assert start is not None
-    event = ", ".join(filter(None, [*fields[:place], fields[place][: start.start()].strip()]))
-    component = fields[-1] if len(fields) > place + 1 and orientation_of(fields[-1]) else ""
-    station = ", ".join(fields[place + 1 : -1] if component else fields[place + 1 :])
-    return event, fields[place][start.start() :], station, component
+    date = _DATE.search(line)
+    if date is None:
+        fields = _fields(line)
+        place = _component_of(fields)
+        return ("", "", "", _bare(fields[place]) if place > 0 else "")
+    event = ", ".join(_fields(line[: date.start()]))
+    behind = line[date.end() :]
+    same_field = re.match(r"[^,(]*", behind)
+    assert same_field is not None  # a pattern that an empty text matches
+    day = (date[0] + same_field[0]).strip()
+    fields = _fields(behind[same_field.end() :])
+    while len(fields) > 1 and (clock := _CLOCK.match(fields[0])) and (":" in clock[0] or _component_of(fields) != 1):
+        rest = fields[0][clock.end() :].strip(" ,-")
+        day, fields = f"{day} {clock[0]}", ([rest] if rest else []) + fields[1:]
+    place = _component_of(fields)
+    if place < 0:
+        return event, day, ", ".join(fields), ""
+    return event, day, ", ".join(fields[:place]), _bare(fields[place])
+
+
+def _fields(text: str) -> list[str]:
+    """Return what stands between the commas of a title, but those in parentheses."""
+    return [field for match in _FIELD.finditer(text) if (field := match[0].strip())]
+
+
+def _bare(field: str) -> str:
+    """Return a field of a title without what stands in parentheses behind it: "000" of "000 (CDMG STATION 89005)"."""
+    return re.sub(r"(?<=[^\s(])\s*\(.*", "", field).strip()
+
+
+def _component_of(fields: list[str]) -> int:
+    """Return the place of the last field that is a direction, behind which there may be an agency; -1 without one."""
+    return next((i for i in reversed(range(len(fields))) if orientation_of(_bare(fields[i]))), -1)
 
 
 def _values(text: str, start: int, npts: int) -> Samples:

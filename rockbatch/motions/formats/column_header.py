@@ -70,6 +70,7 @@ class Column:
 
     label: str
     unit: str | None = None
+    stated: bool = False  # whether the study states the label
 
     @property
     def is_time(self) -> bool:
@@ -209,6 +210,8 @@ def _tidy(label: str) -> str:
     key = re.sub(r"[^A-Z]", "", bare.upper())
     if key in _SHORT:
         return _SHORT[key]
+    if len(parts := re.split(r"\s*-\s*", bare)) == 2 and all(len(p) > 1 and orientation_of(p) for p in parts):
+        return "-".join(parts)  # Norte-Sur
     return re.sub(r"[-\s]+", "", bare) if orientation_of(bare) else bare or label
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from rockbatch.common.errors import InputError, NoRecordError
 from rockbatch.motions.component import Component
+from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.column_header import (
     Column,
     StatedStep,
@@ -30,7 +31,7 @@ from rockbatch.motions.formats.table import WRAPPED, read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import orientation_in, same_azimuth, split_stem
+from rockbatch.motions.orientation import orientation_in, same_azimuth
 from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of, unstated
 
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
@@ -73,10 +74,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
             recordings[i] = replace(recording, notes=(*recording.notes, *overruled))
     if len(recordings) > 1:
         return to_components(file, [replace(recording, station=file.stem) for recording in recordings])
-    (only,) = recordings
-    if not orientation_in(only.label).known:
-        only = replace(only, orientation=split_stem(file.stem)[1])
-    return to_components(file, [only])
+    return to_components(file, recordings)
 
 
 def _parse(text: str, options: ReadOptions) -> list[Recording]:
@@ -104,6 +102,7 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
         Recording(
             label=columns[i].label,
             orientation=orientation_in(columns[i].label),
+            stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
             dt=dt,
             values=values[:, i],
             unit=columns[i].unit or unit or "",
@@ -155,7 +154,7 @@ def _completed(header: Column, stated: str) -> Column | None:
             and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
         )
         unchanged = by_header.vertical or by_header.azimuth is not None or not by_study.known
-        column = header if by_header.known and unchanged else Column(stated, header.unit)
+        column = header if by_header.known and unchanged else Column(stated, header.unit, stated=True)
     return column if agree else None
 
 

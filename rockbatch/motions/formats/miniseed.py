@@ -9,12 +9,14 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
+from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
+from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
 from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
-from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
+from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.record_file import RecordFile, no_acceleration
 
@@ -148,11 +150,10 @@ def _component(
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
     entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
-    orientation = orientation_of(stats.channel) or unknown(stats.channel)
+    statements = _directions(trace.id, entry)
     if entry is not None and entry.sensitivity:
         unit, sensitivity = entry.unit, entry.sensitivity
         origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"
-        orientation = _oriented(trace.id, orientation, entry)
     elif (kind := not_acceleration(stats.channel)) and "unit" not in file.options.instead:
         raise no_acceleration(trace.id, kind)
     elif file.options.unit is not None or file.options.sensitivity is not None:
@@ -177,7 +178,8 @@ def _component(
         name=name,
         dt=float(stats.delta),
         acceleration=trace.data * (factor / sensitivity),
-        orientation=orientation,
+        orientation=settled(statements, stats.channel),
+        statements=statements,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
         source=source,
         start=start,
@@ -192,13 +194,17 @@ def _component(
     )
 
 
-def _oriented(channel_id: str, by_code: Orientation, entry: stationxml.Channel) -> Orientation:
-    """Return the orientation by azimuth and dip, where StationXML has them; else by the channel's code."""
-    if entry.dip is None:
-        return by_code
-    if abs(entry.dip) > 80:
-        return Orientation(by_code.label, vertical=True, down=entry.dip > 0)
-    if abs(entry.dip) > 10:
-        raise InputError(f"{channel_id} is inclined (dip {entry.dip:g}°): neither horizontal nor vertical")
-    azimuth = by_code.azimuth if entry.azimuth is None else entry.azimuth % 360.0
-    return Orientation(by_code.label, azimuth=azimuth)
+def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Statement, ...]:
+    """Return what states the direction of a channel: its code, and azimuth and dip of StationXML; ``InputError`` if inclined."""
+    channel = channel_id.rpartition(".")[2]
+    code = orientation_of(channel)
+    statements = [Statement(Kind.CODE, f"channel {shown(channel)}", code)] if code else []
+    if entry is not None:
+        named = (("azimuth", entry.azimuth), ("dip", entry.dip))
+        words = " and ".join(f"{name} {value:g}°" for name, value in named if value is not None)
+        try:
+            angles = by_angles(channel, f"{words} in StationXML", entry.azimuth, entry.dip)
+        except ValueError as error:
+            raise InputError(f"{channel_id} is {error}") from None
+        statements += [angles] if angles else []
+    return tuple(statements)

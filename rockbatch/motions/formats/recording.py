@@ -4,8 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.component import UNKNOWN_SENSOR, Component, Sensor
+from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.measures import initial_of
 from rockbatch.motions.motion import Finding, Initial, Samples, Unusable
@@ -27,6 +29,7 @@ class Recording:
     unit: str  # as units.acceleration_factor understands it
     station: str = ""  # what the channels of one station share, other versions of the same record not included
     orientation: Orientation | None = None  # where it is not what the label says
+    stated_by: Kind = Kind.HEADER  # what the label is from
     codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the sensor
     start: float | None = None  # time of the first sample [s since 1970, UTC]
     processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
@@ -85,6 +88,7 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         factor = acceleration_factor(recording.unit, file.gravity)
     except ValueError as error:
         raise InputError(f'component "{recording.label}": {error}') from None
+    words = "it is stated to be" if recording.stated_by is Kind.USER else "its header says"
     acceleration = recording.values * factor
     series = [_in_metres(samples) for samples in (recording.velocities, recording.displacements)]
     findings = contradictions_of(recording, factor, file.gravity)
@@ -93,6 +97,9 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
         dt=recording.dt,
         acceleration=acceleration,
         orientation=orientation,
+        statements=(Statement(recording.stated_by, f"{words} {shown(recording.label)}", orientation),)
+        if orientation.known
+        else (),
         station=recording.station,
         source=source,
         start=recording.start,

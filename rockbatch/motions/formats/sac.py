@@ -5,21 +5,23 @@ floats. Words whose value is -12345 are undefined. Source: SAC's manual, "SAC da
 """
 
 import math
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
 
 from rockbatch.common.errors import InputError
+from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
+from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
-from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
+from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.record_file import RecordFile, no_acceleration, unstated
 
-_LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _DAY = 86400.0  # s
 _STALE = (1.0, 1.0)  # limits of extremes: a factor of 2
 _KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
@@ -82,6 +84,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
         )
     start, day = _start(numbers)
+    statements = _directions(channel, numbers)
     unit = options.unit or "m/s2"
     factor = acceleration_factor(unit, file.gravity) / (options.sensitivity or 1.0)
     dt = float(str(np.float32(numbers["DELTA"])))  # the shortest decimal that a header of four bytes may mean
@@ -92,7 +95,8 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             name=file.stem,
             dt=dt,
             acceleration=samples * factor,
-            orientation=orientation_of(channel) or _by_angles(numbers) or split_stem(file.stem)[1] or unknown(channel),
+            orientation=settled(statements, channel),
+            statements=statements,
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
             start=start,
@@ -162,11 +166,21 @@ def _start(numbers: dict[str, float]) -> tuple[float, str]:
     return start, datetime.fromtimestamp(start, UTC).strftime("%Y-%m-%d") if start >= FIRST_YEAR else ""
 
 
-def _by_angles(numbers: dict[str, float]) -> Orientation | None:
-    """Return the orientation by CMPAZ (from north) and CMPINC (from upward vertical) [degrees], if both are set and it is one."""
-    if "CMPINC" not in numbers or "CMPAZ" not in numbers:
-        return None
-    azimuth, inclination = numbers["CMPAZ"], numbers["CMPINC"]
-    if inclination in (0.0, 180.0):
-        return Orientation("", vertical=True, down=inclination == 180.0)
-    return Orientation("", azimuth=azimuth % 360.0) if abs(inclination - 90.0) <= _LEVEL else None
+def _directions(channel: str, numbers: dict[str, float]) -> tuple[Statement, ...]:
+    """Return what states the direction: the channel, CMPAZ (from north) and CMPINC (from upward vertical) [degrees].
+
+    Angles of 0° both are those of an upward component, and what programs write that do not set them. Those of an inclined
+    one state nothing.
+    """
+    code = orientation_of(channel)
+    by_code = (Statement(Kind.CODE, f"channel {shown(channel)}", code),) if code else ()
+    azimuth, inclination = numbers.get("CMPAZ"), numbers.get("CMPINC")
+    words = ", ".join(f"{name} {numbers[name]:g}" for name in ("CMPAZ", "CMPINC") if name in numbers)
+    try:
+        angles = by_angles(channel, words, azimuth, None if inclination is None else inclination - 90.0)
+    except ValueError:
+        return by_code
+    if angles is None:
+        return by_code
+    unset = azimuth in (None, 0.0) and inclination in (None, 0.0)
+    return (*by_code, replace(angles, default=angles.default or unset))
