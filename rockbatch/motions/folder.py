@@ -18,9 +18,10 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.doubles import without_doubles
-from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
+from rockbatch.motions.files import MANIFESTS, SourceFile, files_of, inventories_beside
 from rockbatch.motions.formats import format_of, read_record, usable
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.leaving_out import LeaveOut, Reading
@@ -31,6 +32,7 @@ from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, with_sequences
+from rockbatch.motions.stationxml import Inventories
 from rockbatch.motions.texts import with_legible_texts
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
@@ -48,6 +50,7 @@ class _ReadSettings:
     gravity: float
     offset: Offset
     numbered: Container[Path]  # files whose names end in a number that is no azimuth
+    inventories: Inventories
 
 
 @checked
@@ -121,6 +124,7 @@ def read_motions(
     leaving_out = LeaveOut(leave_out)
     readings = leaving_out.readings(readings)
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
+    components = with_gains_compared(components)
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
     placed = _with_stations(readings, paired)
@@ -186,7 +190,11 @@ def read_files(
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *neighbours] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files))
+    inventories = [file for file in files if file.is_inventory]
+    files = [file for file in files if not file.is_inventory or file.refusal]
+    inventories += [file for path in roots if path.is_file() for file in inventories_beside(path)]
+    stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
+    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), stated)
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
@@ -339,7 +347,7 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    return read_record(RecordFile(path, file.source, data, options, settings.gravity, file.root))
+    return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:

@@ -9,6 +9,7 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
+from rockbatch.motions.stationxml import Inventories
 
 LAYOUTS = ("columns", "wrapped")
 """Of numbers in text files: a column for each component, or one series that goes on from line to line."""
@@ -121,14 +122,14 @@ def no_acceleration(called: str, kind: str) -> InputError:
 
 @dataclass(frozen=True)
 class RecordFile:
-    """A file to be read: where it lies, its bytes, what the study says about it, and the folder that links stay in."""
+    """A file to be read: where it lies, its bytes, what the study says about it, and the StationXML beside it."""
 
     path: Path
     source: str
     data: bytes
     options: ReadOptions = field(default_factory=ReadOptions)
     gravity: float = GRAVITY
-    root: Path | None = None
+    inventories: Inventories = field(default_factory=Inventories)
 
     @property
     def stem(self) -> str:

@@ -378,15 +378,15 @@ def test_an_archive_is_opened_and_listed_once_whatever_it_holds(tmp_path, monkey
     assert len(listed) == (2 if name == "all.zip" else 1)
 
 
-def test_a_folder_is_looked_through_for_station_xml_once(tmp_path, monkeypatch):
-    looked: list[Path] = []
-    plain = archives.files_in
-    monkeypatch.setattr(archives, "files_in", lambda folder: (looked.append(folder), plain(folder))[1])
+def test_station_xml_is_read_once_however_many_records_ask_for_it(tmp_path, monkeypatch):
+    read: list[Path] = []
+    plain = archives.content
+    monkeypatch.setattr(archives, "content", lambda path, *first: (read.append(path), plain(path, *first))[1])
     for channel in ("HNE", "HNN", "HNZ"):
         write_mseed(tmp_path / f"{channel}.mseed", trace(channel))
     station_xml(tmp_path, *map(channel_xml, ("HNE", "HNN", "HNZ")))
     assert not read_motions(tmp_path).unusable
-    assert looked == [tmp_path]
+    assert read.count(tmp_path / "stations.xml") == 1
     (tmp_path / "stations.xml").unlink()
     assert len(read_motions(tmp_path).unusable) == 3
 

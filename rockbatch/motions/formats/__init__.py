@@ -51,7 +51,8 @@ _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time
 class Format:
     """A format: its name, suffixes in lower case (none if it has none of its own), the check of the first bytes, the reader.
 
-    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes.
+    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes. ``counts``: whether its
+    numbers may be counts, so that a sensitivity can be stated.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Format:
     matches: Callable[[bytes], bool]
     read: Callable[[RecordFile], Sequence[Component | Unusable]]
     anywhere: bool = True
+    counts: bool = False
 
 
 def _names(suffixes: str) -> frozenset[str]:
@@ -67,8 +69,8 @@ def _names(suffixes: str) -> frozenset[str]:
 
 FORMATS = (
     Format("PEER AT2", _names(".at2 .txt .csv .dat .bbp .acc"), at2.looks_like_at2, at2.read_component),
-    Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed),
-    Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False),
+    Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed, counts=True),
+    Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False, counts=True),
     Format("K-NET/KiK-net", _names(".ew .ns .ud .ew1 .ns1 .ud1 .ew2 .ns2 .ud2"), knet.is_knet, reader(knet.parse)),
     Format("GeoNet V1A/V2A", _names(".v1a .v2a"), geonet.is_geonet, reader(geonet.parse)),
     Format("DYNA (ESM, ITACA, AFAD)", _names(".asc"), dyna.is_dyna, reader(dyna.parse)),
@@ -111,6 +113,8 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     form = format_of(file.path.suffix, file.data)
     if form is None:
         raise InputError(_not_recognised(file))
+    if "sensitivity" in file.options.instead and not form.counts:
+        raise InputError(f"{form.name} is no format of counts: in motions.toml write scale = … instead of sensitivity")
     with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
         return [usable(with_legible_texts(reading)) for reading in form.read(file)]
 
