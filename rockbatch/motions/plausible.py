@@ -4,7 +4,6 @@ Each judge looks for one thing and returns a :class:`Finding`, or nothing; a fur
 The limits are held against real records in motions/README.md.
 """
 
-import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -15,6 +14,7 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Finding, Motion, Samples
+from rockbatch.motions.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
@@ -38,21 +38,6 @@ ANY = ("*",)
 
 _SWINGS = 7
 _ENOUGH = 8  # samples: fewer tell nothing about their mean
-_GROUND = re.compile(
-    r"free.?field|\bground|basement|\bsurface\b|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
-)
-_BOREHOLE = re.compile(r"bore.?hole|down.?hole|\bdwnhl?\b")
-_FLOOR = (
-    r"\b(?:[2-9]|[1-9]\d|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|top|upper)(?:st|nd|rd|th)?[ -]*"
-    r"(?:fl\b|flr\b|floor|stor(?:e?y)\b)|\bfl(?:oo)?r[ -]?(?:[2-9]|[1-9]\d)\b"
-)
-_IN_NAME = re.compile(  # what the name of a station says, which may be that of a street
-    rf"\broof\b|penthouse|\bdeck\b|\babut(?:ment)?\b|\bcrest\b(?! (?:r(?:oa)?d|dr|ave?|st|blvd|view))|{_FLOOR}"
-)
-_STRUCTURE = re.compile(
-    r"\broof|penthouse|mezzanine|\battic\b|\bdeck\b|\bgirder|\babut|\bcrest\b|\bpier\b|\bbent\b|\bcolumn\b|\btower\b"
-    rf"|{_FLOOR}"
-)
 
 
 @dataclass(frozen=True)
@@ -166,19 +151,22 @@ def unequal_horizontals(judged: Judged) -> Finding | None:
 
 
 def in_a_structure(judged: Judged) -> Finding | None:
-    """Return that a sensor is on an upper floor, a deck or a crest, or in a borehole, by its place or its station's name."""
-    if depth := in_a_borehole(judged.component):
-        return Finding("borehole", f'"{depth}" is in a borehole, and not at the surface', gross=True)
-    for text, words in ((judged.component.sensor.place or "", _STRUCTURE), (judged.component.origin.station, _IN_NAME)):
-        if words.search(text.lower()) and not _GROUND.search(text.lower()):
-            return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
+    """Return that a sensor is on a structure, or in a borehole, by its place or its station's name."""
+    where, text = _stand(judged.component)
+    if where is Stand.BOREHOLE:
+        return Finding("borehole", f'"{text}" is in a borehole, and not at the surface', gross=True)
+    if where is Stand.STRUCTURE:
+        return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
     return None
 
 
-def in_a_borehole(component: Component) -> str:
-    """Return the place, or the station's name, that says that a sensor is in a borehole; empty if none does."""
-    texts = (component.sensor.place or "", component.origin.station)
-    return next((text for text in texts if _BOREHOLE.search(text.lower()) and "surface" not in text.lower()), "")
+def in_a_borehole(component: Component) -> bool:
+    """Return whether a sensor is in a borehole, by its place or its station's name."""
+    return _stand(component)[0] is Stand.BOREHOLE
+
+
+def _stand(component: Component) -> tuple[Stand, str]:
+    return stand(component.sensor.place or "", component.origin.station)
 
 
 def unprocessed(judged: Judged) -> Finding | None:

@@ -23,7 +23,7 @@ LARGEST = 64 * 2**20
 _ROOT = "FDSNStationXML"
 _LEVELS = ((_ROOT, "Network"), (_ROOT, "Network", "Station"), (_ROOT, "Network", "Station", "Channel"))
 _SENSITIVITY = "Response/InstrumentSensitivity"
-_TEXTS = (f"{_SENSITIVITY}/Value", f"{_SENSITIVITY}/InputUnits/Name", "Azimuth", "Dip")  # below a channel
+_TEXTS = (f"{_SENSITIVITY}/Value", f"{_SENSITIVITY}/InputUnits/Name", "Azimuth", "Dip", "Depth")  # below a channel
 _GAIN = "Response/Stage/StageGain/Value"
 _LONGEST = 200  # characters of these
 _DEEPEST = 50  # elements within one another; the format has 9
@@ -46,6 +46,7 @@ class Channel:
     unit: str  # as the file writes it, such as "M/S**2"
     azimuth: float | None  # degrees from north
     dip: float | None  # degrees down from the horizontal (−90: positive up)
+    depth: float | None = None  # of the sensor below the surface [m]
     stages: float | None = None  # product of the gains of all stages, where the file has them
     file: str = ""
 
@@ -218,7 +219,7 @@ class _Reader:
         dated = next((level for level in reversed(levels) if level.keys() & {"startDate", "endDate"}), {})
         gains = [gain for gain in self.gains if gain is not None]
         location = channel.get("locationCode", "").strip()
-        value, unit, azimuth, dip = (self.texts.get(key, "") for key in _TEXTS)
+        value, unit, azimuth, dip, depth = (self.texts.get(key, "") for key in _TEXTS)
         return Channel(
             id=".".join((network.get("code", ""), station.get("code", ""), location, channel.get("code", ""))),
             start=_time(dated.get("startDate"), -math.inf),
@@ -227,6 +228,7 @@ class _Reader:
             unit=unit.partition(" - ")[0].strip(),  # old dataless files: "M/S**2 - Acceleration in meters per …"
             azimuth=_number(azimuth),
             dip=_number(dip),
+            depth=_number(depth),
             stages=math.prod(gains) or None if gains and len(gains) == len(self.gains) else None,
             file=self.file,
         )

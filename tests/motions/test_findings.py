@@ -186,7 +186,7 @@ def test_a_sensor_in_a_structure_is_recognised_by_its_place(tmp_path, place):
     "place",
     [
         "Freefield", "Free field, 100 m from the deck", "Ground floor", "1st Floor", "Basement", "Ground - N of pier 2", "",
-        "DH array surface", "Borehole array; surface", "Dam toe", "Base of column", "Bent 3 footing", "Level 0", "Embankment",
+        "DH array surface", "Borehole array; surface", "Dam toe", "Level 0",
     ],
 )  # fmt: skip
 def test_a_sensor_on_the_ground_is_left_in_peace(tmp_path, place):

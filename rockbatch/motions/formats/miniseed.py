@@ -16,6 +16,7 @@ from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, unknown
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.places import depth_as_place
 from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _YEARS = 1900, 2100
@@ -173,7 +174,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         origin=origin_of(
             date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
         ),
-        sensor=Sensor(stats.station, stats.network, stats.location),
+        sensor=Sensor(stats.station, stats.network, stats.location, depth_as_place(entry.depth if entry else None)),
         notes=(origin,),
     )
 

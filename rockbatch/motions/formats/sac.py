@@ -17,6 +17,7 @@ from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.places import depth_as_place
 from rockbatch.motions.record_file import RecordFile, no_acceleration, unstated
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
@@ -32,6 +33,7 @@ _NUMBERS = {  # word, the least and the largest value; floats are the first of t
     "DEPMAX": (2, -math.inf, math.inf),
     "B": (5, -1e10, 1e10),  # some count from 1970
     "E": (6, -1e10, 1e10),
+    "STDP": (34, -math.inf, math.inf),
     "CMPAZ": (57, -360.0, 720.0),
     "CMPINC": (58, -180.0, 180.0),
     "NZYEAR": (70, 1900, 2100),
@@ -96,7 +98,9 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
             start=start,
-            sensor=Sensor(station if start >= FIRST_YEAR else "", network, location),
+            sensor=Sensor(
+                station if start >= FIRST_YEAR else "", network, location, depth_as_place(numbers.get("STDP"))
+            ),
             unit=unit,
             raw=True,
             origin=origin_of(names["KEVNM"], f"{network}.{station}".strip("."), day),
