@@ -40,7 +40,7 @@ class SourceFile:
     @property
     def is_inventory(self) -> bool:
         """Return whether it may be StationXML, which goes with the records around it."""
-        return self.path.suffix.lower() == _INVENTORY
+        return archives.bare(self.path).suffix.lower() == _INVENTORY
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
@@ -71,11 +71,11 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
 def inventories_beside(file: Path) -> list[SourceFile]:
     """Return the StationXML in the folder of a file that was given itself."""
     inside = Path(os.path.realpath(file.parent))
-    beside = (path for path in archives.files_in(file.parent) if path.suffix.lower() == _INVENTORY)
-    return [
+    beside = [
         SourceFile(path, path.name, "" if Path(os.path.realpath(path)).is_relative_to(inside) else _OUTSIDE)
-        for path in beside
+        for path in archives.files_in(file.parent)
     ]
+    return [source for source in beside if source.is_inventory]
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
@@ -91,14 +91,15 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
         yield SourceFile(path, source, refusal)
     for member in members:
         name = f"{source}/{legible(member.name)}"
-        if member.refusal:
+        regular = _regular(member.path, name)
+        if member.refusal and not regular.companion:
             yield SourceFile(member.path, name, member.refusal)
         elif member.path.name in MANIFESTS:
             yield SourceFile(
                 member.path, name, companion="a manifest within an archive is not obeyed; put it beside that"
             )
         else:
-            yield _regular(member.path, name)
+            yield regular
 
 
 def _regular(path: Path, source: str) -> SourceFile:

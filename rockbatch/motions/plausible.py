@@ -19,6 +19,13 @@ from rockbatch.motions.places import Stand, stand
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
 
+STRONG = 2.0
+"""PGA [g] that few records exceed, and many do whose header says g of numbers in m/s²."""
+
+FLAT, FLATTER = 0.005, 20.0
+"""Samples within this share of the PGA of an extreme are its top; it is flat if the samples beside it lie so many times further
+off than those in it lie apart: of a parabola that is 4 at most."""
+
 FARTHEST, ABSURD = 15.0, 100.0
 """PGD [m] beyond which no ground has moved (beside the ruptures of the largest earthquakes it was some 10 m), and beyond
 which not even an unprocessed acceleration drifts: it may be a velocity."""
@@ -37,6 +44,7 @@ ANY = ("*",)
 """Confirms every record."""
 
 _SWINGS = 7
+_LONG_TOP = 4  # samples of a flat top, or of several together and one more
 _ENOUGH = 8  # samples: fewer tell nothing about their mean
 
 
@@ -55,11 +63,19 @@ def unlikely_peak(judged: Judged) -> Finding | None:
     horizontal = judged.motion.pga / judged.gravity
     vertical = (judged.motion.pga_vertical or 0.0) / judged.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return None
+        return _strong(max(horizontal, vertical)) if judged.component.unit.strip().lower() == "g" else None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
     return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
+
+
+def _strong(peak: float) -> Finding | None:
+    """Find a peak [g] of a record in g that would be a usual one in m/s²."""
+    if peak <= STRONG:
+        return None
+    text = f"PGA {peak:.3g} g, as few records have; if its numbers are in m/s², it is {peak / GRAVITY:.2g} g: check the unit"
+    return Finding("PGA", text, key="confirm_pga")
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
@@ -121,6 +137,40 @@ def alternating(samples: Samples) -> float:
         least = np.minimum(least[shift:], least[:-shift])
         greatest = np.maximum(greatest[shift:], greatest[:-shift])
     return max(0.0, float(least.max()), -float(greatest.min())) / 2.0
+
+
+def clipped(judged: Judged) -> Finding | None:
+    """Find flat tops: the recorder, or its digitiser, ended there, and the ground did not."""
+    for name, samples in (("", judged.component.acceleration), ("vertical: ", judged.motion.vertical)):
+        tops = [] if samples is None else flat_tops(samples)
+        if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
+            text = (
+                f"{name}flat tops: {sum(tops)} samples at its largest value, in rows of {max(tops)} and less: clipped by the "
+                "recorder, its true peak is not known"
+            )
+            return Finding("clipped", text, gross=True)
+    return None
+
+
+def flat_tops(samples: Samples) -> list[int]:
+    """Return how many samples each flat stretch at the largest and at the smallest value has; natural peaks have none."""
+    peak = float(np.abs(samples).max(initial=0.0))
+    values = np.unique(samples)
+    if peak == 0.0 or len(values) < _ENOUGH:
+        return []
+    resolution = float(np.diff(values).min())
+    tops: list[int] = []
+    for upright in (samples, -samples):
+        top = float(upright.max())
+        at_top = np.concatenate(([0], upright >= top - FLAT * peak, [0]))
+        starts, ends = np.flatnonzero(np.diff(at_top) == 1), np.flatnonzero(np.diff(at_top) == -1)
+        for start, end in zip(starts, ends, strict=True):
+            if end - start < 2 or start == 0 or end == len(samples) or top <= 0.0:
+                continue
+            spread = max(float(np.ptp(upright[start:end])), resolution)
+            if top - max(upright[start - 1], upright[end]) > FLATTER * spread:
+                tops.append(int(end - start))
+    return tops
 
 
 def displacement(judged: Judged) -> Finding | None:
@@ -188,6 +238,7 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
     unlikely_peak,
     no_zero_line,
     alternation,
+    clipped,
     displacement,
     unequal_horizontals,
     in_a_structure,
