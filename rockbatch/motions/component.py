@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockbatch.motions.listed import NOTHING, Listed
 from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
@@ -94,6 +95,7 @@ class Component:
     notes: tuple[str, ...] = ()  # what was done to the data
     findings: tuple[Finding, ...] = ()  # contradictions of its header, or of copies of it that are left out
     number: int = 0  # of the component in its file, from 1
+    listed: Listed = NOTHING  # what PEER's search says of the record
 
     @property
     def dated(self) -> bool:

@@ -4,7 +4,7 @@ import difflib
 import os
 import re
 import sys
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Literal
@@ -25,13 +25,16 @@ from rockbatch.motions.files import MANIFESTS, SourceFile, files_of, inventories
 from rockbatch.motions.formats import format_of, read_record, usable
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.leaving_out import LeaveOut, Reading
+from rockbatch.motions.listed import NOTHING
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import counted, is_clock, split_stem, unknown
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.peer_search import Lists, listed_in, of_file
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, with_sequences
+from rockbatch.motions.sorted_files import statements_beside
 from rockbatch.motions.stationxml import Inventories
 from rockbatch.motions.texts import with_legible_texts
 
@@ -51,6 +54,8 @@ class _ReadSettings:
     offset: Offset
     numbered: Container[Path]  # files whose names end in a number that is no azimuth
     inventories: Inventories
+    beside: Mapping[Path, tuple[str, ...]]  # what other files state of one
+    lists: Lists
 
 
 @checked
@@ -194,7 +199,12 @@ def read_files(
     files = [file for file in files if not file.is_inventory or file.refusal]
     inventories += [file for path in roots if path.is_file() for file in inventories_beside(path)]
     stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
-    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _numbered(files), stated)
+    beside, statements = statements_beside(files)
+    files = [replace(file, companion=statements.get(file.path, file.companion)) for file in files]
+    numbered = _numbered(files)
+    settings = _ReadSettings(
+        manifest, options or ReadOptions(), gravity, offset or Offset(), numbered, stated, beside, listed_in(files)
+    )
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
@@ -331,7 +341,9 @@ def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
             reason = unwanted[0].unused if unwanted else ""
             readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
     components = [
-        _placed(reading, path, file.path in settings.numbered) for reading in read if isinstance(reading, Component)
+        _listed(_placed(reading, path, file.path in settings.numbered), path, settings)
+        for reading in read
+        if isinstance(reading, Component)
     ]
     for component, used in described(components, entries, settings.gravity, refused):
         if used:
@@ -347,7 +359,8 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories))
+    beside = settings.beside.get(file.path, ())
+    return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))
 
 
 def _placed(component: Component, path: Path, numbered: bool) -> Component:
@@ -358,6 +371,17 @@ def _placed(component: Component, path: Path, numbered: bool) -> Component:
         if component.orientation == by_name:
             component = replace(component, orientation=unknown())
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
+
+
+def _listed(component: Component, path: Path, settings: _ReadSettings) -> Component:
+    """Return a component with what a list in its folder says of it."""
+    listed = of_file(settings.lists, path, component.site)
+    magnitude, distance = listed.magnitude, listed.distance_km
+    return (
+        replace(component, listed=listed, magnitude=magnitude, distance_km=distance)
+        if listed is not NOTHING
+        else component
+    )
 
 
 def _site(path: Path, site: str) -> str:

@@ -41,6 +41,8 @@ RECORD = Section(("record",), (
     "use": Key(boolean, "false", "false: it is left out; true: it is used before other files of the same recording."),
     "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
     "layout": Key(choice(*LAYOUTS), '"wrapped"', '"wrapped": its numbers are one series that goes on from line to line.'),
+    "columns": Key(text, '["time", "000", "090", "up"]',
+        'Meaning of the columns of a text file: "time", "up", an azimuth, or "-" for none of these.', many=True, distinct=False),
     "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
     "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
     "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
@@ -64,7 +66,7 @@ SECTIONS = (RECORD, replace(SEQUENCE, at=("sequence",)))
 """Tables of a ``motions.toml``."""
 _MOST_HINTS = 10  # for files that are not there: each is compared with all that are
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
-_OPTIONS = ("unit", "dt", "layout", "sensitivity")
+_OPTIONS = ("unit", "dt", "layout", "columns", "sensitivity")
 _CONFIRM = ("confirm", "confirm_pga")
 _TEXTS = ("file", "role", "layout", "unit", "polarity", "station")
 _COUNTED = re.compile("[1-9][0-9]?")  # a number of a channel; azimuths have three digits

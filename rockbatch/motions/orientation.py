@@ -59,7 +59,8 @@ _CHANNEL_IN_NAME = re.compile(r"[BEHLS][NLGH][ZNE12](?:\d\d)?")  # three letters
 _SENSOR = re.compile(r"(UD|NS|EW)[12]")  # KiK-net: 1 in the borehole, 2 at the surface
 _QUADRANT = re.compile(r"([NS])(\d{1,2})([EW])")
 _NOISE = re.compile(
-    r"^A(?=[-_ ])|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[^A-Z0-9]*[A-Z])|AXIS|DIRECTION|DIR|DEG(?:REES)?|[^A-Z0-9]"
+    r"^A(?=[-_ ])|ACC(?:EL(?:ERATIONS?)?)?|COMP(?:ONENTS?)?|CHAN(?:NEL)?(?=[^A-Z0-9]*[A-Z])|AXIS|DIRECTION|DIR|"
+    r"DEG(?:REES)?|[^A-Z0-9]"
 )
 
 

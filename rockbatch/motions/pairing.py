@@ -221,6 +221,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         findings=gross,
         origin=directed(h.origin, h.orientation),
         start=start,
+        listed=h.listed,
     )
 
 

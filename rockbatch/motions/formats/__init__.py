@@ -6,11 +6,11 @@ are read in files of their suffixes only, and ObsPy is never left to guess (see 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import (
     afad,
@@ -31,11 +31,12 @@ from rockbatch.motions.formats import (
     unam,
     volumes,
 )
+from rockbatch.motions.formats.advice import advised
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.texts import with_legible_texts
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
@@ -44,6 +45,7 @@ _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MATLAB 5.0 MAT-file": "a MATLAB file",
     b"GSE2 ": "GSE2",
 }
+_TEXT = ".txt .csv .dat .bbp .acc .sgs .tsv .inp"
 _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time(s) NS(cm/s2) UD(cm/s2)"
 
 
@@ -89,7 +91,11 @@ FORMATS = (
     Format("PEER AT2", _names(".at2"), at2.has_at2_count, at2.read_component, anywhere=False),
     Format("text columns", _names(".at2 .g3"), columns.holds_table, columns.read_columns, anywhere=False),
     Format(
-        "text columns", _names(".txt .csv .dat .bbp .acc"), columns.is_columns, columns.read_columns, anywhere=False
+        "text columns",
+        _names(".txt .csv .dat .bbp .acc .sgs .tsv .inp"),
+        columns.is_columns,
+        columns.read_columns,
+        anywhere=False,
     ),
 )
 """In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns, a table called .AT2 as well."""
@@ -115,8 +121,16 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
         raise InputError(_not_recognised(file))
     if "sensitivity" in file.options.instead and not form.counts:
         raise InputError(f"{form.name} is no format of counts: in motions.toml write scale = … instead of sensitivity")
-    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-        return [usable(with_legible_texts(reading)) for reading in form.read(file)]
+    read = form.read
+
+    def readings(options: ReadOptions) -> list[Component | Unusable]:
+        return [usable(with_legible_texts(reading)) for reading in read(replace(file, options=options))]
+
+    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at in usable
+        try:
+            return readings(file.options)
+        except UnstatedError as error:
+            raise advised(error, readings, file.options, file.gravity) from None
 
 
 def usable(reading: Component | Unusable) -> Component | Unusable:

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
 from rockbatch.motions.formats.header_lines import moment
@@ -18,7 +18,7 @@ from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import Orientation, is_clock, not_acceleration, orientation_of, split_stem, unknown
 from rockbatch.motions.origin import origin_of
 from rockbatch.motions.places import depth_as_place
-from rockbatch.motions.record_file import RecordFile, no_acceleration, unstated
+from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _LEVEL = 10.0  # degrees that a horizontal component may be off the horizontal
 _DAY = 86400.0  # s
@@ -80,8 +80,9 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     if kind and "unit" not in options.instead:
         raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
-        raise unstated(
-            "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
+        raise UnstatedError(
+            "SAC files do not tell their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)",
+            "unit",
         )
     start, day = _start(numbers)
     unit = options.unit or "m/s2"
