@@ -138,7 +138,7 @@ def _lack(i: int, column: Column, unit: str) -> str:
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns, and notes on them; ``InputError`` for those of a spectrum."""
     width = table.shape[1]
-    columns = _named(header, width) or _behind_an_index(header, table)
+    columns = _behind_an_index(below_an_index(header), table) or _named(header, width) or _counted(header, table)
     stated = options.columns
     notes: tuple[str, ...] = ()
     if stated is not None:
@@ -166,16 +166,25 @@ def _named(header: Sequence[str], width: int) -> list[Column] | None:
 
 
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one counts its rows, or has times, without a name; ``None`` for another one."""
-    first, width = table[:, 0], table.shape[1]
-    steps = np.diff(first)
-    counts = first[0] in (0.0, 1.0) and bool((steps == 1.0).all())
-    if width < 2 or not (counts or grows_evenly(first)):
-        return None
-    named = _named(below_an_index(header), width - 1) or (_named(header, width - 1) if counts else None)
-    if named is None or (not counts and any(column.is_time for column in named)):
-        return None
-    return [Column("-" if counts else "time"), *named]
+    """Return the columns of a table whose first one, which has no name or such as "index", has times or counts the rows.
+
+    ``header`` names the other ones; ``None`` for another table.
+    """
+    if _counts(table[:, 0]):
+        return _counted(header, table)
+    named = _named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
+    return None if named is None or any(column.is_time for column in named) else [Column("time"), *named]
+
+
+def _counted(header: Sequence[str], table: Samples) -> list[Column] | None:
+    """Return the columns of a table whose first one counts its rows, if the header names all others; ``None`` if not."""
+    named = _named(header, table.shape[1] - 1) if _counts(table[:, 0]) else None
+    return None if named is None else [Column("-"), *named]
+
+
+def _counts(column: Samples) -> bool:
+    """Return whether a column has the numbers of its rows, from 0 or 1."""
+    return column[0] in (0.0, 1.0) and bool((np.diff(column) == 1.0).all())
 
 
 def _completed(header: Column, stated: str) -> Column | None:

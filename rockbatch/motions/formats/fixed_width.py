@@ -17,7 +17,7 @@ from rockbatch.motions.motion import Samples
 T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
 _END_MARK = re.compile(  # "-inf" is none
-    r"[*=/&~_-]+|(?:[*/&!=]+|-{2,}) *[a-z].*|(?:end|eof|eod|fin|fine|ende|stop)(?:[ _.:-]*(?:of|data|file|record)\b.*)?",
+    r"[*=/&~_-]+|(?:[*/&!=]|--)[*/&!=~_ -]*[a-z].*|(?:end|eof|eod|fin|fine|ende|stop)(?:[ _.:-]*(?:of|data|file|record)\b.*)?",
     re.IGNORECASE,
 )
 _MOST_MARKS, _LONGEST_MARK = 10, 300  # lines, and characters of one
