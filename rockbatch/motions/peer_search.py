@@ -57,7 +57,7 @@ def _rows(text: str) -> list[dict[str, str]]:
     """Return the rows of the table that has a column of records' numbers, by its heads in lower case, down to another line."""
     rows: list[dict[str, str]] = []
     heads: list[str] = []
-    for cells in csv.reader(text.splitlines()):
+    for cells in csv.reader(text.splitlines(), skipinitialspace=True):
         lower = [cell.strip().lower() for cell in cells]
         if not heads:
             heads = lower if _NUMBER in lower else []

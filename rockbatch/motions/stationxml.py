@@ -66,21 +66,21 @@ class Inventories:
     """Channels of the StationXML files beside records, which are read once, when the first record asks for one.
 
     ``files`` are paths, their names for people, and why they are not to be opened, "" where they may be. Other .xml files
-    have no channels.
+    have no channels. ``within`` are channels that come with the records.
     """
 
-    def __init__(self, files: Sequence[tuple[Path, str, str]] = ()) -> None:
-        self._files = files
+    def __init__(self, files: Sequence[tuple[Path, str, str]] = (), within: Sequence[Channel] = ()) -> None:
+        self._files, self._within = files, within
 
     @cached_property
     def _read(self) -> tuple[dict[str, list[Channel]], list[str]]:
-        channels: list[Channel] = []
+        channels: list[Channel] = [*self._within]
         refused: list[str] = []
         for path, name, refusal in self._files:
             try:
                 if refusal:
                     raise InputError(refusal)
-                channels += _channels(path, name)
+                channels += channels_of(archives.content(path, LARGEST + 1), name)
             except InputError as error:
                 refused.append(f"{name}: {error}")
             except OSError as error:
@@ -91,6 +91,10 @@ class Inventories:
     def refused(self) -> list[str]:
         """Return the files that were not read, with the reason."""
         return self._read[1]
+
+    def also(self, within: Sequence[Channel]) -> "Inventories":
+        """Return these, with the channels that a file of records has itself."""
+        return Inventories(self._files, within)
 
     def of(self, channel_id: str) -> list[Channel]:
         """Return the epochs of a channel in all files, in their order."""
@@ -150,14 +154,13 @@ def _day(time: float) -> str:
     return moment.strftime("%Y-%m-%d" if time % _DAY == 0.0 else "%Y-%m-%dT%H:%M:%S")
 
 
-def _channels(path: Path, name: str) -> list[Channel]:
-    """Return the channels of one file, which ``name`` is for people.
+def channels_of(data: bytes, name: str) -> list[Channel]:
+    """Return the channels of a StationXML file, which ``name`` is for people; none of other XML.
 
     Raises ``InputError`` for a file that is too large, damaged, or in an encoding that nobody knows.
     """
     from xml.etree.ElementTree import XMLParser
 
-    data = archives.content(path, LARGEST + 1)
     if len(data) > LARGEST:
         raise InputError(f"larger than {LARGEST // 2**20} MiB")
     reader = _Reader(name)

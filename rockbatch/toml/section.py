@@ -21,7 +21,7 @@ class Usual(NamedTuple):
 
     def holds(self, value: float) -> bool:
         """Return whether a value is usual."""
-        return value == 0 or self.least <= abs(value) <= self.most
+        return not isinstance(value, int | float) or value == 0 or self.least <= abs(value) <= self.most
 
     def doubt(self, name: str, value: float) -> str:
         """Return what is odd about a value of the key ``name``, and in which unit it would be usual; empty if nothing is."""

@@ -14,6 +14,7 @@ from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import (
     afad,
+    asdf,
     at2,
     bhrc,
     columns,
@@ -23,6 +24,7 @@ from rockbatch.motions.formats import (
     dyna,
     emod3d,
     geonet,
+    kinemetrics,
     knet,
     miniseed,
     resorce,
@@ -41,7 +43,6 @@ from rockbatch.motions.texts import with_legible_texts
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",
-    b"\x89HDF\r\n\x1a\n": "an HDF5 file",
     b"MATLAB 5.0 MAT-file": "a MATLAB file",
     b"GSE2 ": "GSE2",
 }
@@ -72,6 +73,8 @@ def _names(suffixes: str) -> frozenset[str]:
 FORMATS = (
     Format("PEER AT2", _names(".at2 .txt .csv .dat .bbp .acc"), at2.looks_like_at2, at2.read_component),
     Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed, counts=True),
+    Format("Kinemetrics EVT", _names(".evt"), kinemetrics.is_evt, kinemetrics.read_evt),
+    Format("ASDF", _names(".h5 .asdf .hdf5"), asdf.is_hdf5, asdf.read_asdf, counts=True),
     Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False, counts=True),
     Format("K-NET/KiK-net", _names(".ew .ns .ud .ew1 .ns1 .ud1 .ew2 .ns2 .ud2"), knet.is_knet, reader(knet.parse)),
     Format("GeoNet V1A/V2A", _names(".v1a .v2a"), geonet.is_geonet, reader(geonet.parse)),

@@ -1,6 +1,7 @@
 """MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
 
 import re
+from collections.abc import Container, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -65,11 +66,17 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
         )
-    segments = grouped(stream, lambda trace: str(trace.id))
-    broken = _broken_off(file.data, stream)
+    return of_traces(file, stream, _broken_off(file.data, stream))
+
+
+def of_traces(
+    file: RecordFile, traces: "Iterable[obspy.Trace]", broken: Container[str] = ()
+) -> list[Component | Unusable]:
+    """Return one component per channel and event of traces in counts; those of ``broken`` channels say so."""
+    segments = grouped(traces, lambda trace: str(trace.id))
     readings: list[Component | Unusable] = []
-    for channel_id, traces in segments.items():
-        events = _events(traces)
+    for channel_id, of_channel in segments.items():
+        events = _events(of_channel)
         for pieces in events:
             name = channel_id if len(segments) > 1 else file.stem
             source = file.source if len(segments) == 1 else f"{file.source} ({channel_id})"
