@@ -17,8 +17,8 @@ from rockbatch.motions.plausible import HIGHEST, LOWEST
 from rockbatch.motions.record_file import ReadOptions
 
 _UNITS = (
-    ("g", "m/s2", "cm/s2"),
-    ("mg", "mm/s2", "in/s2", "ft/s2"),
+    ("g", "m/s2", "cm/s2", "mm/s2"),
+    ("mg", "in/s2", "ft/s2"),
 )  # the second are named where none of the first fits
 _TRIED: Mapping[str, Any] = {"unit": "m/s2", "dt": 0.01}  # any unit and step will do to see whether a file can be read
 _MOST_LACKS = 3  # that come to light one after the other
