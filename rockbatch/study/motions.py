@@ -47,11 +47,17 @@ _END = Number(endless=True)
 _LIST = "list"
 
 
-def _factor(value: Any) -> float | str:
-    return value if value == _LIST else positive(value)
+class _Factor(Number):
+    """A number, or the word for the factors that a list beside the records has."""
+
+    def __call__(self, value: Any) -> Any:
+        return value if value == _LIST else super().__call__(value)
+
+    def schema(self) -> dict[str, Any]:
+        return {"anyOf": [super().schema(), {"const": _LIST}]}
 
 
-_FACTOR = Other('a number above 0, or "list"', _factor, {"anyOf": [positive.schema(), {"const": _LIST}]})
+_FACTOR = _Factor(f'a number above 0, or "{_LIST}"', low=0.0, above=True)
 _SIGNS = names({"+": "positive plus normal", "-": "negative minus reversed reverse"}) | {"both": ["+", "-"]}
 _WITH_VERTICAL = {"vertical": (True, "required")}
 

@@ -183,7 +183,7 @@ def test_a_remark_with_a_unit_in_it_declares_nothing(tmp_path):
 @pytest.mark.parametrize("header", ["", "# t NS", "# time(s) NS", "t,NS"])
 def test_without_a_unit_the_file_is_not_used_and_the_reason_says_what_to_add(tmp_path, header):
     write(tmp_path, header, T, NS)
-    assert 'write unit = "cm/s2" (PGA 0.092 g) under [motions]' in reason(tmp_path)
+    assert 'write unit = "cm/s2" (PGA 0.092 g)' in reason(tmp_path)
 
 
 def test_a_column_that_is_no_acceleration_is_left_out_with_a_reason(tmp_path):

@@ -89,7 +89,7 @@ def test_the_words_of_a_reader_are_the_same_each_time(tmp_path):
 def test_every_format_that_obspy_reads_has_a_check_before():
     with pytest.raises(KeyError):
         with_obspy.read_stream(b"", "PICKLE")
-    assert set(CHECKS) == {"MSEED"}
+    assert set(CHECKS) == {"MSEED", "KINEMETRICS_EVT"}
 
 
 LINES_OF_BLANKS = [
