@@ -85,7 +85,7 @@ def _outcome(layout) -> tuple[str, str]:
     if motions.motions and not reasons:
         return "read", ""
     reason = reasons[0].split("; if it is right")[0]
-    needs_statement = any(word in reasons[0] for word in ("state", "write confirm"))
+    needs_statement = any(word in reasons[0] for word in ("state", "write confirm", "write role"))
     return ("asked for" if needs_statement else "refused"), reason.replace("|", "\\|")
 
 

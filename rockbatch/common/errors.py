@@ -1,7 +1,8 @@
 """Mistakes of the user, reported all at once and without a traceback, and warnings about results that are opened."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 
 class InputError(ValueError):
@@ -27,11 +28,15 @@ class InputError(ValueError):
 
 
 class UnstatedError(InputError):
-    """A record that lacks what its user can state; ``keys`` are those of a manifest that state it."""
+    """A record that lacks what its user can state; ``keys`` are those of a manifest that state it.
 
-    def __init__(self, problem: str, *keys: str) -> None:
+    ``choices`` are statements that may be meant, of which any is enough; without them all keys are needed.
+    """
+
+    def __init__(self, problem: str, *keys: str, choices: Sequence[Mapping[str, Any]] = ()) -> None:
         super().__init__(problem)
         self.keys = keys
+        self.choices = choices
 
 
 def remedy(name: str) -> str:

@@ -72,7 +72,7 @@ class Usual(NamedTuple):
 
     def holds(self, value: float) -> bool:
         """Return whether a value is usual."""
-        return value == 0 or self.least <= abs(value) <= self.most
+        return not isinstance(value, int | float) or value == 0 or self.least <= abs(value) <= self.most
 
     def doubt(self, name: str, value: float) -> str:
         """Return what is odd about a value of the key ``name``; empty if nothing is."""
@@ -92,12 +92,25 @@ _ACCELERATION_IN_M_S2 = {
     "m/s2": 1.0,
     "cm/s2": 0.01,
     "gal": 0.01,
+    "mgal": 1e-5,
     "mm/s2": 1e-3,
     "um/s2": 1e-6,
     "nm/s2": 1e-9,
+    "in/s2": 0.0254,
+    "ft/s2": 0.3048,
+}
+_ACCELERATION_IN_G = {"g": 1.0, "g/10": 0.1, "0.1g": 0.1, "mg": 1e-3, "%g": 0.01}
+_OTHER_SPELLINGS = {
+    "inch": "in",
+    "inches": "in",
+    "feet": "ft",
+    "foot": "ft",
+    "milli-g": "mg",
+    "millig": "mg",
+    "gals": "gal",
 }
 
-_LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0}
+_LENGTH_IN_M = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 
 def length_factor(unit: str) -> float | None:
@@ -115,11 +128,11 @@ def acceleration_factor(unit: str, gravity: float = GRAVITY) -> float:
     key = unit.strip().lower().replace("²", "2").replace("sec", "s")
     key = re.sub(r"[\^() ]|\*\*", "", key.replace("µ", "u").replace("μ", "u"))
     key = re.sub(r"/s/s|\*?s-2", "/s2", key)
-    if key == "g":
-        return gravity
-    if key in ("g/10", "0.1g"):
-        return gravity / 10.0
+    length, slash, time = key.partition("/")
+    key = _OTHER_SPELLINGS.get(length, length) + slash + time
+    if key in _ACCELERATION_IN_G:
+        return gravity * _ACCELERATION_IN_G[key]
     if key not in _ACCELERATION_IN_M_S2:
-        units = ", ".join(["g", "g/10", *_ACCELERATION_IN_M_S2])
+        units = ", ".join(["g", "g/10", "mg", *_ACCELERATION_IN_M_S2])
         raise ValueError(f'unknown acceleration unit "{unit}"; write one of {units}')
     return _ACCELERATION_IN_M_S2[key]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockbatch.motions.evidence import Statement
+from rockbatch.motions.listed import NOTHING, Listed
 from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
@@ -97,6 +98,7 @@ class Component:
     number: int = 0  # of the component in its file, from 1
     statements: tuple[Statement, ...] = ()  # of its direction, whatever states it
     contradiction: str = ""  # of statements in its set, for which it is held back; empty where they agree
+    listed: Listed = NOTHING  # what PEER's search says of the record
 
     @property
     def dated(self) -> bool:

@@ -18,7 +18,7 @@ from rockbatch.motions.stations import in_one_event
 
 _CORRECTED = {True: 0, None: 1, False: 2}
 _GROSS_FACTOR = 0.05  # relative: what has to be confirmed
-_UNITS, _SAME_UNIT = (9.81, 10.0, 98.1, 100.0, 981.0, 1000.0, 9810.0), 0.003
+_UNITS, _SAME_UNIT = (3.2808, 9.81, 10.0, 32.185, 39.37, 98.1, 100.0, 386.22, 981.0, 1000.0, 9810.0), 0.003
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
 _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)

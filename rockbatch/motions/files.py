@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from rockbatch.common.errors import InputError
@@ -23,6 +23,8 @@ _COMPANIONS = {
 }
 _BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix in suffixes.split()}
 _NAMES = {"license", "licence", "copying", "notice", "authors", "citation", "contributing", "changelog", "index"}
+_INVENTORY = ".xml"
+_OUTSIDE = "a link that leads out of the folder; copy the file into it"
 _SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the records
 
 
@@ -34,7 +36,11 @@ class SourceFile:
     source: str  # its short path for people
     refusal: str = ""  # why it is not to be opened; empty where it may be a record
     companion: str = ""  # what it is instead of a record; empty where it may be one
-    root: Path | None = None  # where links may lead: the folder that was given, or that of a file that was
+
+    @property
+    def is_inventory(self) -> bool:
+        """Return whether it may be StationXML, which goes with the records around it."""
+        return archives.bare(self.path).suffix.lower() == _INVENTORY
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
@@ -50,15 +56,26 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
             visited.add(real)
             source = legible(prefix + path.relative_to(root).as_posix() if path != root else path.name)
             if path != root and not real.is_relative_to(inside):
-                yield SourceFile(path, source, "a link that leads out of the folder; copy the file into it")
+                yield SourceFile(path, source, _OUTSIDE)
             elif real.is_dir():
                 refusal = "a link to a folder, not followed" if path.is_symlink() else "a folder that cannot be opened"
                 yield SourceFile(path, source, refusal)
             elif not real.is_file():
                 yield SourceFile(path, source, "not a regular file")
-            elif path.suffix.lower() != ".xml":  # StationXML goes with the records beside it
-                files = _of_archive(path, source) if archives.is_archive(path) else [_regular(path, source)]
-                yield from (replace(file, root=inside) for file in files)
+            elif archives.is_archive(path):
+                yield from _of_archive(path, source)
+            else:
+                yield _regular(path, source)
+
+
+def inventories_beside(file: Path) -> list[SourceFile]:
+    """Return the StationXML in the folder of a file that was given itself."""
+    inside = Path(os.path.realpath(file.parent))
+    beside = [
+        SourceFile(path, path.name, "" if Path(os.path.realpath(path)).is_relative_to(inside) else _OUTSIDE)
+        for path in archives.files_in(file.parent)
+    ]
+    return [source for source in beside if source.is_inventory]
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
@@ -74,14 +91,15 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
         yield SourceFile(path, source, refusal)
     for member in members:
         name = f"{source}/{legible(member.name)}"
-        if member.refusal:
+        regular = _regular(member.path, name)
+        if member.refusal and not regular.companion:
             yield SourceFile(member.path, name, member.refusal)
         elif member.path.name in MANIFESTS:
             yield SourceFile(
                 member.path, name, companion="a manifest within an archive is not obeyed; put it beside that"
             )
-        elif member.path.suffix.lower() != ".xml":
-            yield _regular(member.path, name)
+        else:
+            yield regular
 
 
 def _regular(path: Path, source: str) -> SourceFile:

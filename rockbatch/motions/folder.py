@@ -18,21 +18,26 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
 from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.directions import judged
 from rockbatch.motions.doubles import with_fates, without_doubles
 from rockbatch.motions.evidence import Kind, Statement
-from rockbatch.motions.files import MANIFESTS, SourceFile, files_of
+from rockbatch.motions.files import MANIFESTS, SourceFile, files_of, inventories_beside
 from rockbatch.motions.formats import format_of, read_record, usable, with_name
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.leaving_out import LeaveOut, Reading
+from rockbatch.motions.listed import NOTHING
 from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import Orientation, counted, direction_of_suffix, is_clock, split_stem, told_apart
 from rockbatch.motions.pairing import to_motions
+from rockbatch.motions.peer_search import Lists, listed_in, of_file
 from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.sequences import ShockSequence, with_sequences
+from rockbatch.motions.sorted_files import statements_beside
+from rockbatch.motions.stationxml import Inventories
 from rockbatch.motions.texts import with_legible_texts
 
 _RSN = re.compile(r"RSN[_ ]?0*(\d+)(?!\d)", re.IGNORECASE)
@@ -50,6 +55,9 @@ class _ReadSettings:
     gravity: float
     offset: Offset
     names: Mapping[Path, tuple[str, Orientation | None]]  # station and direction by the names of files
+    inventories: Inventories
+    beside: Mapping[Path, tuple[str, ...]]  # what other files state of one
+    lists: Lists
 
 
 @checked
@@ -123,6 +131,7 @@ def read_motions(
     leaving_out = LeaveOut(leave_out)
     readings = judged(leaving_out.readings(readings))
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
+    components = with_gains_compared(components)
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
     placed = _with_stations(readings, paired)
@@ -188,7 +197,15 @@ def read_files(
     manifests = [file.path for file in files if not file.refusal and file.path.name in MANIFESTS]
     manifests = [path for path in [*manifests, *neighbours] if path.is_file() and is_manifest(path)]
     manifest = Manifest.read({Path(os.path.realpath(path)): path for path in manifests}.values())
-    settings = _ReadSettings(manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files))
+    inventories = [file for file in files if file.is_inventory]
+    files = [file for file in files if not file.is_inventory or file.refusal]
+    inventories += [file for path in roots if path.is_file() for file in inventories_beside(path)]
+    stated = Inventories([(file.path, file.source, file.refusal) for file in inventories])
+    beside, statements = statements_beside(files)
+    files = [replace(file, companion=statements.get(file.path, file.companion)) for file in files]
+    settings = _ReadSettings(
+        manifest, options or ReadOptions(), gravity, offset or Offset(), _names(files), stated, beside, listed_in(files)
+    )
     records = (file for file in _with_progress(files) if file.path not in manifests)
     read = [(file, archives.state(file.path), _readings(file, settings)) for file in records]
     manifest.finish()
@@ -338,7 +355,7 @@ def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
             reason = unwanted[0].unused if unwanted else ""
             readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
     components = [
-        _placed(reading, path, settings.names[file.path], alone=len(read) == 1)
+        _listed(_placed(reading, path, settings.names[file.path], alone=len(read) == 1), path, settings)
         for reading in read
         if isinstance(reading, Component)
     ]
@@ -356,7 +373,8 @@ def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Se
     data = archives.content(file.path, HEAD)
     if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
         data = archives.content(file.path)
-    return read_record(RecordFile(path, file.source, data, options, settings.gravity, file.root))
+    beside = settings.beside.get(file.path, ())
+    return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))
 
 
 def _placed(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
@@ -364,6 +382,17 @@ def _placed(component: Component, path: Path, name: tuple[str, Orientation | Non
     site, direction = name
     component = with_name(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
+
+
+def _listed(component: Component, path: Path, settings: _ReadSettings) -> Component:
+    """Return a component with what a list in its folder says of it."""
+    listed = of_file(settings.lists, path, component.site)
+    magnitude, distance = listed.magnitude, listed.distance_km
+    return (
+        replace(component, listed=listed, magnitude=magnitude, distance_km=distance)
+        if listed is not NOTHING
+        else component
+    )
 
 
 def _site(path: Path, site: str) -> str:

@@ -26,7 +26,7 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation
 from rockbatch.motions.record_file import LAYOUTS, ReadOptions
 from rockbatch.motions.sequences import SEQUENCE, ShockSequence, read_sequences
-from rockbatch.toml.kinds import boolean, choice, not_negative, number, positive, text
+from rockbatch.toml.kinds import boolean, choice, nonzero, not_negative, number, positive, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
@@ -42,9 +42,12 @@ RECORD = Section(("record",), (
     "use": Key(boolean, "false", "false: it is left out; true: it is used before other files of the same recording."),
     "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
     "layout": Key(choice(*LAYOUTS), '"wrapped"', '"wrapped": its numbers are one series that goes on from line to line.'),
+    "columns": Key(text, '["time", "000", "090", "up"]',
+        'Meaning of the columns of a text file: "time", "up", an azimuth, or "-" for none of these.', many=True, distinct=False),
     "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
     "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
     "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
+    "sensitivity": Key(nonzero, "428000.0", "Counts per unit of acceleration of a file in counts, in place of StationXML's."),
     "scale": Key(positive, "1.0", "Factor on the accelerations."),
     "polarity": Key(choice("+", "-"), '"-"', '"-" reverses the component.'),
     "station": Key(text, '"Rinaldi"', "Name of the station; components that share it belong together."),
@@ -64,6 +67,7 @@ SECTIONS = (RECORD, replace(SEQUENCE, at=("sequence",)))
 """Tables of a ``motions.toml``."""
 _MOST_HINTS = 10  # for files that are not there: each is compared with all that are
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
+_OPTIONS = ("unit", "dt", "layout", "columns", "sensitivity")
 _CONFIRM = ("confirm", "confirm_pga")
 _TEXTS = ("file", "role", "layout", "unit", "polarity", "station")
 _COUNTED = re.compile("[1-9][0-9]?")  # a number of a channel; azimuths have three digits
@@ -174,10 +178,10 @@ def _is_there(path: Path) -> bool:
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """Return ``options`` with the unit, the sampling interval and the layout that the manifest has for the whole file."""
+    """Return ``options`` with what the manifest has of their keys for the whole file."""
     for entry in entries:
         if entry.component is None:
-            stated = {key: entry.values[key] for key in ("unit", "dt", "layout") if key in entry.values}
+            stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
             options = replace(options, **stated, instead=frozenset(stated))
     return options
 

@@ -31,7 +31,13 @@ _HEAD = """\
 # confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is
 """
 
-_ASKED = {"unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"', "dt": "its sampling interval [s]"}
+_ASKED = {
+    "unit": 'of its numbers: "g", "g/10", "m/s2", "cm/s2", "gal" or "mm/s2"',
+    "dt": "its sampling interval [s]",
+    "layout": '"wrapped", if it is one series that goes on from line to line',
+    "columns": 'such as ["time", "000", "090", "up"]; "-" leaves one out',
+    "sensitivity": "counts per m/s²",
+}
 
 
 @checked

@@ -17,6 +17,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import USUAL_STEP
+from rockbatch.motions.listed import NOTHING, Listed
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
@@ -128,6 +129,8 @@ class Motion(Shown):
         Of the horizontal component, if its file states it; ``None``: unknown, from rest.
     processed : bool or None
         Whether its agency has corrected the horizontal component; ``None`` where the file does not say.
+    listed : Listed
+        What PEER's search says of the record: scale factor, magnitude, distance, Vs30, duration, period of its pulse.
     findings : tuple of Finding
         Oddities that were found when it was read.
     origin : Origin
@@ -185,6 +188,7 @@ class Motion(Shown):
     start: float | None = None
     across: Samples | None = None
     vertical_factor: float | None = None
+    listed: Listed = NOTHING
 
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # as they stand in tables

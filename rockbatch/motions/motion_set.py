@@ -38,6 +38,10 @@ _COLUMNS: dict[str, tuple[type, Callable[[Motion], Any]]] = {
     "station_name": (str, lambda m: m.origin.station or None),
     "direction": (str, lambda m: m.origin.direction or None),
     "station": (str, lambda m: m.of_station),
+    "vs30_m_s": (float, lambda m: m.listed.vs30_m_s),
+    "list_scale": (float, lambda m: m.listed.scale),
+    "list_d5_95_s": (float, lambda m: m.listed.d5_95_s),
+    "list_pulse_period_s": (float, lambda m: m.listed.pulse_period_s),
 }
 
 COLUMNS = tuple(_COLUMNS)
@@ -140,13 +144,14 @@ class MotionSet(Shown):
 
         Returns
         -------
-        DataFrame, shape (len, 22)
+        DataFrame, shape (len, 26)
             ``record``; ``file_h`` and ``file_v``, where its components are from; ``dt_s``, ``npts``, ``duration_s``;
             ``pga_h_g``, ``pga_v_g`` [9.81 m/s²], ``pgv_h_m_s``, ``pgd_h_m``, ``arias_m_s`` and ``d5_95_s``, measures of the
             record (:mod:`rockbatch.motions.measures`); ``azimuth_deg``, ``magnitude``, ``distance_km``, where known;
             ``processed``, "yes" or "no", as its agency says; ``check``, what is odd about it; ``processing``, what was done
             to it here; ``event``, ``station_name``, ``direction``, as its header says; ``station``, what components that
-            count as one record share. Missing words are "" and missing numbers NaN.
+            count as one record share; ``vs30_m_s``, ``list_scale``, ``list_d5_95_s`` and ``list_pulse_period_s``, what PEER's
+            ``_SearchResults.csv`` says of the record. Missing words are "" and missing numbers NaN.
         """
         rows = pd.DataFrame([row(motion) for motion in self.motions], columns=list(COLUMNS))
         return rows.fillna(dict.fromkeys(TEXTS, "")).astype(

@@ -56,8 +56,8 @@ _SENSOR = re.compile(r"(UD|NS|EW)[12]")  # KiK-net: 1 in the borehole, 2 at the 
 _QUADRANT = re.compile(r"([NS])(\d{1,2})([EW])")
 _FILLING = "|".join(sorted(words("filling"), key=len, reverse=True))
 _NOISE = re.compile(
-    rf"^A(?=[-_ ])|{_FILLING}|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|CHAN(?:NEL)?(?=[\W\d_]*[^\W\d_])|AXIS|DIRECTION|DIR|"
-    r"DEG(?:REES)?|[\W_]"
+    rf"^A(?=[-_ ])|ACCELERATIONS|COMPONENTE?S|{_FILLING}|ACCELERATION|ACCEL|ACC|COMPONENT|COMP|"
+    r"CHAN(?:NEL)?(?=[\W\d_]*[^\W\d_])|AXIS|DIRECTION|DIR|DEG(?:REES)?|[\W_]"
 )
 
 

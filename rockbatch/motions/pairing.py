@@ -241,6 +241,7 @@ def _motion(h: Component, v: Component | None, notes: Iterable[str]) -> Motion:
         origin=directed(h.origin, h.orientation),
         start=start,
         confirm=("dt",),  # recorders and their formats have limits of their own
+        listed=h.listed,
     )
 
 

@@ -4,7 +4,6 @@ Each judge looks for one thing and returns a :class:`Finding`, or nothing; a fur
 The limits are held against real records in motions/README.md.
 """
 
-import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -15,9 +14,17 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.component import Component
 from rockbatch.motions.motion import Finding, Motion, Samples
+from rockbatch.motions.places import Stand, stand
 
 LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
+
+STRONG = 2.0
+"""PGA [g] that few records exceed, and many do whose header says g of numbers in m/s²."""
+
+FLAT, FLATTER = 0.005, 20.0
+"""Samples within this share of the PGA of an extreme are its top; it is flat if the samples beside it lie so many times further
+off than those in it lie apart: of a parabola that is 4 at most."""
 
 FARTHEST, ABSURD = 15.0, 100.0
 """PGD [m] beyond which no ground has moved (beside the ruptures of the largest earthquakes it was some 10 m), and beyond
@@ -46,22 +53,8 @@ ANY = ("*",)
 
 _SWINGS = 7
 _SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
+_LONG_TOP = 4  # samples of a flat top, or of several together and one more
 _ENOUGH = 8  # samples: fewer tell nothing about their mean
-_GROUND = re.compile(
-    r"free.?field|\bground|basement|\bsurface\b|\bsoil\b|foundation|footing|\bgrade\b|\bbase\b|\btoe\b"
-)
-_BOREHOLE = re.compile(r"bore.?hole|down.?hole|\bdwnhl?\b")
-_FLOOR = (
-    r"\b(?:[2-9]|[1-9]\d|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth|top|upper)(?:st|nd|rd|th)?[ -]*"
-    r"(?:fl\b|flr\b|floor|stor(?:e?y)\b)|\bfl(?:oo)?r[ -]?(?:[2-9]|[1-9]\d)\b"
-)
-_IN_NAME = re.compile(  # what the name of a station says, which may be that of a street
-    rf"\broof\b|penthouse|\bdeck\b|\babut(?:ment)?\b|\bcrest\b(?! (?:r(?:oa)?d|dr|ave?|st|blvd|view))|{_FLOOR}"
-)
-_STRUCTURE = re.compile(
-    r"\broof|penthouse|mezzanine|\battic\b|\bdeck\b|\bgirder|\babut|\bcrest\b|\bpier\b|\bbent\b|\bcolumn\b|\btower\b"
-    rf"|{_FLOOR}"
-)
 
 
 @dataclass(frozen=True)
@@ -79,11 +72,19 @@ def unlikely_peak(judged: Judged) -> Finding | None:
     horizontal = judged.motion.pga / judged.gravity
     vertical = (judged.motion.pga_vertical or 0.0) / judged.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return None
+        return _strong(max(horizontal, vertical)) if judged.component.unit.strip().lower() == "g" else None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
     return Finding("PGA", f"{peak} outside {LOWEST:g}–{HIGHEST:g} g: check the unit", gross=True, key="confirm_pga")
+
+
+def _strong(peak: float) -> Finding | None:
+    """Find a peak [g] of a record in g that would be a usual one in m/s²."""
+    if peak <= STRONG:
+        return None
+    text = f"PGA {peak:.3g} g, as few records have; if its numbers are in m/s², it is {peak / GRAVITY:.2g} g: check the unit"
+    return Finding("PGA", text, key="confirm_pga")
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
@@ -145,6 +146,40 @@ def alternating(samples: Samples) -> float:
         least = np.minimum(least[shift:], least[:-shift])
         greatest = np.maximum(greatest[shift:], greatest[:-shift])
     return max(0.0, float(least.max()), -float(greatest.min())) / 2.0
+
+
+def clipped(judged: Judged) -> Finding | None:
+    """Find flat tops: the recorder, or its digitiser, ended there, and the ground did not."""
+    for name, samples in (("", judged.component.acceleration), ("vertical: ", judged.motion.vertical)):
+        tops = [] if samples is None else flat_tops(samples)
+        if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
+            text = (
+                f"{name}flat tops: {sum(tops)} samples at its largest value, in rows of {max(tops)} and less: clipped by the "
+                "recorder, its true peak is not known"
+            )
+            return Finding("clipped", text, gross=True)
+    return None
+
+
+def flat_tops(samples: Samples) -> list[int]:
+    """Return how many samples each flat stretch at the largest and at the smallest value has; natural peaks have none."""
+    peak = float(np.abs(samples).max(initial=0.0))
+    values = np.unique(samples)
+    if peak == 0.0 or len(values) < _ENOUGH:
+        return []
+    resolution = float(np.diff(values).min())
+    tops: list[int] = []
+    for upright in (samples, -samples):
+        top = float(upright.max())
+        at_top = np.concatenate(([0], upright >= top - FLAT * peak, [0]))
+        starts, ends = np.flatnonzero(np.diff(at_top) == 1), np.flatnonzero(np.diff(at_top) == -1)
+        for start, end in zip(starts, ends, strict=True):
+            if end - start < 2 or start == 0 or end == len(samples) or top <= 0.0:
+                continue
+            spread = max(float(np.ptp(upright[start:end])), resolution)
+            if top - max(upright[start - 1], upright[end]) > FLATTER * spread:
+                tops.append(int(end - start))
+    return tops
 
 
 def displacement(judged: Judged) -> Finding | None:
@@ -220,19 +255,22 @@ def _growth_apart(samples: Samples) -> float:
 
 
 def in_a_structure(judged: Judged) -> Finding | None:
-    """Return that a sensor is on an upper floor, a deck or a crest, or in a borehole, by its place or its station's name."""
-    if depth := in_a_borehole(judged.component):
-        return Finding("borehole", f'"{depth}" is in a borehole, and not at the surface', gross=True)
-    for text, words in ((judged.component.sensor.place or "", _STRUCTURE), (judged.component.origin.station, _IN_NAME)):
-        if words.search(text.lower()) and not _GROUND.search(text.lower()):
-            return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
+    """Return that a sensor is on a structure, or in a borehole, by its place or its station's name."""
+    where, text = _stand(judged.component)
+    if where is Stand.BOREHOLE:
+        return Finding("borehole", f'"{text}" is in a borehole, and not at the surface', gross=True)
+    if where is Stand.STRUCTURE:
+        return Finding("structure", f'"{text}" is in a structure, and not on the ground', gross=True)
     return None
 
 
-def in_a_borehole(component: Component) -> str:
-    """Return the place, or the station's name, that says that a sensor is in a borehole; empty if none does."""
-    texts = (component.sensor.place or "", component.origin.station)
-    return next((text for text in texts if _BOREHOLE.search(text.lower()) and "surface" not in text.lower()), "")
+def in_a_borehole(component: Component) -> bool:
+    """Return whether a sensor is in a borehole, by its place or its station's name."""
+    return _stand(component)[0] is Stand.BOREHOLE
+
+
+def _stand(component: Component) -> tuple[Stand, str]:
+    return stand(component.sensor.place or "", component.origin.station)
 
 
 def unprocessed(judged: Judged) -> Finding | None:
@@ -254,6 +292,7 @@ JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
     unlikely_peak,
     no_zero_line,
     alternation,
+    clipped,
     displacement,
     unequal_horizontals,
     copied_horizontal,

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
+from rockbatch.motions.stationxml import Inventories
 
 LAYOUTS = ("columns", "wrapped")
 """Of numbers in text files: a column for each component, or one series that goes on from line to line."""
@@ -102,15 +103,6 @@ class ReadOptions:
         return tuple(notes)
 
 
-def unstated(lack: str, example: str, *keys: str) -> UnstatedError:
-    """Return the refusal of a file that does not state its unit or step, with the places where its user can."""
-    return UnstatedError(
-        f"{lack}; write {example} under [motions] in the study, for all files that state none (the others keep their own), or "
-        "for this file in motions.toml, which `rockbatch motions FOLDER --write-manifest` drafts",
-        *keys,
-    )
-
-
 def no_acceleration(called: str, kind: str) -> InputError:
     """Return the refusal of samples that their header says are of another ``kind``, with what to write if they are not."""
     return InputError(
@@ -121,14 +113,15 @@ def no_acceleration(called: str, kind: str) -> InputError:
 
 @dataclass(frozen=True)
 class RecordFile:
-    """A file to be read: where it lies, its bytes, what the study says about it, and the folder that links stay in."""
+    """A file to be read: where it lies, its bytes, what the study says about it, and the StationXML beside it."""
 
     path: Path
     source: str
     data: bytes
     options: ReadOptions = field(default_factory=ReadOptions)
     gravity: float = GRAVITY
-    root: Path | None = None
+    inventories: Inventories = field(default_factory=Inventories)
+    beside: tuple[str, ...] = ()  # lines of a header that other files state: "DT = 0.01 s"
 
     @property
     def stem(self) -> str:

@@ -113,6 +113,19 @@ def at_target(
     return motion_set.reduced_to(motions, unusable)
 
 
+def scaled_as_listed(motion_set: MotionSet) -> MotionSet:
+    """Return all motions times the factors that a list beside them has, with the factor noted; those without one are unusable."""
+    lacking = [motion for motion in motion_set if motion.listed.scale is None]
+    reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
+    unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
+    scaled = []
+    for motion in motion_set:
+        if (factor := motion.listed.scale) is not None:
+            notes = (*motion.notes, f"scaled by {factor:.6g}, as PEER's search lists it")
+            scaled.append(replace(motion.times(factor), factor=motion.factor * factor, notes=notes))
+    return motion_set.reduced_to(scaled, unusable)
+
+
 def at_targets(
     motion_set: MotionSet,
     target: Target | SpectrumTarget | None,

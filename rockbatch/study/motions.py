@@ -44,6 +44,20 @@ def _table(value: Any) -> dict[str, Any]:
 
 _TABLE = Other("a table in braces", _table, {"type": "object"})
 _END = Number(endless=True)
+_LIST = "list"
+
+
+class _Factor(Number):
+    """A number, or the word for the factors that a list beside the records has."""
+
+    def __call__(self, value: Any) -> Any:
+        return value if value == _LIST else super().__call__(value)
+
+    def schema(self) -> dict[str, Any]:
+        return {"anyOf": [super().schema(), {"const": _LIST}]}
+
+
+_FACTOR = _Factor(f'a number above 0, or "{_LIST}"', low=0.0, above=True)
 _SIGNS = names({"+": "positive plus normal", "-": "negative minus reversed reverse"}) | {"both": ["+", "-"]}
 _WITH_VERTICAL = {"vertical": (True, "required")}
 
@@ -58,7 +72,8 @@ MOTIONS = Section(("motions",), (
         "refused."),
     "polarity": Key(choice("+", "-", called=_SIGNS), '["+", "-"]',
         '"+" as recorded, "-" with the horizontal component reversed.', many=True),
-    "scale": Key(positive, "[1.0]", "Factors on all components of every record.", many=True,
+    "scale": Key(_FACTOR, "[1.0]", "Factors on all components of every record. "
+        '"list": the factor that PEER\'s `_SearchResults.csv` beside the records has for each.', many=True,
         usual=Usual(10.0, "times as recorded; 150 % are 1.5", 0.01)),
     "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, for files that do not state it."),
     "dt": Key(kinds.step, "0.01", "Sampling interval [s], for files that do not state it."),
@@ -204,6 +219,10 @@ def _read_motions(table: Table) -> dict[str, Any]:
         with table.noting("columns"):
             ReadOptions(columns=read["columns"])
     read["offset"] = _offset(table, read)
+    if _LIST in read.get("scale", ()):
+        if len(read.pop("scale")) > 1:
+            table.complain('scale: "list" stands alone; write scale = "list"', "scale")
+        read["scale_as_listed"] = True
     axis, step = read.pop("axis_deg", None), read.pop("every_deg", None)
     if axis is not None or step is not None:
         read["azimuths"] = azimuths_every(step) if axis is None else (axis,)

@@ -57,6 +57,7 @@ class MotionSpec:
     vertical: bool | Literal["required"] = True
     polarity: tuple[str, ...] = ("+",)
     scale: tuple[float, ...] = (1.0,)
+    scale_as_listed: bool = False
     unit: str | None = None
     dt: float | None = None
     columns: tuple[str, ...] | None = None

@@ -7,7 +7,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import same_azimuth
-from rockbatch.motions.scaling import at_targets
+from rockbatch.motions.scaling import at_targets, scaled_as_listed
 from rockbatch.motions.selection import selected
 from rockbatch.motions.sequences import with_sequences
 from rockbatch.study.load import Study
@@ -45,6 +45,8 @@ def ground_motions(study: Study) -> MotionSet:
     records = selected(records, spec.select, gravity)
     if both:
         records, pulses = _with_pairs(records, pulses)
+    if spec.scale_as_listed:
+        records = scaled_as_listed(records)
     records = at_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
     unusable = [replace(file, station=file.station or station.get(file.name, file.name)) for file in records.unusable]
     records = replace(records, unusable=unusable)

@@ -9,6 +9,7 @@ from agency_files import BBP, cwa_text, dyna_text, emod3d_text, geonet_text, kne
 from fixed_column_files import cosmos_text, csmip_text, smc_text
 from motion_files import at2_text, wiggle
 from national_files import afad_text, bhrc_text, caltech_text, csmnc_text, unam_text, usc_corrected_text, usc_text
+from waveform_files import asdf_bytes, evt_bytes, trace
 
 Damage = Callable[[bytearray, np.random.Generator], bytes | bytearray]
 
@@ -49,7 +50,12 @@ def samples() -> dict[str, list[tuple[str, bytes]]]:
         "text columns": [("x.csv", f"time [s],acc [g]\n{table}\n"), ("x.bbp", BBP)],
     }
     encoded = {name: [(file, text.encode("latin-1")) for file, text in files] for name, files in texts.items()}
-    return encoded | {"MiniSEED": [("x.mseed", traced("MSEED"))], "SAC": [("x.sac", traced("SAC"))]}
+    return encoded | {
+        "MiniSEED": [("x.mseed", traced("MSEED"))],
+        "SAC": [("x.sac", traced("SAC"))],
+        "ASDF": [("x.h5", asdf_bytes(trace("HNE"), trace("HNZ")))],
+        "Kinemetrics EVT": [("x.evt", evt_bytes())],
+    }
 
 
 SAMPLES = samples()

@@ -12,6 +12,7 @@ from fixed_column_files import cosmos_text, csmip_channel, csmip_text, film_text
 from motion_files import at2_text, wiggle
 from national_files import afad_text, bhrc_text, caltech_text, csmnc_text, unam_text, usc_corrected_text, usc_text
 from obspy import Stream, Trace
+from waveform_files import asdf_bytes, evt_bytes, trace
 
 from rockbatch.motions import ReadOptions
 
@@ -46,6 +47,16 @@ def _table(head: str, per_line: int = 1, between: str = " ", time: bool = False,
     return head + "".join(between.join(cells[i : i + per_line]) + "\n" for i in range(0, npts, per_line))
 
 
+def _pairs() -> str:
+    cells = [f"{0.01 * i:.2f} {value:.6f}" for i, value in enumerate(wiggle(122))]
+    return "".join(" ".join(cells[i : i + 4]) + "\n" for i in range(0, len(cells), 4))
+
+
+def _indexed() -> str:
+    rows = (f"{i},2023-02-06T01:17:{35 + i // 100}.{i % 100:02d}Z,{value:.6f}\n" for i, value in enumerate(wiggle(120)))
+    return ",time,acc (g)\n" + "".join(rows)
+
+
 def _shake() -> str:
     cells = [f"{value:9.6f}" for value in wiggle(123)]
     title = "MADE UP EARTHQUAKE\nSOMEWHERE, 90 DEG\n\n"
@@ -65,6 +76,11 @@ def _layouts() -> list[Layout]:
     g = ReadOptions(unit="g", dt=0.01)
     counts = ReadOptions(sensitivity=1e4)
     wrapped = ReadOptions(unit="g", dt=0.01, layout="wrapped")
+    midas = "*SGSw\n*TITLE, x\n*Y-AXIS, Ground Accel. (g)\n*UNIT&TYPE, GRAV, ACCEL\n*DATA\n"
+    midas += f"{_table('', 1, ', ', time=True)}*ENDDATA\n"
+    matched = (
+        "Matched\nFile Type: Accelerations (g)\n#Identifier:  Final (Baseline Corrected)\nNPTS = 120 , DT = 0.01 SEC\n"
+    )
     at2, values = "PEER AT2", wiggle(120)
     named: list[tuple[str, str, str, str | bytes, ReadOptions]] = [
         (at2, "`NPTS= …, DT= … SEC`", "x.AT2", at2_text(values), ReadOptions()),
@@ -158,6 +174,23 @@ def _layouts() -> list[Layout]:
             *("text columns", "`components: E N Z`", "x.txt"),
             *(_table("units: g\ndt: 0.01 s\ncomponents: E N Z\n", 3), ReadOptions()),
         ),
+        (
+            "text columns",
+            "four pairs of time and value a line (SAP2000, ETABS, Abaqus)",
+            "x_000.txt",
+            _pairs(),
+            ReadOptions(),
+        ),
+        ("text columns", "the same, unit stated", "x_000.txt", _pairs(), g),
+        ("text columns", "count and step above pairs (DEEPSOIL)", "x_000.txt", _table("120 0.01\n", time=True), g),
+        ("text columns", "MIDAS", "x_000.sgs", midas, ReadOptions()),
+        ("text columns", "RspMatch", "x_000.acc", _table(matched), ReadOptions()),
+        ("text columns", "a row of units", "x_000.csv", _table("t,acc\ns,g\n", 1, ",", time=True), ReadOptions()),
+        ("text columns", "pandas' index, clock times", "x_000.csv", _indexed(), ReadOptions()),
+        ("text columns", "ft/s2", "x_000.csv", _table("t (s),acc (ft/s2)\n", 1, ",", time=True), ReadOptions()),
+        ("ASDF", "counts without a sensitivity", "x.h5", asdf_bytes(trace("HNE")), ReadOptions()),
+        ("ASDF", "sensitivity stated", "x.h5", asdf_bytes(trace("HNE")), ReadOptions(sensitivity=1e5)),
+        ("Kinemetrics EVT", "K2, Etna", "x.evt", evt_bytes(), ReadOptions()),
         ("text columns", "a response spectrum", "x.txt", _table("Period(s) Sa(g)\n", 1, time=True), ReadOptions()),
     ]
     return [

@@ -1,5 +1,6 @@
 """MiniSEED files and the StationXML beside them, for tests of ObsPy's readers."""
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,31 @@ def trace(channel: str, data=COUNTS, start=START, rate: float = 100.0) -> Trace:
 
 def write_mseed(path: Path, *traces: Trace) -> None:
     Stream(list(traces)).write(str(path), format="MSEED")
+
+
+def asdf_bytes(*traces: Trace, xml: str = "", **attributes: float) -> bytes:
+    """Return an ASDF file of traces, with the StationXML of each station; ``attributes`` are instead of those of the traces."""
+    import h5py
+
+    held = io.BytesIO()
+    with h5py.File(held, "w") as store:
+        for one in traces:
+            station = store.require_group(f"Waveforms/{one.stats.network}.{one.stats.station}")
+            own = station.create_dataset(f"{one.id}__{one.stats.starttime}__{one.stats.endtime}__raw", data=one.data)
+            own.attrs["starttime"] = one.stats.starttime.ns
+            own.attrs["sampling_rate"] = one.stats.sampling_rate
+            own.attrs.update(attributes)
+            if xml and "StationXML" not in station:
+                station["StationXML"] = np.frombuffer(xml.encode(), dtype=np.byte)
+    return held.getvalue()
+
+
+def evt_bytes() -> bytes:
+    """Return a file of a Kinemetrics recorder that comes with ObsPy's tests."""
+    import obspy
+
+    data = Path(obspy.__file__).parent / "io" / "kinemetrics" / "tests" / "data"
+    return (data / "BI008_MEMA-04823.evt").read_bytes()
 
 
 def station_xml(folder: Path, *channels: str) -> None:

@@ -378,15 +378,28 @@ def test_an_archive_is_opened_and_listed_once_whatever_it_holds(tmp_path, monkey
     assert len(listed) == (2 if name == "all.zip" else 1)
 
 
-def test_a_folder_is_looked_through_for_station_xml_once(tmp_path, monkeypatch):
-    looked: list[Path] = []
-    plain = archives.files_in
-    monkeypatch.setattr(archives, "files_in", lambda folder: (looked.append(folder), plain(folder))[1])
+@pytest.mark.parametrize("name", ["TST.ps.gz", "plot.PNG.gz", "notes.pdf.gz"])
+def test_a_packed_plot_or_text_in_an_archive_is_left_out_and_a_packed_record_is_not(tmp_path, name):
+    write_at2(tmp_path, "x000.AT2", wiggle(60))
+    record = (tmp_path / "x000.AT2").read_bytes()
+    (tmp_path / "x000.AT2").unlink()
+    write_zip(
+        tmp_path / "all.zip", {"x000.AT2": record, name: gzip.compress(b"x"), "y000.AT2.gz": gzip.compress(record)}
+    )
+    found = read_motions(tmp_path)
+    assert [one.source for one in found.left_out] == [f"all.zip/{name}"]
+    assert "all.zip/y000.AT2.gz" in [one.source for one in found.unusable]
+
+
+def test_station_xml_is_read_once_however_many_records_ask_for_it(tmp_path, monkeypatch):
+    read: list[Path] = []
+    plain = archives.content
+    monkeypatch.setattr(archives, "content", lambda path, *first: (read.append(path), plain(path, *first))[1])
     for channel in ("HNE", "HNN", "HNZ"):
         write_mseed(tmp_path / f"{channel}.mseed", trace(channel, COUNTS // (2 if channel == "HNZ" else 1)))
     station_xml(tmp_path, *map(channel_xml, ("HNE", "HNN", "HNZ")))
     assert not read_motions(tmp_path).unusable
-    assert looked == [tmp_path]
+    assert read.count(tmp_path / "stations.xml") == 1
     (tmp_path / "stations.xml").unlink()
     assert len(read_motions(tmp_path).unusable) == 3
 

@@ -146,7 +146,7 @@ def test_one_series_that_goes_on_from_line_to_line_is_read_if_that_is_stated(tmp
     values = wiggle(npts)
     (tmp_path / "quake_000.txt").write_text(wrapped(values))
     stated = ReadOptions(unit="g", dt=0.01)
-    assert 'state layout = "wrapped"' in only_reason(read_motions(tmp_path, options=stated))
+    assert 'write layout = "wrapped"' in only_reason(read_motions(tmp_path, options=stated))
     (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g", dt=0.01, layout="wrapped")).motions
     np.testing.assert_allclose(motion.horizontal, 9.81 * values, atol=1e-5)
     assert main(["motions", "--all", str(tmp_path), "--unit", "g", "--dt", "0.01", "--layout", "wrapped"]) == 0

@@ -13,7 +13,6 @@ import rockbatch as rb
 from rockbatch.batch import running
 from rockbatch.common.errors import InputError
 from rockbatch.motions import archives, folder, read_motions
-from rockbatch.motions.formats import stationxml
 from rockbatch.toml.reader import LARGEST, TomlFile
 
 needs_pipes = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
@@ -148,28 +147,18 @@ def test_the_table_of_a_spectrum_is_read_up_to_a_size(tmp_path):
         study.with_(motions={"target": target})
 
 
-@pytest.mark.parametrize("kind", ["archive", "StationXML"])
-def test_a_file_in_the_place_of_another_with_its_time_is_not_taken_for_it(tmp_path, kind):
+def test_a_file_in_the_place_of_another_with_its_time_is_not_taken_for_it(tmp_path):
     """Copies keep times, and clocks are set back: a time alone tells no file from another."""
-    path = tmp_path / ("x.zip" if kind == "archive" else "x.xml")
+    path = tmp_path / "x.zip"
 
     def write(name: str) -> None:
         new = tmp_path / "new"
-        if kind == "archive":
-            with zipfile.ZipFile(new, "w") as archive:
-                archive.writestr(name, "text")
-        else:
-            new.write_text(f"<{name}/>")
+        with zipfile.ZipFile(new, "w") as archive:
+            archive.writestr(name, "text")
         os.utime(new, (1e9, 1e9))
         new.replace(path)
 
-    if kind == "archive":
-        write("a.txt")
-        assert archives.is_member(path / "a.txt")
-        write("b.txt")
-        assert (archives.is_member(path / "a.txt"), archives.is_member(path / "b.txt")) == (False, True)
-    else:
-        write("FDSNStationXML")
-        assert stationxml.channels_beside(tmp_path) == ([], [])
-        write("FDSNStationXML><")
-        assert stationxml.channels_beside(tmp_path)[1] != []
+    write("a.txt")
+    assert archives.is_member(path / "a.txt")
+    write("b.txt")
+    assert (archives.is_member(path / "a.txt"), archives.is_member(path / "b.txt")) == (False, True)

@@ -107,7 +107,7 @@ def test_what_excel_exports_in_any_country_is_read(tmp_path, text, encoding):
         ("time(s) NS(gal)\n0 1\n1 2\n".encode("utf-16-le"), "to be saved as UTF-8"),
         (b"\xff\xfe" + "0 1\n".encode("utf-16-le") + b"\x00", "begins as UTF-16 text"),
         (b"# NPTS = 4\n# time(s) NS(gal)\n0 1\n1 2\n2 3\n", "the header says 4 samples, but there are 3 rows"),
-        (b"# dt = fast\n# NS(gal)\n1\n2\n", "write dt = 0.01 under [motions]"),
+        (b"# dt = fast\n# NS(gal)\n1\n2\n", "write dt = …, its sampling interval [s], under [motions]"),
         (b"# dt = -0.1\n# NS(gal)\n1\n2\n", 'found "dt = -0.1"; expected e.g. dt = 0.01 s'),
         (b"# time(s)\n1\n2\n", "a column of time and no other"),
         (b"# time(s) NS(gal)\n0 1\n1 1e300\n", "expected finite numbers"),
@@ -183,7 +183,7 @@ def test_a_remark_with_a_unit_in_it_declares_nothing(tmp_path):
 @pytest.mark.parametrize("header", ["", "# t NS", "# time(s) NS", "t,NS"])
 def test_without_a_unit_the_file_is_not_used_and_the_reason_says_what_to_add(tmp_path, header):
     write(tmp_path, header, T, NS)
-    assert 'write unit = "cm/s2" under [motions]' in reason(tmp_path)
+    assert 'write unit = "cm/s2" (PGA 0.092 g)' in reason(tmp_path)
 
 
 def test_a_column_that_is_no_acceleration_is_left_out_with_a_reason(tmp_path):
@@ -205,7 +205,7 @@ def test_a_wrong_number_of_stated_columns_is_refused(tmp_path):
 
 def test_no_time_and_no_step_is_refused_with_the_remedy(tmp_path):
     write(tmp_path, "# NS(gal)", NS)
-    assert "dt = 0.01" in reason(tmp_path)
+    assert "write dt = …" in reason(tmp_path)
 
 
 @pytest.mark.parametrize("lost", [[29], [30, 40]])
@@ -393,7 +393,7 @@ def test_a_count_and_step_over_a_column_that_are_not_its_own_are_none(tmp_path, 
 @pytest.mark.parametrize("suffix", ["AT2", "g3"])
 def test_numbers_that_programs_leave_in_a_file_of_records_are_read_as_text_columns(tmp_path, suffix):
     (tmp_path / f"x_000.{suffix}").write_text("".join(f"{0.01 * i:.2f} {a}\n" for i, a in enumerate(SHAKEN)))
-    assert 'column 2 has no unit; write unit = "cm/s2"' in reason(tmp_path)
+    assert 'column 2 has no unit; write unit = "g" (PGA 0.27 g)' in reason(tmp_path)
     motion = one(tmp_path, unit="g")
     np.testing.assert_allclose(motion.horizontal, 9.81 * np.array(list(map(float, SHAKEN))), rtol=1e-12)
     assert motion.dt == 0.01

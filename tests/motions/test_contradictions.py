@@ -33,7 +33,8 @@ def test_no_statement_of_a_header_is_contradicted_in_silence(wrong):
 
 def test_every_format_tells_what_its_header_states():
     tried = {format_of(f".{header.file.rpartition('.')[2]}", header.data).name for header in HEADERS}
-    assert tried == {form.name for form in FORMATS}
+    by_libraries = {"ASDF", "Kinemetrics EVT"}  # which compare counts themselves
+    assert tried == {form.name for form in FORMATS} - by_libraries
 
 
 LIMITS = {

@@ -89,7 +89,7 @@ def test_the_words_of_a_reader_are_the_same_each_time(tmp_path):
 def test_every_format_that_obspy_reads_has_a_check_before():
     with pytest.raises(KeyError):
         with_obspy.read_stream(b"", "PICKLE")
-    assert set(CHECKS) == {"MSEED"}
+    assert set(CHECKS) == {"MSEED", "KINEMETRICS_EVT"}
 
 
 LINES_OF_BLANKS = [
@@ -288,20 +288,20 @@ def test_a_stray_xml_costs_no_record_whatever_it_is(tmp_path, monkeypatch):
 
 
 def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, monkeypatch):
-    from rockbatch.motions.formats import stationxml
+    from rockbatch.motions import stationxml
 
     write_mseed(tmp_path / "x.mseed", trace("HNN"))
     station_xml(tmp_path, "<abc/>" * 30_000, channel_xml("HNN"))
     tracemalloc.start()
     try:
-        assert len(stationxml.channels_beside(tmp_path)[0]) == 1
+        beside = stationxml.Inventories([(tmp_path / "stations.xml", "stations.xml", "")])
+        assert len(beside.of("CI.LRL..HNN")) == 1
         assert tracemalloc.get_traced_memory()[1] < 2**20  # of a file of 0.2 MB, whose tree would take 2.5
     finally:
         tracemalloc.stop()
     assert names(read_motions(tmp_path)) == ["x"]
     monkeypatch.setattr(stationxml, "LARGEST", 2**20)
     station_xml(tmp_path, "<abc/>" * 200_000, channel_xml("HNN"))
-    stationxml._channels.cache_clear()
     (told,) = read_motions(tmp_path).unusable
     assert "stations.xml: larger than 1 MiB" in told.reason
 

@@ -151,7 +151,13 @@ def test_a_study_states_the_unit_of_the_one_file_that_lacks_it_and_loses_none_of
     write(tmp_path, "", 0.01 * np.arange(120), 9.81 * C, name="bare_N.txt")
     lacking = read_motions(tmp_path, confirmed=["*"]).unusable
     assert [file.name for file in lacking] == ["bare_N"]
-    for words in ("has no unit", 'unit = "cm/s2" under [motions]', "the others keep their own", "--write-manifest"):
+    for words in (
+        "has no unit",
+        'unit = "g" (PGA 0.88 g)',
+        "under [motions]",
+        "the others keep their own",
+        "--write-manifest",
+    ):
         assert words in lacking[0].reason
     found = read_motions(tmp_path, options=ReadOptions(unit="m/s2"), confirmed=["*"])
     assert not found.unusable

@@ -323,7 +323,7 @@ TOLD = [  # what stands in the study, what is written instead or too, what the a
     ("at_most = 150", "at_most = 0.15", 'at_most = 0.15: in mm, as heel_uplift_mm is, hardly more', "?"),
     ("at_most = 150", 'at_most = 150\nunit = "mm"', "the unit stands in the name of the demand", "[motions]"),
     ('demand = "heel_uplift_mm"', 'demand = "uplift"', 'did you mean "heel_uplift_m" or "heel_uplift_mm"?', "theta_max_rad"),
-    ('unit = "cm/s2"', 'unit = "%g"', "expected one of g, g/10, m/s2", "write for example"),
+    ('unit = "cm/s2"', 'unit = "%"', "expected one of g, g/10, mg, m/s2", "write for example"),
 ]  # fmt: skip
 
 

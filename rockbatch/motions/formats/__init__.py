@@ -12,12 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
 from rockbatch.motions.evidence import Kind, Statement, settled
 from rockbatch.motions.formats import (
     afad,
+    asdf,
     at2,
     bhrc,
     columns,
@@ -27,6 +28,7 @@ from rockbatch.motions.formats import (
     dyna,
     emod3d,
     geonet,
+    kinemetrics,
     knet,
     miniseed,
     resorce,
@@ -35,20 +37,21 @@ from rockbatch.motions.formats import (
     unam,
     volumes,
 )
+from rockbatch.motions.formats.advice import advised
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import Orientation, is_place_or_direction, split_stem
-from rockbatch.motions.record_file import RecordFile
+from rockbatch.motions.record_file import ReadOptions, RecordFile
 from rockbatch.motions.texts import with_legible_texts
 
 _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MS\x03": "MiniSEED 3: fetch it as MiniSEED 2",
-    b"\x89HDF\r\n\x1a\n": "an HDF5 file",
     b"MATLAB 5.0 MAT-file": "a MATLAB file",
     b"GSE2 ": "GSE2",
 }
+_TEXT = ".txt .csv .dat .bbp .acc .sgs .tsv .inp"
 _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time(s) NS(cm/s2) UD(cm/s2)"
 
 
@@ -56,7 +59,8 @@ _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time
 class Format:
     """A format: its name, suffixes in lower case (none if it has none of its own), the check of the first bytes, the reader.
 
-    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes.
+    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes. ``counts``: whether its
+    numbers may be counts, so that a sensitivity can be stated.
     """
 
     name: str
@@ -64,6 +68,7 @@ class Format:
     matches: Callable[[bytes], bool]
     read: Callable[[RecordFile], Sequence[Component | Unusable]]
     anywhere: bool = True
+    counts: bool = False
 
 
 def _names(suffixes: str) -> frozenset[str]:
@@ -72,8 +77,10 @@ def _names(suffixes: str) -> frozenset[str]:
 
 FORMATS = (
     Format("PEER AT2", _names(".at2 .txt .csv .dat .bbp .acc"), at2.looks_like_at2, at2.read_component),
-    Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed),
-    Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False),
+    Format("MiniSEED", _names(".mseed .ms .miniseed"), miniseed.is_miniseed, miniseed.read_miniseed, counts=True),
+    Format("Kinemetrics EVT", _names(".evt"), kinemetrics.is_evt, kinemetrics.read_evt),
+    Format("ASDF", _names(".h5 .asdf .hdf5"), asdf.is_hdf5, asdf.read_asdf, counts=True),
+    Format("SAC", _names(".sac"), sac.is_sac, sac.read_sac, anywhere=False, counts=True),
     Format("K-NET/KiK-net", _names(".ew .ns .ud .ew1 .ns1 .ud1 .ew2 .ns2 .ud2"), knet.is_knet, reader(knet.parse)),
     Format("GeoNet V1A/V2A", _names(".v1a .v2a"), geonet.is_geonet, reader(geonet.parse)),
     Format("DYNA (ESM, ITACA, AFAD)", _names(".asc"), dyna.is_dyna, reader(dyna.parse)),
@@ -92,7 +99,11 @@ FORMATS = (
     Format("PEER AT2", _names(".at2"), at2.has_at2_count, at2.read_component, anywhere=False),
     Format("text columns", _names(".at2 .g3"), columns.holds_table, columns.read_columns, anywhere=False),
     Format(
-        "text columns", _names(".txt .csv .dat .bbp .acc"), columns.is_columns, columns.read_columns, anywhere=False
+        "text columns",
+        _names(".txt .csv .dat .bbp .acc .sgs .tsv .inp"),
+        columns.is_columns,
+        columns.read_columns,
+        anywhere=False,
     ),
 )
 """In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns, a table called .AT2 as well."""
@@ -116,11 +127,21 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     form = format_of(file.path.suffix, file.data)
     if form is None:
         raise InputError(_not_recognised(file))
-    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at below
-        readings = [with_legible_texts(reading) for reading in form.read(file)]
-    if len(readings) == 1 and isinstance(only := readings[0], Component):
-        readings = [with_name(only, file.path.name, split_stem(file.stem)[1])]
-    return [usable(reading) for reading in readings]
+    if "sensitivity" in file.options.instead and not form.counts:
+        raise InputError(f"{form.name} is no format of counts: in motions.toml write scale = … instead of sensitivity")
+    read = form.read
+
+    def readings(options: ReadOptions) -> list[Component | Unusable]:
+        found = [with_legible_texts(reading) for reading in read(replace(file, options=options))]
+        if len(found) == 1 and isinstance(only := found[0], Component):
+            found = [with_name(only, file.path.name, split_stem(file.stem)[1])]
+        return [usable(reading) for reading in found]
+
+    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at in usable
+        try:
+            return readings(file.options)
+        except UnstatedError as error:
+            raise advised(error, readings, file.options, file.gravity) from None
 
 
 def with_name(component: Component, name: str, orientation: Orientation | None) -> Component:

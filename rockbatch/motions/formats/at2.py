@@ -9,17 +9,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.formats.fixed_width import LOOKED_AT, aligned_numbers, is_cut_short, number_in
+from rockbatch.motions.formats.fixed_width import (
+    LOOKED_AT,
+    aligned_numbers,
+    is_cut_short,
+    number_in,
+    without_end_marks,
+)
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
-from rockbatch.motions.record_file import RecordFile, unstated
+from rockbatch.motions.record_file import RecordFile
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
 _COUNT_AND_STEP = tuple(
@@ -76,7 +82,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     (recording,) = _parse(file.data.decode("latin-1"))
     unit = recording.unit or file.options.unit
     if unit is None:
-        raise unstated('no unit in the header ("… IN UNITS OF G")', 'unit = "g"', "unit")
+        raise UnstatedError('no unit in the header ("… IN UNITS OF G")', "unit")
     try:
         acceleration_factor(unit, file.gravity)
     except ValueError as error:
@@ -115,7 +121,7 @@ def _parse(text: str) -> list[Recording]:
         Recording(
             label=component,
             dt=dt,
-            values=_values(text, sum(map(len, lines[: first + 1])), npts),
+            values=_values(without_end_marks(text), sum(map(len, lines[: first + 1])), npts),
             unit=unit[1] if unit else "",
             station=", ".join(part.upper() for part in (event, date, station)) if station and date else "",
             sensor=Sensor(station.upper()),

@@ -3,9 +3,10 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
-from rockbatch.common.errors import InputError
-from rockbatch.common.units import acceleration_factor
+from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
 
@@ -35,7 +36,10 @@ _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
 _WORD = re.compile(rf"(?P<label>[^\s,;()\[\]]+)(?:\s*{_UNIT})?")  # a label of one word, perhaps with its unit
 _FIELD = re.compile(rf"(?P<label>[^()\[\]]*[^()\[\]\s])\s*(?:{_UNIT})?")  # one between commas or tabs
-_VALUE = re.compile(r"[:=]|\d\.\d|(?<!\w)\.\d")
+_VALUE = re.compile(
+    r"[:=]|\d\.\d|(?<!\w)\.\d|^\*[A-Za-z&-]+ *,"
+)  # the last one is a keyword, as MIDAS and Abaqus write them
+_KEYED = re.compile(r"[^()\[\],;\t]*[:=]|\*[A-Za-z&-]+ *,")  # "File type: accelerations (g)" is no label
 _COMPONENTS = re.compile(r"^(?:components?|channels?|columns)\s*[:=]\s*(?P<labels>\S.*)$", re.IGNORECASE)
 _STATED = re.compile(r"^units?\s*[:=]\s*(?P<unit>\S+)", re.IGNORECASE)
 _SAID = re.compile(  # acceleration in g; UNITS OF CM/S/S; Acceleration unit: gal; Acc. (cm/s2)
@@ -49,7 +53,15 @@ _COUNT = re.compile(
 )
 _SHORT = {"NORTHSOUTH": "NS", "EASTWEST": "EW", "UPDOWN": "UD"}
 _TIMES = {"time", "times", *(f"{t}{unit}" for t in ("t", "time", "") for unit in ("sec", "secs", "second", "seconds"))}
+_TIMES |= {"timestamp", "datetime", "date", "utc", "timeutc", "utctime", "datetimeutc", "elapsed", "elapsedtime"}
 _TIMES |= {"zeit", "tiempo", "temps", "tempo", "zaman", "時間", "时间"}
+_INDEX = re.compile(
+    r'^\s*"?(?:unnamed: ?\d+|index|idx|id|no\.?|nr\.?|num(?:ber)?|#|n|i|k|sample(?:[ _]?(?:no\.?|number|index))?|row|point|step)?'
+    r'"?\s*[,;\t]\s*',
+    re.IGNORECASE,
+)
+_MIDAS = re.compile(r"^\*UNIT&TYPE\s*,\s*(?P<unit>\w+)\s*,\s*(?P<kind>\w+)", re.IGNORECASE)
+_MIDAS_UNITS = {"GRAV": "g"} | {unit.upper(): f"{unit}/s2" for unit in ("m", "cm", "mm", "in", "ft")}
 _SUFFIXED = re.compile(
     r"(?P<label>a[gxyz]?|acc(?:el|eleration)?|.*[_ -]acc(?:el|eleration)?)_(?P<unit>g|gal|[cm]?m_?s2)", re.IGNORECASE
 )
@@ -124,16 +136,54 @@ def seconds_in(unit: str) -> float | None:
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
     """Return columns of which the header tells label and unit; ``None`` where it does not for all of them.
 
-    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``.
+    ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, or in two, the labels and
+    their units.
     """
     numbered = {int(m["at"]): _column(m) for line in header if (m := _NUMBERED.match(line))}
     if sorted(numbered) == list(range(1, width + 1)):
         return [numbered[i + 1] for i in range(width)]
     for line in reversed(header):
-        labelled = [_column(match) for match in _LABELLED.finditer(line)]
-        if len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"'):  # "PGA (g): 0.5" is no label
+        labelled = [] if _KEYED.match(line) else [_column(match) for match in _LABELLED.finditer(line)]
+        whole = len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"')  # "PGA (g): 0.5" is no label
+        if whole and any(_is_unit(column.unit or "") for column in labelled):  # "Final (Baseline corrected)" is none
             return labelled
+    return _with_unit_row(header, width)
+
+
+def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
+    """Return the columns of a line of labels and the line of their units below it, or above; ``None`` without such lines."""
+    for pair in pairwise(header):
+        for labels, units in (pair, pair[::-1]):
+            of_columns = [unit.strip(" ()[]") for unit in _fields(units)]
+            names = _fields(labels)
+            if len(names) != width or len(of_columns) != width or not any(map(is_acceleration, of_columns)):
+                continue
+            if all(unit in ("", "-") or _is_unit(unit) for unit in of_columns) and not any(map(_is_unit, names)):
+                pairs = zip(names, of_columns, strict=True)
+                return [Column(_tidy(name), None if unit in ("", "-") else unit) for name, unit in pairs]
     return None
+
+
+def _fields(line: str) -> list[str]:
+    """Return what stands between commas, semicolons or tabs, else between blanks."""
+    fields = re.split(r"[,;\t]", line) if re.search(r"[,;\t]", line) else line.split()
+    return [field.strip(' "') for field in fields]
+
+
+def _is_unit(text: str) -> bool:
+    """Return whether a text is a unit of time, acceleration, velocity or displacement."""
+    return is_acceleration(text) or seconds_in(text) is not None or _is_of_motion(text)
+
+
+def _is_of_motion(unit: str) -> bool:
+    """Return whether a unit is one of velocity or displacement."""
+    length, slash, time = re.sub(r"[() ]", "", unit.lower()).partition("/")
+    return length_factor(length) is not None and (not slash or time in SECONDS)
+
+
+def below_an_index(header: Sequence[str]) -> list[str]:
+    """Return a header without the name of a first column that counts rows, as pandas writes it: none, or such as "index"."""
+    return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
 
 
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
@@ -183,7 +233,14 @@ def speaks_of_spectra(header: Sequence[str]) -> str:
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``."""
+    """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``; ``None`` without one.
+
+    Raises ``NoRecordError`` where a record file of MIDAS says that it holds no accelerations.
+    """
+    if midas := next((match for line in header if (match := _MIDAS.match(line))), None):
+        if not midas["kind"].upper().startswith("ACC"):
+            raise NoRecordError(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
+        return _MIDAS_UNITS.get(midas["unit"].upper(), midas["unit"])
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
     units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))
     return stated or next((unit for unit in units if is_acceleration(unit)), None)

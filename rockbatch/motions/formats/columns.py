@@ -5,16 +5,19 @@ their header and are therefore an ObsPy waveform format, "BBP".
 """
 
 import codecs
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
 from rockbatch.motions.component import Component
 from rockbatch.motions.evidence import Kind
+from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
     StatedStep,
+    below_an_index,
     columns_with_units,
     columns_without_units,
     is_acceleration,
@@ -27,13 +30,14 @@ from rockbatch.motions.formats.column_header import (
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
-from rockbatch.motions.formats.table import WRAPPED, read_table
+from rockbatch.motions.formats.table import read_table
 from rockbatch.motions.formats.time_steps import grows_evenly, on_even_steps
 from rockbatch.motions.limits import SAME_STEP
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import orientation_in, same_azimuth
-from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of, unstated
+from rockbatch.motions.record_file import ReadOptions, RecordFile, text_of
 
+_COMPONENTS = ("000", "090", "up")
 _GROWING = 0.9  # of the steps of a column of time; those of an acceleration grow half the time
 
 
@@ -67,7 +71,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
     but one thing: in a file of two columns, one that grows evenly in time's manner is time, unless the header speaks
     of spectra. Uneven times are interpolated, and it is said.
     """
-    recordings = _parse(file.text, file.options)
+    recordings = _parse(file.text, file.options, file.beside)
     for i, recording in enumerate(recordings):
         if is_acceleration(recording.unit):
             overruled = file.options.overruled(recording.unit, recording.dt, file.gravity)
@@ -77,22 +81,27 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
     return to_components(file, recordings)
 
 
-def _parse(text: str, options: ReadOptions) -> list[Recording]:
+def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
     """Return the columns of acceleration; ``InputError`` where they are not known, or have no unit."""
-    header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead)
+    text, start = in_seconds(text)
+    header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead, stated=beside)
     if len(table) < 2:
         raise InputError("found one row of numbers; expected at least two samples")
     columns, notes = _columns(header, options, table)
     count = stated_count(header)
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
-    unit = stated_unit(header) or options.unit
+    unit = stated_unit(header)
+    if unit is None or not is_acceleration(unit):  # a unit that nobody knows states nothing
+        unit = options.unit or unit
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
-    lacking = [f"{_called(i, columns[i])} has no unit" for i in used if not (columns[i].unit or unit)]
+    units = {i: _unit_of(columns[i], unit, options) for i in used}
+    known = any(map(is_acceleration, units.values()))  # then another unit is the fault of its own column
+    lacking = [_lack(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
-        raise unstated("; ".join(lacking), 'unit = "cm/s2"', *(("unit", "dt") if untimed else ("unit",)))
+        raise UnstatedError("; ".join(lacking), *(("unit", "dt") if untimed else ("unit",)))
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
         raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
@@ -105,17 +114,30 @@ def _parse(text: str, options: ReadOptions) -> list[Recording]:
             stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
             dt=dt,
             values=values[:, i],
-            unit=columns[i].unit or unit or "",
+            unit=units[i],
+            start=start,
             notes=(*notes, *omitted, *moved),
         )
         for i in used
     ]
 
 
+def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
+    """Return the unit of a column, its own or that of all; what is stated where its own is not understood; empty without any."""
+    if column.unit and not is_acceleration(column.unit) and options.unit:
+        return options.unit
+    return column.unit or of_all or ""
+
+
+def _lack(i: int, column: Column, unit: str) -> str:
+    """Return what the statement of a column's unit lacks."""
+    return f'{_called(i, column)}: the unit "{unit}" is not known' if unit else f"{_called(i, column)} has no unit"
+
+
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns, and notes on them; ``InputError`` for those of a spectrum."""
     width = table.shape[1]
-    columns = columns_with_units(header, width) or columns_without_units(header, width)
+    columns = _behind_an_index(below_an_index(header), table) or _named(header, width) or _counted(header, table)
     stated = options.columns
     notes: tuple[str, ...] = ()
     if stated is not None:
@@ -135,6 +157,33 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
     if spectrum := spectrum_in(columns):
         raise NoRecordError(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
+
+
+def _named(header: Sequence[str], width: int) -> list[Column] | None:
+    """Return the columns that a header names, with their units or without; ``None`` if it does not."""
+    return columns_with_units(header, width) or columns_without_units(header, width)
+
+
+def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
+    """Return the columns of a table whose first one, which has no name or such as "index", has times or counts the rows.
+
+    ``header`` names the other ones; ``None`` for another table.
+    """
+    if _counts(table[:, 0]):
+        return _counted(header, table)
+    named = _named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
+    return None if named is None or any(column.is_time for column in named) else [Column("time"), *named]
+
+
+def _counted(header: Sequence[str], table: Samples) -> list[Column] | None:
+    """Return the columns of a table whose first one counts its rows, if the header names all others; ``None`` if not."""
+    named = _named(header, table.shape[1] - 1) if _counts(table[:, 0]) else None
+    return None if named is None else [Column("-"), *named]
+
+
+def _counts(column: Samples) -> bool:
+    """Return whether a column has the numbers of its rows, from 0 or 1."""
+    return column[0] in (0.0, 1.0) and bool((np.diff(column) == 1.0).all())
 
 
 def _completed(header: Column, stated: str) -> Column | None:
@@ -177,14 +226,16 @@ def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str
         if line := speaks_of_spectra(header):
             raise InputError(
                 f'found two columns without labels below "{line[:60]}": a spectrum is no time history; if this is one, '
-                'state in the study columns = ["time", "000"]'
+                'state columns = ["time", "000"], in the study or for this file in motions.toml'
             )
         return [Column("time"), Column("")], ("first column, evenly growing, taken as time [s]",)
-    raise InputError(
-        f"found {width} columns and no header that says what they are; write one, "
-        "e.g. # time(s) NS(cm/s2) UD(cm/s2), "
-        'or state in the study, e.g. columns = ["time", "000", "090", "up"] ("-" leaves one out). '
-        f"{WRAPPED}"
+    timed = grows_evenly(table[:, 0])
+    names = ("time", *_COMPONENTS) if timed else _COMPONENTS
+    columns = {"columns": (*names, *["-"] * width)[:width]}
+    raise UnstatedError(
+        f'found {width} columns and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "-" leaves one out',
+        "columns",
+        choices=(columns,) if timed else ({"layout": "wrapped"}, columns),
     )
 
 
@@ -199,7 +250,7 @@ def _sampled(
     if not times:
         dt = stated.dt if stated else options.dt
         if dt is None:
-            raise unstated("no column of time and no sampling interval", "dt = 0.01", "dt")
+            raise UnstatedError("no column of time and no sampling interval", "dt")
         return dt, table, ()
     column = columns[times[0]]
     seconds = seconds_in(column.unit or "s")

@@ -16,6 +16,11 @@ from rockbatch.motions.motion import Samples
 
 T = TypeVar("T")
 _LONGEST = 10**6  # characters of a line
+_END_MARK = re.compile(  # "-inf" is none
+    r"[*=/&~_-]+|(?:[*/&!=]|--)[*/&!=~_ -]*[a-z].*|(?:end|eof|eod|fin|fine|ende|stop)(?:[ _.:-]*(?:of|data|file|record)\b.*)?",
+    re.IGNORECASE,
+)
+_MOST_MARKS, _LONGEST_MARK = 10, 300  # lines, and characters of one
 _ALIGNED = 20  # lines that do not have numbers in the same columns by chance
 _WORD = re.compile(r"\S+")
 _MANY = 100  # numbers that do not have the same number of decimals by chance
@@ -46,6 +51,17 @@ def lines_of(text: str) -> list[str]:
     ):
         raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
     return lines
+
+
+def without_end_marks(text: str) -> str:
+    """Return a text without lines at its end that mark the end of the numbers: "*** End Data ***", "*ENDDATA", "EOF", "====="."""
+    for _ in range(_MOST_MARKS):
+        text = text.rstrip()
+        last = text[-_LONGEST_MARK:].splitlines()[-1:]
+        if not last or len(last[0]) == _LONGEST_MARK or not _END_MARK.fullmatch(last[0].strip()):
+            break
+        text = text[: -len(last[0])]
+    return text
 
 
 def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:

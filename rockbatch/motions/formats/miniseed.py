@@ -1,26 +1,29 @@
 """MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
 
 import re
+from collections.abc import Container, Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
+from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
-from rockbatch.motions.formats import stationxml
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.origin import origin_of
+from rockbatch.motions.places import depth_as_place
 from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _YEARS = 1900, 2100
+_STATED = "sensitivity = … (counts per m/s²) in the study, or for this file in motions.toml"
 _MOST_NAMED = 5  # of the .xml files that could not be read
 _MOST_PIECES = 1000  # of channels in a file: a network of three hundred stations
 _APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
@@ -65,14 +68,17 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
         )
-    segments = grouped(stream, lambda trace: str(trace.id))
-    entries, refused = stationxml.channels_beside(file.path.parent, file.root)
-    channels = grouped(entries, lambda channel: channel.id)
-    broken = _broken_off(file.data, stream)
-    unread = f" (not read: {', '.join(refused[:_MOST_NAMED])})" if refused else ""
+    return of_traces(file, stream, _broken_off(file.data, stream))
+
+
+def of_traces(
+    file: RecordFile, traces: "Iterable[obspy.Trace]", broken: Container[str] = ()
+) -> list[Component | Unusable]:
+    """Return one component per channel and event of traces in counts; those of ``broken`` channels say so."""
+    segments = grouped(traces, lambda trace: str(trace.id))
     readings: list[Component | Unusable] = []
-    for channel_id, traces in segments.items():
-        events = _events(traces)
+    for channel_id, of_channel in segments.items():
+        events = _events(of_channel)
         for pieces in events:
             name = channel_id if len(segments) > 1 else file.stem
             source = file.source if len(segments) == 1 else f"{file.source} ({channel_id})"
@@ -82,10 +88,11 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
             try:
                 if len(pieces) > 1:
                     raise InputError(f"{channel_id} has gaps or overlaps: {len(pieces)} pieces; join them first")
-                component = _component(name, source, file, pieces[0], channels.get(channel_id, []), unread)
+                component = _component(name, source, file, pieces[0])
                 readings.append(replace(component, findings=_BROKEN_OFF) if channel_id in broken else component)
             except InputError as error:
-                readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2]))
+                lacks = error.keys if isinstance(error, UnstatedError) else ()
+                readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2], lacks))
     return readings
 
 
@@ -136,40 +143,28 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
     return events
 
 
-def _component(
-    name: str, source: str, file: RecordFile, trace: "obspy.Trace", entries: list[stationxml.Channel], unread: str
-) -> Component:
-    """Return one channel as a component, by its StationXML ``entries`` or by what the study states.
-
-    ``unread`` names files of StationXML that were not read.
-    """
+def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -> Component:
+    """Return one channel as a component, by the StationXML beside it or by what the study states."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
     if is_clock(stats.channel):
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
-    entry = next((channel for channel in entries if channel.start <= start < channel.end), None)
-    statements = _directions(trace.id, entry)
-    if entry is not None and entry.sensitivity:
+    entry = None if "sensitivity" in file.options.instead else _entry(file, trace)
+    covering = (epoch for epoch in file.inventories.of(trace.id) if epoch.start <= start < epoch.end)
+    statements = _directions(trace.id, entry or next(covering, None))
+    if entry is not None:
+        assert entry.sensitivity
         unit, sensitivity = entry.unit, entry.sensitivity
-        origin = f"sensitivity {sensitivity:g} counts per {unit} from StationXML"
+        origin = f"sensitivity {entry.gain} from StationXML {entry.named}"
     elif (kind := not_acceleration(stats.channel)) and "unit" not in file.options.instead:
         raise no_acceleration(trace.id, kind)
     elif file.options.unit is not None or file.options.sensitivity is not None:
         unit, sensitivity = file.options.unit or "m/s2", file.options.sensitivity or 1.0
         origin = f"sensitivity {sensitivity:g} counts per {unit} as stated"
-    elif entries:
-        lack = "no sensitivity" if entry is not None else f"no epoch that covers {stats.starttime}"
-        raise InputError(
-            f"the StationXML beside it has {lack} for {trace.id}; add it, or state sensitivity = …{unread}"
-        )
     else:
-        raise InputError(
-            f"counts without a sensitivity: put the StationXML of {stats.network}.{stats.station} "
-            f"(an .xml with channel {trace.id}) into the folder, or state sensitivity = … "
-            f"(counts per m/s²) in the study{unread}"
-        )
+        raise _without_sensitivity(file, trace)
     try:
         factor = acceleration_factor(unit, file.gravity)
     except ValueError:
@@ -183,13 +178,13 @@ def _component(
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
         source=source,
         start=start,
-        unit="" if entry is not None and entry.sensitivity else unit,
+        unit="" if entry is not None else unit,
         raw=True,
         processed=False,
         origin=origin_of(
             date=stats.starttime.strftime("%Y-%m-%d"), station=f"{stats.network}.{stats.station}".strip(".")
         ),
-        sensor=Sensor(stats.station, stats.network, stats.location),
+        sensor=Sensor(stats.station, stats.network, stats.location, depth_as_place(entry.depth if entry else None)),
         notes=(origin,),
     )
 
@@ -208,3 +203,40 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
             raise InputError(f"{channel_id} is {error}") from None
         statements += [angles] if angles else []
     return tuple(statements)
+
+
+def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
+    """Return the epoch of StationXML that gives a channel's sensitivity; ``None`` if none does.
+
+    Raises ``InputError`` where two give another one, unless the study states which it is.
+    """
+    epochs = file.inventories.of(trace.id)
+    start, end = trace.stats.starttime.timestamp, trace.stats.endtime.timestamp
+    if not any(epoch.start <= start < epoch.end for epoch in epochs):
+        return None
+    asked = [epoch for epoch in epochs if epoch.sensitivity and epoch.start <= end and start < epoch.end]
+    if asked and (statements := stationxml.contradiction(asked)):
+        if file.options.sensitivity is not None:
+            return None
+        raise UnstatedError(
+            f"{trace.id}: StationXML contradicts itself: {statements}; take out the wrong one, or state {_STATED}",
+            "sensitivity",
+        )
+    return asked[0] if asked else None
+
+
+def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> UnstatedError:
+    """Return the refusal of counts that no StationXML covers, with the files of StationXML that were not read."""
+    stats, epochs = trace.stats, file.inventories.of(trace.id)
+    refused = ", ".join(file.inventories.refused[:_MOST_NAMED])
+    unread = f" (not read: {refused})" if refused else ""
+    if epochs:
+        covered = any(epoch.start <= stats.starttime.timestamp < epoch.end for epoch in epochs)
+        lack = "no sensitivity" if covered else f"no epoch that covers {stats.starttime}"
+        reason = f"the StationXML beside it ({epochs[0].file}) has {lack} for {trace.id}; add it, or state {_STATED}"
+    else:
+        reason = (
+            f"counts without a sensitivity: put the StationXML of {stats.network}.{stats.station} (an .xml with channel "
+            f"{trace.id}) into the folder or one below it, or state {_STATED}"
+        )
+    return UnstatedError(f"{reason}{unread}", "sensitivity")

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
@@ -20,7 +20,8 @@ from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
 from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
 from rockbatch.motions.origin import origin_of
-from rockbatch.motions.record_file import RecordFile, no_acceleration, unstated
+from rockbatch.motions.places import depth_as_place
+from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _DAY = 86400.0  # s
 _STALE = (1.0, 1.0)  # limits of extremes: a factor of 2
@@ -34,6 +35,7 @@ _NUMBERS = {  # word, the least and the largest value; floats are the first of t
     "DEPMAX": (2, -math.inf, math.inf),
     "B": (5, -1e10, 1e10),  # some count from 1970
     "E": (6, -1e10, 1e10),
+    "STDP": (34, -math.inf, math.inf),
     "CMPAZ": (57, -360.0, 720.0),
     "CMPINC": (58, -180.0, 180.0),
     "NZYEAR": (70, 1900, 2100),
@@ -80,8 +82,9 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     if kind and "unit" not in options.instead:
         raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
-        raise unstated(
-            "SAC files do not tell their unit reliably", 'unit = "g" (or sensitivity = … for counts per m/s²)', "unit"
+        raise UnstatedError(
+            "SAC files do not tell their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)",
+            "unit",
         )
     start, day = _start(numbers)
     statements = _directions(channel, numbers)
@@ -100,7 +103,9 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
             start=start,
-            sensor=Sensor(station if start >= FIRST_YEAR else "", network, location),
+            sensor=Sensor(
+                station if start >= FIRST_YEAR else "", network, location, depth_as_place(numbers.get("STDP"))
+            ),
             unit=unit,
             raw=True,
             origin=origin_of(names["KEVNM"], f"{network}.{station}".strip("."), day),

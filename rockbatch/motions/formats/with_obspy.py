@@ -77,7 +77,43 @@ def _data_record(record: bytes) -> None:
         offset, previous = following, offset
 
 
-CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": mseed}
+_TAG = 16  # bytes of the tag before each header and frame of an .evt
+_HEADERS = (2040, 2736)  # bytes of its file header: of K2 and of the newer ones
+
+
+def is_evt(head: bytes) -> bool:
+    """Return whether the first bytes are the tag of the header of a Kinemetrics .evt."""
+    return (
+        len(head) >= _TAG and head[:1] == b"K" and head[1] in (0, 1) and _tag(head, 0)[:2] in {(1, n) for n in _HEADERS}
+    )
+
+
+def _tag(data: bytes, at: int) -> tuple[int, int, int]:
+    """Return type of a frame, and the lengths of its header and its data [bytes], of the tag at a place."""
+    order = ">" if data[at + 1] == 1 else "<"
+    (kind,) = np.frombuffer(data, f"{order}u4", 1, at + 4)
+    length, of_data = np.frombuffer(data, f"{order}u2", 2, at + 8)
+    return int(kind), int(length), int(of_data)
+
+
+def evt(data: bytes) -> bytes:
+    """Return an .evt whose tags lead from one to the next, and to its end."""
+    at = 0
+    while at < len(data):
+        if data[at : at + 1] == b"\0" and not any(data[at : at + _TAG]):
+            break  # what recorders put behind the last frame
+        if len(data) < at + _TAG or data[at : at + 1] != b"K" or data[at + 1] > 1:
+            raise InputError(f".evt: no tag at byte {at}: it is cut, or damaged")
+        kind, length, of_data = _tag(data, at)
+        if (kind == 1) != (at == 0) or at + _TAG + length + of_data > len(data):
+            raise InputError(f".evt: a frame of {length} and {of_data} bytes at byte {at}: it is cut, or damaged")
+        at += _TAG + length + of_data
+    return data
+
+
+_OF_TRIGGERS = ("chan_lta", "chan_sta")
+
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": mseed, "KINEMETRICS_EVT": evt}
 """By ObsPy's name of the format."""
 
 
@@ -93,6 +129,13 @@ def _unraisable() -> Iterator[list[str]]:
         sys.unraisablehook = hook
 
 
+def _is_harmless(warning: warnings.WarningMessage, name: str) -> bool:
+    """Return whether a warning says nothing of the samples: of ObsPy's own use of libraries, and of settings of a trigger."""
+    if issubclass(warning.category, DeprecationWarning | FutureWarning):
+        return True
+    return name == "KINEMETRICS_EVT" and str(warning.message).startswith(_OF_TRIGGERS)
+
+
 def read_stream(data: bytes, name: str) -> "obspy.Stream":
     """Return ObsPy's reading of ``data`` in the format ``name``; ``InputError`` if its header cannot be, or ObsPy complains."""
     data = CHECKS[name](data)
@@ -105,7 +148,7 @@ def read_stream(data: bytes, name: str) -> "obspy.Stream":
         except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
             message = _ADDRESS.sub("the file", str(error))
             raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {message}") from None
-    complaints = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning | FutureWarning)]
+    complaints = [str(w.message) for w in caught if not _is_harmless(w, name)]
     complaints += unraised
     if complaints:
         raise InputError(f"damaged: ObsPy's {name} reader says: {' '.join(complaints[0].split())}")

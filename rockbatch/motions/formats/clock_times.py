@@ -1,0 +1,63 @@
+"""Clock times in tables of numbers, such as 2023-02-06T01:17:35.010Z, which become seconds after the first of them."""
+
+import re
+from datetime import UTC, datetime, timedelta
+
+_CLOCK = re.compile(
+    r"""^(?P<before>[ \t]*(?:\d+[ \t]*[,;\t][ \t]*)?)"?
+    (?:(?P<date>\d{4}[-/]\d\d[-/]\d\d)[T ])?(?P<clock>\d\d:\d\d:\d\d)(?:[.,](?P<fraction>\d{1,12}))?
+    (?P<zone>[ ]?(?:Z|UTC|GMT)|[+-]\d\d:?\d\d)?"?(?=[ \t]*(?:[,;\t ]|$))""",
+    re.MULTILINE | re.VERBOSE,
+)
+_FEWEST = 3  # lines that begin with a time; a header has one at most
+_DAY = 86400  # s
+
+
+def in_seconds(text: str) -> tuple[str, float | None]:
+    """Return a text in which times at the beginning of lines are seconds after the first one, and that [s since 1970, UTC].
+
+    ``None`` where lines do not begin with times, or these do not tell date and zone; then the text is as it was, or begins at 0.
+    """
+    if ":" not in text or len(times := list(_CLOCK.finditer(text))) < _FEWEST:
+        return text, None
+    try:
+        first = _moment(times[0])
+    except ValueError:
+        return text, None
+    fraction = _nanoseconds(times[0])
+    days, latest = 0, first
+
+    def seconds(match: re.Match[str]) -> str:
+        """Return the line's beginning with seconds in the place of its time, which may go on after midnight."""
+        nonlocal days, latest
+        moment = _moment(match) + timedelta(days=days)
+        if match["date"] is None and moment < latest:
+            days += 1
+            moment += timedelta(days=1)
+        latest = moment
+        since = int((moment - first).total_seconds()) * 10**9 + _nanoseconds(match) - fraction
+        sign, since = ("-" if since < 0 else ""), abs(since)
+        return f"{match['before']}{sign}{since // 10**9}.{since % 10**9:09d}"
+
+    try:
+        return _CLOCK.sub(seconds, text), _start(times[0], first, fraction)
+    except ValueError:  # a clock that cannot be
+        return text, None
+
+
+def _moment(match: re.Match[str]) -> datetime:
+    """Return a time in whole seconds, without its zone; on a day of its own where it has no date."""
+    date = (match["date"] or "1970-01-01").replace("/", "-")
+    return datetime.fromisoformat(f"{date}T{match['clock']}")
+
+
+def _nanoseconds(match: re.Match[str]) -> int:
+    return int((match["fraction"] or "0").ljust(9, "0")[:9])
+
+
+def _start(match: re.Match[str], first: datetime, nanoseconds: int) -> float | None:
+    zone = (match["zone"] or "").strip()
+    if match["date"] is None or not zone:
+        return None
+    offset = datetime.strptime(zone.replace(":", ""), "%z").utcoffset() if zone[0] in "+-" else timedelta()
+    return (first - (offset or timedelta())).replace(tzinfo=UTC).timestamp() + 1e-9 * nanoseconds

@@ -1,0 +1,240 @@
+"""Where a sensor stands, by the words of its place or of its station's name: on the ground, on a structure, below the surface.
+
+All words of all languages are in one table (``_PLACES``); accents and capitals do not matter. A word of a structure counts
+wherever it stands, in "Base of column" as in "Top of pier", but where the text says that the sensor is in the free field, or on
+the ground beside the structure: "Ground, N of pier 2". Names of stations may be those of streets and towns: words that are
+such, too, count in places only.
+"""
+
+import re
+import unicodedata
+from enum import Enum, auto
+from functools import lru_cache
+
+
+class Stand(Enum):
+    """Where a sensor stands, as far as words tell."""
+
+    GROUND = auto()  # or nothing that says otherwise
+    STRUCTURE = auto()
+    BOREHOLE = auto()
+
+
+_PLACES = {  # word* is the beginning of one; commas part words, blanks in them may be hyphens or nothing
+    "free field": {
+        "en": "free field, free fld, ff, far field, ground surface, array surface, surface array, toe, rock outcrop",
+        "es pt": "campo libre, campo livre, superficie del terreno, afloramiento, pie de presa, pe da barragem",
+        "fr it": "champ libre, champ lointain, campo libero, affleurement, pied du barrage, piede diga",
+        "de": "freifeld*, freies feld, gelaendeoberflaeche, gelandeoberflache, dammfuss",
+        "tr el": "serbest saha, serbest alan, acik saha, elefthero pedio, ελευθερο πεδιο",
+        "ja zh": "jiyu jiban, chihyo, 地表, 自由地盤, ziyou chang, 自由场, 自由場",
+    },
+    "ground": {
+        "en": "ground, grnd, grd, soil, grade, lawn, yard, parking, field, hut, shed, shelter, vault, pad, kiosk, hillside, "
+        "surface",
+        "es pt": "terreno, suelo, solo, jardin, jardim, caseta, patio",
+        "fr it": "sol, terrain, jardin, suolo, terreno, giardino, cabina",
+        "de": "boden, gelande, garten, huette, hutte",
+        "tr el": "zemin, bahce, arazi, edafos, εδαφος",
+        "ja zh": "jiban, jimen, 地盤, 地面, dimian",
+    },
+    "structure": {
+        "en": "roof, rooftop, penthouse, mezzanine, attic, balcony, parapet*, ceiling, catwalk, deck, girder, beam, truss*, "
+        "abut*, abtmt, crest, column, bent cap, cap beam, pile, pilecap, piling, footing, ftg, ftng, caisson, embank*, embkmt, "
+        "levee, berm, isolator, isolation, isoltr, isol, midspan, mid span, wingwall, wing wall, shear wall, core wall, "
+        "spillway, dam top, top of dam, dam body, upstream face, downstream face, pylon, superstructure, superstr, pier cap, "
+        "pier top, top of pier, pier base, base of pier, tower top, top of tower, tower base, base of tower, hinge",
+        "es pt": "techo, azotea, tejado, estribo, coronacion, coronamiento, encepado, terraplen*, aislador*, cuerpo de la presa, "
+        "telhado, tabuleiro, coroamento, bloco de estacas, isolador*, corpo da barragem",
+        "fr it": "toiture, culee, couronnement, semelle, isolateur, appareil d appui, corps du barrage, sottotetto, impalcato, "
+        "coronamento, pila del ponte, isolatore, isolatori, corpo diga",
+        "de": "dachgeschoss, ueberbau, uberbau, fahrbahnplatte, widerlager, dammkrone, mauerkrone, fundamentplatte, pfahlkopf*",
+        "tr el": "catisi, tabliye, kenar ayak, kenar ayagi, orta ayak, kret, kreti, izolator*, taratsa, katastroma, "
+        "akrovathro, mesovathro, epichoma, στεγη, ταρατσα, καταστρωμα, ακροβαθρο, στεψη, υποστυλωμα*, μεσοβαθρο, επιχωμα, "
+        "μονωτηρ*",
+        "ja zh": "okujo, okujou, kyodai, kyokyaku, menshin, 屋上, 床版, 橋台, 天端, 橋脚, フーチング, 盛土, 免震, "
+        "屋顶, 屋頂, 楼顶, 桥面, 橋面, 桥台, 坝顶, 壩頂, 坝体, 桥墩, 橋墩, 承台, 路堤, 隔震",
+    },
+    "structure, in places only": {  # also names of towns, streets and people
+        "en": "pier, bent, tower, span, wall, bearing, anchorage, approach*, gallery, wharf, quay, dock, crane, tank, silo, "
+        "stack, shaft, mast, dike, dyke, ramp, cable, saddle, chimney, joint, col, rf",
+        "es": "ultimo piso, tablero, viga, cresta, columna, zapata, cabezal, pilote, pila, pilon, galeria, torre, pilar*, "
+        "apoyo, muro",
+        "pt": "encontro, crista, coluna, sapata, estaca, aterro",
+        "fr": "toit, terrasse, tablier, poutre, crete, poteau*, pieu*, remblai, tour, pilier, mur",
+        "it": "tetto, copertura, trave, travi, spalla, spalle, ciglio, pilastro, pilastri, pilone, plinto, plinti, palo, pali, "
+        "rilevato, cunicolo",
+        "de": "dach, traeger, trager, krone, stuetze*, stutze*, saeule*, saule*, pfeiler*, pfahl*, boeschung, damm, isolatoren, "
+        "lager, turm, mauer, bruecke, brucke",
+        "tr": "cati, teras, kiris*, kolon, kolonu, sutun*, somel, kazik*, dolgu, dolgusu, govde, govdesi, kule, ayak",
+        "el": "stegi, doma, dokos, stepsi, kolona, stylos, vathro, pedilo*, passalo*, monotir*, efedrano, pyrgos, gefyra, δωμα, "
+        "πεδιλο",
+        "ja zh": "shouban, shoban, keta, tenba, tentan, hashira, futingu, kui, morido, wuding, loding, qiaomian, liang, qiaotai, "
+        "badi, bading, zhuzi, qiaodun, chengtai, zhuang, ludi, gezhen*, 桁, 柱, 杭, 桩, 梁",
+    },
+    "borehole": {
+        "en": "borehole*, bore hole, downhole*, down hole, dwnhl, dwnh, dhole, dh, bh, drillhole, drill hole, underground",
+        "es pt": "sondeo*, perforacion*, sondagem, furo de sondagem, subterraneo",
+        "fr it": "forage*, puits, perforazione, sondaggio, in foro",
+        "de": "bohrloch*, bohrung*",
+        "tr el": "sondaj*, kuyu ici, geotrisi*, γεωτρηση",
+        "ja zh": "chichu, konai, 地中, 孔内, jingxia, zuankong, 井下, 钻孔, 鑽孔",
+    },
+    "borehole, in places only": {"": "hole, pozo, pozzo, furo, foro, kuyu, well, tiefe"},
+    "depth": {
+        "en": "depth, deep, below ground, below surface, below grade, below gl, bgs, below",
+        "es pt fr it": "profundidad*, prof, profundidade, profondeur, profondita, de profondeur",
+        "de": "tiefe, tief, unter gelande, unter gok",
+        "tr el": "derinlik*, derin, vathos, βαθος",
+        "ja zh": "fukasa, 深さ, 深度, shendu",
+    },
+    "surface": {"": "surface*, superficie*, oberflache*, yuzey*, epifaneia, επιφανεια, 地表, chihyo, dibiao"},
+    "near": {
+        "en": "near, nr, adjacent, adj, beside, next to, away, from, outside, opposite, behind, beyond, downstream, upstream",
+        "es pt fr it": "cerca, junto, lejos, perto, pres, a cote, vicino, presso",
+        "de tr": "neben, bei, nahe, yakin, yani*",
+    },
+    "floor": {
+        "en": "fl, flr, floor, story, storey, level, lvl, lev",
+        "es pt": "piso, planta, nivel, andar, pavimento",
+        "fr it": "etage, niveau, piano, livello",
+        "de": "stock, stockwerk, og, obergeschoss, etage, ebene, geschoss",
+        "tr el": "kat, orofos, οροφος",
+        "ja zh": "kai, f, lou, ceng, 階, 层, 層, 楼, 樓",
+    },
+}
+_STREETS = (  # behind a word, which is a name then
+    "street st road rd drive dr avenue ave boulevard blvd lane ln way court ct place pl highway hwy parkway pkwy plaza circle "
+    "park view heights school college hospital library church mall center centre station creek lake valley hill hills canyon "
+    "ranch island beach bay point city village town estates"
+)
+_ORDINALS = "second third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth top upper"
+_CARDINAL = re.compile(r"\b(?:north|south|east|west|n|s|e|w|nw|ne|sw|se|northwest|northeast|southwest|southeast)\b")
+_LEAST_DEPTH = 2.0  # m: vaults of sensors at the surface are less deep
+_FOOT = 0.3048  # m
+_WIDE = r"぀-ヿ一-鿿"  # scripts without blanks between words
+
+_LENGTH = r"(?P<number>\d+(?:[.,]\d+)?) ?(?P<unit>m|mt|mts|meters?|metres?|metros|metri|ft|feet|foot)\b\.?"
+_DIRECTED = re.compile(
+    r" *(?:from|away|of|to|off|n|s|e|w|ne|nw|se|sw|north|south|east|west|above|high|tall|wide|long|span|elev|asl|de|du|del|von"
+    r"|vom|dal)(?![a-z])"
+)
+_HIGH = re.compile(r"\b(?:elev|el|elevation|alt|altitude|height|h|within|about|~|span|cota|quota)[. =:]*$")
+
+
+def stand(place: str, name: str) -> tuple[Stand, str]:
+    """Return where a sensor stands, and the text that says so: its place, or the name of its station."""
+    for text, is_name in ((place, _folded(place) == _folded(name)), (name, True)):
+        where = _stand(text, is_name)
+        if where is not Stand.GROUND:
+            return where, text
+    return Stand.GROUND, ""
+
+
+def depth_as_place(depth: float | None) -> str | None:
+    """Return the words for a sensor at a ``depth`` [m] below the surface; ``None`` for one at the surface."""
+    return f"depth {depth:g} m" if depth is not None and depth > _LEAST_DEPTH else None
+
+
+@lru_cache(maxsize=1024)
+def _stand(text: str, is_name: bool) -> Stand:
+    folded = _folded(text)
+    if not folded:
+        return Stand.GROUND
+    if _is_below(folded, is_name):
+        return Stand.BOREHOLE
+    return Stand.STRUCTURE if _is_on_structure(folded, is_name) else Stand.GROUND
+
+
+def _folded(text: str) -> str:
+    """Return a text in lower case, without accents, with blanks for signs that part words."""
+    text = text.casefold().replace("ı", "i").replace("ß", "ss").replace("ø", "o")
+    plain = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+    plain = unicodedata.normalize("NFC", plain)
+    return " ".join(re.sub(r"[_:/'’\"]+", " ", plain).split())
+
+
+@lru_cache(maxsize=64)
+def _pattern(*kinds: str) -> re.Pattern[str]:
+    """Return the pattern of the words of these kinds, whole ones or such as begin so."""
+    words = {word.strip() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")}
+    wide = [re.escape(word) for word in words if re.search(f"[{_WIDE}]", word)]
+    plain = sorted(words - {word for word in words if re.search(f"[{_WIDE}]", word)}, key=len, reverse=True)
+    ends = [
+        re.sub(r"\\? ", "[- .]*", re.escape(word.removesuffix("*")))
+        + ("[a-zα-ω]*" if word.endswith("*") else "(?:s|es)?")
+        for word in plain
+    ]
+    return re.compile(rf"(?<![a-zα-ω])(?:{'|'.join(ends)})(?![a-zα-ω])" + "".join(f"|{word}" for word in wide))
+
+
+def _is_on_structure(text: str, is_name: bool) -> bool:
+    """Return whether a folded text says that a sensor is on a structure, above the ground floor of one, or on an embankment."""
+    if _pattern("free field").search(text):
+        return False
+    kinds = ("structure",) if is_name else ("structure", "structure, in places only")
+    first = next((m for m in _pattern(*kinds).finditer(text) if not _is_street(text, m.end())), None)
+    if first is not None and not _is_beside(text[: first.start()]):
+        return True
+    if not is_name and re.search(rf"{_LENGTH} above\b", text):
+        return True
+    return _upper_floor().search(text) is not None
+
+
+def _is_beside(before: str) -> bool:
+    """Return whether the words before that of a structure say that the sensor is on the ground near it."""
+    ground = _pattern("ground").search(before)
+    between = "" if ground is None else before[ground.end() :]
+    return any(pattern.search(between) for pattern in (_pattern("near"), _CARDINAL, re.compile(_LENGTH)))
+
+
+def _is_street(text: str, end: int) -> bool:
+    """Return whether the word that ends there is the name of a street or a town: "Crest Drive"."""
+    following = re.match(r"[ .]*([a-z]+)", text[end:])
+    return following is not None and following[1] in _STREETS.split()
+
+
+@lru_cache(maxsize=1)
+def _upper_floor() -> re.Pattern[str]:
+    """Return the pattern of floors above that of the entrance, in digits or words, before or behind the word for it."""
+    floor = _pattern("floor").pattern
+    number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
+    ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|o|a|°|º|ª|\.|os|inci|uncu|ncu)?"
+    words = "|".join(_ORDINALS.split())
+    return re.compile(rf"(?:{number}{ordinal}|\b(?:{words}))[ -]*(?:{floor})|(?:{floor})[ .#]*(?:no[. ]*)?{number}")
+
+
+def _is_below(text: str, is_name: bool) -> bool:
+    """Return whether a folded text says that a sensor is in a borehole, or states its depth."""
+    if _pattern("surface").search(text) and not re.search(r"below (?:the |ground )?surface", text):
+        return False
+    kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
+    if any(not _is_street(text, match.end()) for match in _pattern(*kinds).finditer(text)):
+        return True
+    return any(depth > _LEAST_DEPTH for depth in _depths(text, is_name))
+
+
+def _depths(text: str, is_name: bool) -> list[float]:
+    """Return the depths [m] that a folded text states: "30 m depth", "GL-100m", and in places a bare "30 m"."""
+    depth, depths = _pattern("depth"), []
+    for match in re.finditer(_LENGTH, text):
+        before, behind = text[: match.start()], text[match.end() :]
+        stated = re.search(rf"(?:{depth.pattern})[ .=(-]*(?:of )?$", before) or re.match(
+            rf"[ )]*(?:de |di |en )?(?:{depth.pattern})", behind
+        )
+        level = re.search(r"(?:^|[ (=,;]|gl ?|g\.l\. ?|z ?= ?)[-−–]$", before) or re.search(
+            r"\b(?:gl|at|@)[ -]*$", before
+        )
+        bare = not is_name and not _DIRECTED.match(behind) and not _HIGH.search(before)
+        if stated or (not is_name and level and not _DIRECTED.match(behind)) or (bare and _ends_so(before, behind)):
+            number = float(match["number"].replace(",", "."))
+            depths.append(number * (_FOOT if match["unit"].startswith("f") else 1.0))
+    return depths
+
+
+def _ends_so(before: str, behind: str) -> bool:
+    """Return whether a length stands alone, at the end of its text or of a part of it."""
+    return (
+        re.fullmatch(r"[ )]*(?:[;,].*)?", behind) is not None
+        and re.fullmatch(r"(?:.*[;,(-] ?|.*array ?|)", before) is not None
+    )

@@ -1,0 +1,47 @@
+"""Records as FEMA P-695's programs write them: samples, step and count of a record, each in a text file of its own.
+
+``SortedEQFile_(120111).txt`` has the samples, ``DtFile_(120111).txt`` the step [s], ``NumPointsFile_(120111).txt`` the count.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rockbatch.common.errors import InputError
+from rockbatch.motions import archives
+from rockbatch.motions.files import SourceFile
+
+_NAMED = re.compile(
+    r"(?P<kind>(?:Sorted)?EQ_?File|Dt_?File|NumPoints?_?File)_?\(?(?P<number>[\w-]+?)\)?", re.IGNORECASE
+)
+_KEYS = {"DT": "DT = {} s", "NUM": "NPTS = {}"}
+_LONGEST = 100  # bytes of a file that holds a number
+
+
+def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str, ...]], dict[Path, str]]:
+    """Return the lines that other files state of a record's file, and of these what they are, by path."""
+    named = {(file.path.parent, *_parts(match)): file for file in files if (match := _NAMED.fullmatch(file.path.stem))}
+    stated: dict[Path, tuple[str, ...]] = {}
+    companions: dict[Path, str] = {}
+    for (folder, kind, number), file in named.items():
+        record = next((named[key] for sort in ("SOR", "EQF") if (key := (folder, sort, number)) in named), None)
+        if kind in _KEYS and record is not None and (text := _number(file.path)):
+            stated[record.path] = (*stated.get(record.path, ()), _KEYS[kind].format(text))
+            companions[file.path] = f"a statement about {record.path.name}"
+    return stated, companions
+
+
+def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
+    """Return the kind of a file, by three letters or the two of "DT", and the number of its record."""
+    kind = match["kind"].upper()
+    return "DT" if kind.startswith("DT") else kind[:3], match["number"]
+
+
+def _number(path: Path) -> str:
+    """Return the number that is all that a file holds; empty if it is not."""
+    try:
+        text = archives.content(path, _LONGEST + 1).decode("latin-1").strip()
+        float(text)
+    except (InputError, OSError, ValueError):
+        return ""
+    return text

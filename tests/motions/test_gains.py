@@ -1,0 +1,177 @@
+"""Which gain applies: all StationXML that covers a record is asked, and sensors side by side are compared."""
+
+import numpy as np
+import pytest
+from motion_files import wiggle
+from waveform_files import channel_xml, station_xml, trace, write_mseed
+
+from rockbatch.common.errors import InputError
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.manifest_draft import draft
+
+RECORD = "n.mseed"
+
+
+def xml_in(path, *channels: str, attributes: str = "") -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    station_xml(path.parent, *channels)
+    text = (path.parent / "stations.xml").read_text()
+    (path.parent / "stations.xml").unlink()
+    path.write_text(text.replace('<Station code="LRL"', f'<Station code="LRL" {attributes}'))
+
+
+def pga(folder, **given) -> float:
+    (motion,) = read_motions(folder, **given).motions
+    return motion.pga
+
+
+def reason(folder, **given) -> str:
+    (unusable,) = read_motions(folder, **given).unusable
+    return unusable.reason
+
+
+def staged(value: float, *gains: float) -> str:
+    stages = "".join(f"<Stage><StageGain><Value>{gain}</Value></StageGain></Stage>" for gain in gains)
+    return channel_xml("HNN", value=value).replace("</Response>", f"{stages}</Response>")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_mseed(tmp_path / RECORD, trace("HNN"))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (channel_xml("HNN"), channel_xml("HNN", value=5e5)),
+        (channel_xml("HNN"), channel_xml("HNN", value=2e5, unit="CM/S**2")),
+        (channel_xml("HNN"), channel_xml("HNN", value=-2e5)),
+        (channel_xml("HNN"), channel_xml("HNN", unit="M/S")),
+        (channel_xml("HNN", end="2020-01-01"), channel_xml("HNN", value=2.1e5)),
+    ],
+)
+@pytest.mark.parametrize("files", [("one.xml", "one.xml"), ("a.xml", "b.xml"), ("a.xml", "below/b.xml")])
+def test_two_gains_that_cover_a_record_hold_it_back_and_both_are_named(folder, first, second, files):
+    if files[0] == files[1]:
+        xml_in(folder / files[0], first, second)
+    else:
+        xml_in(folder / files[0], first)
+        xml_in(folder / files[1], second)
+    why = reason(folder)
+    for words in ("200000 counts per M/S**2", *files, "epoch 2017-11-15T19:20:00 to"):
+        assert words in why
+    assert why.count("counts per") == 3
+
+
+def test_equal_gains_of_several_epochs_and_files_are_one(folder):
+    xml_in(folder / "a.xml", channel_xml("HNN"), channel_xml("HNN", value=2.0001e5))
+    once = pga(folder)
+    xml_in(folder / "b.xml", channel_xml("HNN", value=2e3, unit="CM/S**2"))
+    assert pga(folder) == once
+
+
+def test_an_epoch_that_begins_within_the_record_is_asked_too_and_one_after_it_is_not(folder):
+    before = channel_xml("HNN")
+    later = channel_xml("HNN", value=5e5).replace("2017-11-15T19:20:00", "2019-07-06T03:19:25")
+    xml_in(folder / "a.xml", before, later.replace("03:19:25", "03:20:25"))
+    assert pga(folder) > 0
+    xml_in(folder / "a.xml", before, later)
+    assert "epoch 2019-07-06T03:19:25 to now" in reason(folder)
+
+
+def test_a_channel_without_dates_has_the_epoch_of_its_station(folder):
+    undated = channel_xml("HNN", value=5e5).replace('startDate="2017-11-15T19:20:00" endDate="2599-12-31T00:00:00"', "")
+    xml_in(folder / "old.xml", undated, attributes='startDate="2001-01-01" endDate="2016-01-01"')
+    xml_in(folder / "new.xml", channel_xml("HNN"))
+    assert pga(folder) == pytest.approx(np.abs(trace("HNN").data - trace("HNN").data.mean()).max() / 2e5)
+
+
+def test_epochs_that_point_elsewhere_contradict_each_other(folder):
+    xml_in(folder / "a.xml", channel_xml("HNN", 0.0), channel_xml("HNN", 180.0))
+    assert "azimuth 0°, dip 0° (a.xml" in reason(folder)
+    assert "azimuth 180°" in reason(folder)
+
+
+def test_a_sensitivity_that_its_own_stages_contradict_is_held_back(folder):
+    xml_in(folder / "a.xml", staged(2e5, 0.5, 4e5, 1.0))
+    assert pga(folder) > 0
+    xml_in(folder / "a.xml", staged(2e5, 0.5, 1e5, 1.0))
+    assert "50000 as the product of its stages' gains" in reason(folder)
+
+
+def test_what_a_study_or_manifest_states_decides_between_two_gains(folder):
+    xml_in(folder / "a.xml", channel_xml("HNN"), channel_xml("HNN", value=5e5))
+    assert "# sensitivity =   # counts per m/s²" in draft(folder)
+    by_study = pga(folder, options=ReadOptions(sensitivity=5e5))
+    (folder / "motions.toml").write_text(f'[[record]]\nfile = "{RECORD}"\nsensitivity = 5e5\n')
+    assert pga(folder) == by_study
+    (folder / "motions.toml").write_text(f'[[record]]\nfile = "{RECORD}"\nsensitivity = 1e5\n')
+    assert pga(folder) == pytest.approx(5.0 * by_study)
+    (folder / "a.xml").unlink()
+    assert pga(folder) == pytest.approx(5.0 * by_study)
+
+
+def test_a_sensitivity_for_a_file_that_has_no_counts_is_refused(tmp_path):
+    (tmp_path / "x_N.txt").write_text("# t(s) N(g)\n0.00 0.1\n0.01 -0.1\n0.02 0.1\n")
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x_N.txt"\nsensitivity = 5e5\n')
+    assert "write scale = … instead" in reason(tmp_path)
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x_N.txt"\nsensitivity = 0\n')
+    with pytest.raises(InputError, match="sensitivity"):
+        read_motions(tmp_path)
+
+
+def test_the_table_of_records_names_file_epoch_and_gain(folder):
+    xml_in(folder / "meta" / "LRL.xml", channel_xml("HNN"))
+    (row,) = read_motions(folder).table()["processing"]
+    assert "200000 counts per M/S**2 from StationXML meta/LRL.xml, epoch 2017-11-15T19:20:00 to now" in row
+
+
+@pytest.mark.parametrize("places", [("waveforms", "stations"), ("data/wave", "resp"), (".", "a/b"), ("x/y/z", ".")])
+def test_station_xml_is_found_anywhere_in_the_folder_that_is_read(tmp_path, places):
+    records = tmp_path / places[0]
+    records.mkdir(parents=True, exist_ok=True)
+    write_mseed(records / RECORD, trace("HNN"))
+    xml_in(tmp_path / places[1] / "CI.LRL.xml", channel_xml("HNN"))
+    assert len(read_motions(tmp_path)) == 1
+    assert len(read_motions([records, tmp_path / places[1]])) == 1
+
+
+def two_sensors(folder, factor: float, noise: float = 0.0, **changed) -> None:
+    rng = np.random.default_rng(1)
+    for location, times in (("00", 1.0), ("10", factor)):
+        samples = wiggle(500)
+        samples = times * (samples + noise * np.abs(samples).max() * rng.standard_normal(500))
+        sensor = trace("HNN", (1e6 * samples).astype(np.int32))
+        sensor.stats.location = location
+        for key, value in changed.items() if location == "10" else ():
+            setattr(sensor.stats, key, value)
+        write_mseed(folder / f"{location}.mseed", sensor)
+
+
+@pytest.mark.parametrize(("factor", "noise"), [(0.25, 0.0), (2.0, 0.02), (-4.0, 0.01)])
+def test_sensors_side_by_side_that_differ_by_a_factor_are_held_back(tmp_path, factor, noise):
+    two_sensors(tmp_path, factor, noise)
+    stated = ReadOptions(sensitivity=1e5)
+    found = read_motions(tmp_path, options=stated)
+    assert len(found.unusable) == 2
+    assert all("one of their gains is wrong" in one.reason for one in found.unusable)
+    assert "10.mseed, of another sensor" in found.unusable[0].reason
+    (tmp_path / "motions.toml").write_text('[[record]]\nfile = "10.mseed"\nuse = false\n')
+    (motion,) = read_motions(tmp_path, options=stated).motions
+    assert not motion.findings[1:]
+
+
+@pytest.mark.parametrize(
+    ("factor", "noise", "changed"),
+    [
+        (1.05, 0.0, {}),
+        (4.0, 0.5, {}),
+        (4.0, 0.0, {"station": "OTHER"}),
+        (4.0, 0.0, {"channel": "HNE"}),
+        (4.0, 0.0, {"starttime": trace("HNN").stats.starttime + 3600}),
+    ],
+)
+def test_sensors_that_agree_or_recorded_something_else_are_not(tmp_path, factor, noise, changed):
+    two_sensors(tmp_path, factor, noise, **changed)
+    assert len(read_motions(tmp_path, options=ReadOptions(sensitivity=1e5))) == 2

@@ -1,0 +1,308 @@
+"""Layouts in which practitioners' programs write records, and advice that was tried before it is given."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from motion_files import wiggle
+
+from rockbatch.common.errors import UnstatedError
+from rockbatch.common.units import acceleration_factor
+from rockbatch.motions import ReadOptions, read_motions
+from rockbatch.motions.formats import read_record
+from rockbatch.motions.record_file import RecordFile
+
+N, DT = 203, 0.005
+A = np.round(wiggle(N, 1, 0.4), 6)
+B, C = np.round(wiggle(N, 2, 0.3), 6), np.round(wiggle(N, 3, 0.2), 6)
+T = np.round(DT * np.arange(N), 6)
+HORIZONTAL = ReadOptions(role="horizontal")
+
+
+def pairs(per_line: int, between: str = " ", end: str = "") -> str:
+    words = [f"{t:.3f}{between}{a:.6f}" for t, a in zip(T, A, strict=True)]
+    rows = [between.join(words[i : i + per_line]) + end for i in range(0, N, per_line)]
+    return "\n".join(rows) + "\n"
+
+
+def in_columns(*columns: np.ndarray, between: str = ",") -> str:
+    return "".join(between.join(f"{value:.6f}" for value in row) + "\n" for row in zip(*columns, strict=True))
+
+
+def read(folder: Path, text: str, name: str = "x.txt", options: ReadOptions = HORIZONTAL, **given):
+    (folder / name).write_text(text)
+    return read_motions(folder, options=options, gravity=1.0, **given)
+
+
+def only(folder: Path, text: str, name: str = "x.txt", **stated):
+    (motion,) = read(folder, text, name, ReadOptions(role="horizontal", **stated)).motions
+    return motion
+
+
+def why(folder: Path, text: str, name: str = "x.txt", **stated) -> str:
+    (unusable,) = read(folder, text, name, ReadOptions(role="horizontal", **stated)).unusable
+    return unusable.reason
+
+
+def is_a(motion, dt: float = DT) -> bool:
+    return motion.dt == dt and np.allclose(motion.horizontal, A, atol=1e-9)
+
+
+# Pairs of time and value
+
+
+@pytest.mark.parametrize("per_line", [1, 2, 3, 4, 5, 8])
+@pytest.mark.parametrize(("between", "end"), [(" ", ""), ("  ", ""), (", ", ","), ("\t", "")])
+def test_pairs_on_a_line_are_recognised_and_no_sample_is_lost(tmp_path, per_line, between, end):
+    assert is_a(only(tmp_path, pairs(per_line, between, end), unit="g"))
+    assert is_a(only(tmp_path, "EQ x\nAcceleration in g\n" + pairs(per_line, between, end)))
+    assert is_a(only(tmp_path, pairs(per_line, between, end), unit="g", layout="wrapped"))
+
+
+def test_an_amplitude_of_abaqus_is_read(tmp_path):
+    text = f"*Amplitude, name=EQ, definition=TABULAR\n{pairs(4, ', ', ',')}** end of amplitude\n"
+    assert is_a(only(tmp_path, text, "eq.inp", unit="g"))
+
+
+def test_columns_that_are_no_pairs_stay_columns(tmp_path):
+    found = read(tmp_path, "time(s),NS(g),time(s),EW(g)\n" + in_columns(T, A, T, B))
+    assert "columns of time" in found.unusable[0].reason
+    found = read(tmp_path, "time(s),NS(g),EW(g),UD(g)\n" + in_columns(T, A, B, C))
+    assert len(found.motions) == 2
+
+
+# Counts above the numbers
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{N} {DT}\n{pairs(1)}",
+        f"{DT} {N}\n{pairs(1)}",
+        f"{N}\n{pairs(1)}",
+        f"{N}\n{DT}\n{pairs(4)}",
+        f"{N} {DT}\n{pairs(3)}",
+        f"Motion of a program\n{N} {DT}\n{pairs(1, chr(9))}",
+        f"title\n{N} {DT} 0\n" + "\n".join(" ".join(map(str, A[i : i + 5])) for i in range(0, N, 5)),
+    ],
+)
+def test_count_and_step_above_pairs_or_samples_are_understood(tmp_path, text):
+    assert is_a(only(tmp_path, text, unit="g"))
+
+
+def test_a_count_above_pairs_that_is_another_one_is_refused(tmp_path):
+    assert f"the header says {N + 1} samples" in why(tmp_path, f"{N + 1} {DT}\n{pairs(1)}", unit="g")
+
+
+# Headers
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Time,NS,EW,UD\ns,g,g,g",
+        "Time,NS,EW,UD\n(s),(g),(g),(g)",
+        "time NS EW UD\n[sec] [g] [g] [g]",
+        "# t;N-S;E-W;U-D\n# s;g;g;g",
+        "sec,g,g,g\nTime,North,East,Up",
+        ",time (s),NS (g),EW (g),UD (g)",
+        '"","time (s)","NS (g)","EW (g)","UD (g)"',
+        "Unnamed: 0,time [s],NS [g],EW [g],UD [g]",
+        "index,t,NS,EW,UD\n,s,g,g,g",
+        "No.;t (s);NS (g);EW (g);UD (g)",
+    ],
+)
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_row_of_units_and_a_column_that_counts_rows_are_understood(tmp_path, head, first):
+    between = ";" if ";" in head else "," if "," in head else " "
+    counted = re.match(r'^("",|,|Unnamed|index|No)', head) is not None
+    columns = [np.arange(N) + first] * counted + [T, A, B, C]
+    found = read(tmp_path, head + "\n" + in_columns(*columns, between=between), "x.csv")
+    assert [motion.azimuth for motion in found.motions] == [0.0, 90.0]
+    assert is_a(found.motions[0])
+    assert found.motions[0].vertical == pytest.approx(C)
+
+
+def test_a_nameless_first_column_that_grows_as_time_does_is_time(tmp_path):
+    (motion,) = read(tmp_path, ",NS (g)\n" + in_columns(T, A), "x.csv").motions
+    assert is_a(motion)
+
+
+@pytest.mark.parametrize(
+    ("unit", "in_g"),
+    [
+        ("in/s2", 9.81 / 0.0254), ("in/sec^2", 9.81 / 0.0254), ("inch/s/s", 9.81 / 0.0254), ("ft/s2", 9.81 / 0.3048),
+        ("ft/sec**2", 9.81 / 0.3048), ("feet/s²", 9.81 / 0.3048), ("mg", 1000.0), ("milli-g", 1000.0), ("%g", 100.0),
+        ("mGal", 981000.0), ("Gals", 981.0),
+    ],
+)  # fmt: skip
+def test_units_of_other_trades_are_understood(tmp_path, unit, in_g):
+    assert acceleration_factor(unit) * in_g == pytest.approx(9.81, rel=1e-12)
+    (tmp_path / "x.csv").write_text(f"t (s),NS ({unit})\n" + in_columns(T, in_g * A))
+    (motion,) = read_motions(tmp_path).motions
+    assert motion.pga_g == pytest.approx(np.abs(A).max(), rel=1e-4)
+
+
+def test_the_header_of_a_matched_record_has_its_unit_beside_other_words_in_brackets(tmp_path):
+    head = "Matched\n#Misfit: 0.12\nFile Type: Accelerations (g)\n#Identifier:  Final (Baseline Corrected)\n"
+    text = f"{head}NPTS = {N} , DT = {DT} SEC\n" + in_columns(A)
+    assert is_a(only(tmp_path, text, "x.acc"))
+    assert not read(tmp_path, text, "x.acc", ReadOptions()).motions  # nothing says its direction
+
+
+def test_a_unit_that_nobody_knows_is_asked_for_and_can_be_stated(tmp_path):
+    text = "time(s) NS(furlong/s2)\n" + in_columns(T, A, between=" ")
+    assert 'the unit "furlong/s2" is not known; write unit = "g"' in why(tmp_path, text)
+    assert is_a(only(tmp_path, text, unit="g"))
+
+
+MIDAS = "*SGSw\n*TITLE, x\n*X-AXIS, Time (sec)\n*Y-AXIS, Ground Accel. (g)\n*UNIT&TYPE, {}\n*FLAGS, 0, 0\n*DATA\n{}*ENDDATA\n"
+
+
+def test_a_record_file_of_midas_is_read_by_its_unit_and_type(tmp_path):
+    assert is_a(only(tmp_path, MIDAS.format("GRAV, ACCEL", in_columns(T, A)), "x.sgs"))
+    motion = only(tmp_path, MIDAS.format("MM, ACCEL", in_columns(T, 1000.0 * A)), "x.sgs")
+    assert motion.horizontal == pytest.approx(A)
+    assert "expected accelerations" in why(tmp_path, MIDAS.format("CM, VEL", in_columns(T, A)), "x.sgs")
+
+
+@pytest.mark.parametrize(
+    "mark",
+    [
+        "*** End Data ***",
+        "*** End",
+        "*ENDDATA",
+        "END",
+        "End of file",
+        "EOF",
+        "/&  ---- End of Data ----",
+        "----- end -----\n\n",
+        "*",
+    ],
+)
+@pytest.mark.parametrize("kind", ["AT2", "columns"])
+def test_marks_at_the_end_are_no_numbers(tmp_path, mark, kind):
+    head = f"x\ny\nunits of g\nNPTS= {N}, DT= {DT} SEC\n" if kind == "AT2" else "t(s),N(g)\n"
+    body = in_columns(A) if kind == "AT2" else in_columns(T, A)
+    assert is_a(only(tmp_path, f"{head}{body}{mark}\n", "x.at2" if kind == "AT2" else "x.txt"))
+
+
+def test_words_within_the_numbers_and_other_words_behind_them_are_still_refused(tmp_path):
+    lines = in_columns(T, A).splitlines()
+    for wrong in ([*lines[:50], "*** End", *lines[50:]], [*lines, "PGA = 0.4 g"], [*lines, "-inf"]):
+        assert "found " in why(tmp_path, "t(s),N(g)\n" + "\n".join(wrong) + "\n")
+
+
+@pytest.mark.parametrize(
+    ("first", "start"),
+    [
+        ("2023-02-06T01:17:35.{:03d}Z", 1675646255.0),
+        ("2023-02-06 01:17:35.{:03d}", None),
+        ("2023/02/06T03:17:35,{:03d}+02:00", 1675646255.0),
+        ("01:17:35.{:03d}", None),
+    ],
+)
+@pytest.mark.parametrize("head", ["time;N (g)", ";N (g)", "timestamp;N (g)"])
+def test_clock_times_are_seconds_after_the_first(tmp_path, first, start, head):
+    rows = "".join(f"{first.format(5 * i)};{a:.6f}\n" for i, a in enumerate(A[:190]))
+    (motion,) = read(tmp_path, f"{head}\n{rows}", "x.csv").motions
+    assert (motion.dt, motion.npts, motion.start) == (DT, 190, start)
+    assert motion.horizontal == pytest.approx(A[:190])
+
+
+def test_clock_times_go_on_after_midnight_and_may_stand_behind_a_count(tmp_path):
+    clock = [f"{(23 * 3600 + 59 * 60 + 59 + i // 2) // 3600 % 24:02d}:{(59 if i < 2 else 0):02d}:" for i in range(6)]
+    seconds = ["59.0", "59.5", "00.0", "00.5", "01.0", "01.5"]
+    rows = "".join(f"{i},{c}{s},{a}\n" for i, (c, s, a) in enumerate(zip(clock, seconds, A[60:66], strict=True)))
+    (motion,) = read(tmp_path, ",time,N (g)\n" + rows, "x.csv").motions
+    assert (motion.dt, motion.npts) == (0.5, 6)
+
+
+# FEMA P-695
+
+
+def p695(folder: Path, number: int, count: int = N) -> None:
+    (folder / f"SortedEQFile_({number}).txt").write_text("".join(f"{a:.6e}\n" for a in A))
+    (folder / f"DtFile_({number}).txt").write_text(f"{DT}\n")
+    (folder / f"NumPointsFile_({number}).txt").write_text(f"{count}\n")
+
+
+def test_the_text_files_of_fema_p695_have_step_and_count_beside_them(tmp_path):
+    p695(tmp_path, 120711)
+    p695(tmp_path, 120712)
+    found = read_motions(tmp_path, options=ReadOptions(unit="g", role="horizontal"), gravity=1.0)
+    assert not found.unusable
+    assert len(found.left_out) == 5  # two of each, and the second record, a copy of the first
+    assert is_a(found.motions[0])
+    p695(tmp_path, 120711, count=N + 1)
+    reasons = [one.reason for one in read_motions(tmp_path, options=ReadOptions(unit="g", role="horizontal")).unusable]
+    assert any(f"says {N + 1} samples" in reason for reason in reasons)
+
+
+def test_a_step_without_its_record_is_no_statement(tmp_path):
+    (tmp_path / "DtFile_(1).txt").write_text("0.01\n")
+    assert "one row of numbers" in read_motions(tmp_path).unusable[0].reason
+
+
+# Advice
+
+
+def advised_of(text: str, name: str = "x.txt") -> UnstatedError:
+    with pytest.raises(UnstatedError) as error:
+        read_record(RecordFile(Path(name), name, text.encode()))
+    return error.value
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        in_columns(A),
+        in_columns(T, A),
+        in_columns(T, A, B, C),
+        in_columns(A, B, C),
+        in_columns(T, A, B, C, A, B),
+        "\n".join(" ".join(f"{a:.6f}" for a in A[i : i + 8]) for i in range(0, N, 8)),
+        pairs(4),
+        "t,NS\n" + in_columns(T, A),
+    ],
+)
+def test_what_a_message_tells_to_write_into_a_manifest_makes_a_record_of_the_file(tmp_path, text):
+    message = str(advised_of(text))
+    (tmp_path / "x.txt").write_text(text)
+    advice = message.partition("; write ")[2].partition(" under [motions]")[0]
+    assert advice
+    for choice in advice.split(", or "):
+        lines = dict(re.findall(r'(unit|dt|layout|columns) = (\[[^]]*\]|"[^"]*"|…)', choice))
+        lines["dt"] = "0.005" if "dt" in lines else ""
+        stated = "".join(f"{key} = {value}\n" for key, value in lines.items() if value)
+        tomllib.loads(stated)
+        (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\n{stated}')
+        (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\n{stated}')
+        found = read_motions(tmp_path, options=HORIZONTAL)
+        assert found.motions, (stated, found.unusable)
+
+
+def test_no_unit_is_advised_that_makes_no_earthquake_of_the_numbers():
+    assert 'unit = "g" (PGA' in str(advised_of(in_columns(T, A)))
+    assert "cm/s2" not in str(advised_of(in_columns(T, A)))
+    assert 'unit = "cm/s2" (PGA' in str(advised_of(in_columns(T, 981.0 * A)))
+
+
+def test_nothing_is_advised_that_makes_no_record():
+    cut = f"# NPTS = {N + 30}, dt = 0.005\n" + "\n".join(
+        " ".join(f"{a:.6f}" for a in A[i : i + 8]) for i in range(0, N, 8)
+    )
+    message = str(advised_of(cut))
+    assert "write layout" not in message
+    assert "makes no record of it" in message
+
+
+def test_columns_of_one_file_may_be_stated_in_its_manifest(tmp_path):
+    (tmp_path / "x.txt").write_text(in_columns(T, A, B, C))
+    stated = 'columns = ["time", "010", "-", "up"]\nunit = "g"\n'
+    (tmp_path / "motions.toml").write_text(f'[[record]]\nfile = "x.txt"\n{stated}')
+    (motion,) = read_motions(tmp_path, gravity=1.0).motions
+    assert (motion.azimuth, motion.vertical is not None) == (10.0, True)
+    assert is_a(motion)
