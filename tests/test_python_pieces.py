@@ -20,8 +20,8 @@ def test_a_motion_of_an_array_is_in_its_unit():
     np.testing.assert_array_equal(motion.vertical, 9.81 * (0.5 * VALUES))
     assert motion.pga_g == pytest.approx(np.abs(VALUES).max())
     np.testing.assert_allclose(rb.Motion.from_array(VALUES, 0.01, "gal").horizontal, 0.01 * VALUES, rtol=1e-15)
-    with pytest.raises(rb.InputError, match='unknown acceleration unit "ft/s2"'):
-        rb.Motion.from_array(VALUES, 0.01, "ft/s2")
+    with pytest.raises(rb.InputError, match='unknown acceleration unit "yd/s2"'):
+        rb.Motion.from_array(VALUES, 0.01, "yd/s2")
 
 
 def test_a_name_that_is_no_unicode_is_in_tables_as_in_the_motion_itself(tmp_path):
@@ -135,3 +135,28 @@ def test_kilonewtons_need_a_pier_whose_mass_is_known():
         rb.Damper.friction(TALL, force_kN=-1.0)
     with pytest.raises(rb.InputError, match="force_kN = '100': must be a number"):
         rb.Damper.friction(TALL, force_kN="100")
+
+
+@pytest.mark.parametrize(
+    ("dt", "said"),
+    [
+        (100.0, "dt = 100: more than 0.2 s: records have 0.002 to 0.05 s from sample to sample; if it is a rate in Hz"),
+        (200.0, "if it is a rate in Hz, write dt = 0.005"),
+        (1.0, "dt = 1: more than 0.2 s"),
+        (0.25, "dt = 0.25: more than 0.2 s"),
+    ],
+)
+def test_a_sampling_rate_is_not_taken_for_a_step(dt, said):
+    with pytest.raises(rb.InputError) as caught:
+        rb.Motion.from_array(VALUES, dt, "m/s2")
+    (problem,) = caught.value.problems
+    assert said in problem
+    assert problem.endswith('if it is right, write confirm = ["dt"]')
+    assert rb.Motion.from_array(VALUES, dt, "m/s2", confirm=["dt"]).dt == dt
+    with pytest.raises(rb.InputError):
+        rb.Motion("mine", dt, VALUES)
+
+
+def test_steps_of_records_are_taken():
+    for dt in (1e-4, 0.0005, 0.005, 0.02, 0.1, 0.2):
+        assert rb.Motion.from_array(VALUES, dt, "m/s2").times(2.0).dt == dt

@@ -456,6 +456,18 @@ def least_eta(pier: Pier, base: Base) -> float:
     return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints))
 
 
+def enough_eta(pier: Pier, base: Base) -> float:
+    """Return η above which the springs carry weight and prestress, and with the stiffness that they have hold the pier upright.
+
+    The inverse of :func:`least_beta` for a β above that of elastic springs; :func:`least_eta` for another.
+    """
+    least = least_eta(pier, base)
+    if isinstance(base, YieldingBase) and base.has_exponent and base.beta > pier.least_beta:
+        excess = 2.0 * (base.beta / pier.least_beta) ** 2 - 1.0
+        least *= (1.0 - 1.0 / excess) ** (-1.0 / base.n)
+    return least
+
+
 def vertical_frequency(pier: Pier, base: Base) -> float:
     """Return the circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
     return base.beta * pier.p

@@ -21,7 +21,7 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, least_eta, wrong_blow
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
@@ -301,11 +301,14 @@ def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base
     source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
-        least_omega_v = least_beta(pier, base) * pier.p
-        least = least_omega_v**2 * mass / 2 if name == "beta" else least_eta(pier, base) * mass * pier.gravity / 2
+        strength = f"yield_kN above {rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity):.4g}"
+        stiffness = f"stiffness_kN_m above {rounded_up(0.5 * (least_beta(pier, base) * pier.p) ** 2 * mass):.4g}"
+        remedies = {"eta": strength, "beta": stiffness}
+        if "yield_kN" in chosen and base.beta > pier.least_beta:  # enough for springs that are far from yielding
+            remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
-        problem = f"{derived} means {problem}; write {source} above {rounded_up(least):.4g}"
+        problem = f"{derived} means {problem}; write {remedies[name]}"
     complain_where_due(table, chosen, problem)
 
 
