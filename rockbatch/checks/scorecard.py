@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from rockbatch.checks import wording
@@ -48,14 +49,15 @@ class Row(NamedTuple):
     """A case: its name, the verdict on it, and a cell for each column, None where the check says nothing of it.
 
     The verdict is the worst of its checks; "does not apply" where none does, or where they pass though no run ends standing;
-    "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words, or the suite fails a check
-    of its own.
+    "not decided" where they pass, but responses that govern have no limit: ``unlimited``, in words, or under a ``failing_suite``,
+    whose cells do not pass either.
     """
 
     name: str
     verdict: str
     cells: list[Cell | None]
     unlimited: Sequence[str] = ()
+    failing_suite: bool = False
 
     def count(self, *kinds: str) -> int:
         """Return the number of its verdicts of these kinds."""
@@ -68,7 +70,7 @@ class Row(NamedTuple):
             return "not checked" if not self.count(PASS) else "no run ends standing"
         if self.unlimited:
             return f"no limit on {', '.join(dict.fromkeys(self.unlimited))}"
-        if self.verdict == NOT_DECIDED and not self.count(NOT_DECIDED):
+        if self.failing_suite:
             return "not decided, under a suite that fails"
         number = self.count(self.verdict)
         checks = f"{number} check{'s' * (number != 1)}"
@@ -110,18 +112,26 @@ def scorecard(
     failing = {verdict.scale for verdict in verdicts if not verdict.case and verdict.verdict == FAIL}
     free = without_limits({name: of_case for name, of_case in by_case.items() if _worst(of_case) == PASS}, worst)
     for name, of_case in by_case.items():
-        own = {verdict.check: verdict for verdict in of_case}
+        under = of_case[0].scale in failing
+        own = {verdict.check: _under_failing_suite(verdict) if under else verdict for verdict in of_case}
         cells = [_cell(own[column.check], column) if column.check in own else None for column in columns]
         kind = DOES_NOT_APPLY if name in fallen and _worst(of_case) == PASS else _worst(of_case)
         words = [RESPONSES[response.demand].words for response in free.get(name, ())] if kind == PASS else []
-        doubted = kind == PASS and (bool(words) or of_case[0].scale in failing)
-        rows.append((max(map(_badness, of_case)), Row(name, NOT_DECIDED if doubted else kind, cells, words)))
+        verdict = NOT_DECIDED if kind == PASS and (words or under) else kind
+        rows.append(
+            (max(map(_badness, of_case)), Row(name, verdict, cells, words, under and kind == PASS and not words))
+        )
     named = {row.name for _, row in rows}
     rows += [
         ((0, 0.0), Row(name, DOES_NOT_APPLY, [None] * len(columns))) for name in map(case_of, runs) if name not in named
     ]
     rows.sort(key=lambda row: (_ORDER.index(row[1].verdict), row[0]))
     return Scorecard(columns, [row for _, row in rows])
+
+
+def _under_failing_suite(verdict: Verdict) -> Verdict:
+    """Return a verdict as a suite that fails its own check leaves it: nothing passes."""
+    return replace(verdict, verdict=NOT_DECIDED) if verdict.verdict == PASS else verdict
 
 
 def _worst(verdicts: Sequence[Verdict]) -> str:

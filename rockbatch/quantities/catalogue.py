@@ -399,7 +399,7 @@ TRAILING = (
     ),
     Quantity(
         "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
-        ReportFormat("read at [m]", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
+        ReportFormat("drift at [m]", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
     ),
 )  # fmt: skip
 """Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
