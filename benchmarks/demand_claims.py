@@ -10,12 +10,14 @@ yield and a stop; with --tiny the motion hardly lifts a pivot, or none. Each run
 A claim is broken if a quantity differs from that of the finest run by more than the claimed share of it, of a hundredth of its
 scale at least (`simulation.changes`), and by more than the two fine runs differ. Undecided are claims below what these differ by.
 Claims of runs whose outcome or count of impacts the finest step changes are counted apart, as chaotic.
+Ctrl-C ends the pool, and prints what has been counted.
 """
 
 import argparse
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,6 +55,10 @@ class Claim(NamedTuple):
     true: float
     doubt: float  # of the true one
     chaotic: bool
+
+    def __str__(self) -> str:
+        """Return the claim in words."""
+        return f"{self.name} off by {self.true:.1e} ± {self.doubt:.0e}, claimed {self.error:.1e}"
 
     @property
     def verdict(self) -> str:
@@ -187,23 +193,19 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=67)
     parser.add_argument("--tiny", action="store_true", help="motions that hardly lift a pivot")
     arguments = parser.parse_args()
-    counts, rows, most = Counter[tuple[str, str]](), 0, dict[str, float]()
-    for number in range(arguments.first, arguments.first + arguments.cases):
-        run = case(arguments.base, number, arguments.seed, arguments.tiny)
-        if problems(run.pier, run.base):
-            continue
-        claims = judge(run)
-        rows += bool(claims)
-        counts.update((claim.name, claim.verdict) for claim in claims)
-        for claim in claims:
-            if claim.verdict in ("holds", "broken"):
-                most[claim.name] = max(most.get(claim.name, 0.0), claim.true / (claim.error + ROUNDING))
-            if claim.verdict == "broken":
-                print(
-                    f"{number}: {claim.name} off by {claim.true:.1e} ± {claim.doubt:.0e}, claimed {claim.error:.1e}",
-                    flush=True,
-                )
-    print(f"{rows} of {arguments.cases} cases claim errors")
+    counts, most, rows, tried = Counter[tuple[str, str]](), dict[str, float](), 0, 0
+    with suppress(KeyboardInterrupt):
+        for number in range(arguments.first, arguments.first + arguments.cases):
+            run = case(arguments.base, number, arguments.seed, arguments.tiny)
+            claims = [] if problems(run.pier, run.base) else judge(run)
+            tried, rows = tried + 1, rows + bool(claims)
+            counts.update((claim.name, claim.verdict) for claim in claims)
+            for claim in claims:
+                if claim.verdict in ("holds", "broken"):
+                    most[claim.name] = max(most.get(claim.name, 0.0), claim.true / (claim.error + ROUNDING))
+                if claim.verdict == "broken":
+                    print(f"{number}: {claim}", flush=True)
+    print(f"{rows} of {tried} cases claim errors")
     print("| quantity | claims | broken | undecided | chaotic | greatest true over claimed |")
     print("| --- | --- | --- | --- | --- | --- |")
     for name in dict.fromkeys(name for name, _ in counts):
