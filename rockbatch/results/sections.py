@@ -23,8 +23,8 @@ MEANING = {
     "section_axial_least_kN": "least axial force, positive in compression [kN]",
     "section_axial_greatest_kN": "greatest axial force, likewise [kN]",
     "section_axial_at_moment_kN": "axial force when the moment is greatest, likewise [kN]",
-    "sections_error": "largest relative error of shear, moment and axial extremes: the change when the step was halved; empty "
-    "with a fixed step",
+    "sections_error": "largest relative error of shear, moment and axial extremes: four times the change when the step was "
+    "halved; empty with a fixed step",
 }
 """Columns behind those that name the run."""
 

@@ -12,7 +12,8 @@ FLOOR = 0.01
 
 
 LEAST = 1e-8
-"""Least error of demands on devices that is claimed, as a share: two runs may agree by chance better than either is right."""
+"""Least error of demands on devices and in sections that is claimed, as a share: two runs may agree by chance better than either
+is right."""
 
 
 class Sized(NamedTuple):

@@ -246,7 +246,7 @@ def forces_in_sections(
         return sections
     del rows  # a history of every step may be large
     rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
-    return with_errors(sections, sections_of(run, rows, heights), run.pier)
+    return with_errors(sections, sections_of(run, rows, heights), run.pier, CHANCE)
 
 
 def histories(

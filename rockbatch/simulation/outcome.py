@@ -294,8 +294,8 @@ class Outcome:
 class Section(NamedTuple):
     """Greatest forces in a section; SI units, per unit mass of the pier, axial forces positive in compression.
 
-    ``error`` is by which share of itself halving the step still changed shear, moment or an axial extreme at most; None with
-    a fixed step.
+    ``error`` is four times the share of itself by which halving the step still changed shear, moment or an axial extreme at most;
+    None with a fixed step.
     """
 
     height: float  # above the pivots [m]

@@ -15,7 +15,7 @@ from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import Pier
 from rockbatch.pier.sections import above
-from rockbatch.simulation.changes import Sized, greatest_change
+from rockbatch.simulation.changes import LEAST, Sized, greatest_change
 from rockbatch.simulation.models import ground_of, model
 from rockbatch.simulation.outcome import Section
 from rockbatch.simulation.restraints import apart, deck_pulls
@@ -201,7 +201,8 @@ _SIZED = {
 }
 
 
-def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier) -> list[Section]:
-    """Return ``fine`` with errors, from the forces with twice the step."""
+def with_errors(fine: Sequence[Section], coarse: Sequence[Section], pier: Pier, chance: float) -> list[Section]:
+    """Return ``fine`` with errors, ``chance`` times the change from the forces with twice the step."""
     pairs = zip(fine, coarse, strict=True)
-    return [section._replace(error=greatest_change(_SIZED, section, other, pier)[1]) for section, other in pairs]
+    changes = [max(greatest_change(_SIZED, section, other, pier)[1], LEAST) for section, other in pairs]
+    return [section._replace(error=chance * change) for section, change in zip(fine, changes, strict=True)]

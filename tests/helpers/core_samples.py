@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from rockbatch.common.units import GRAVITY
+from rockbatch.core.block.equations import normal_force
+from rockbatch.core.block.events import _change_of_normal
 from rockbatch.core.devices.elongation import attitude, gap_of
 from rockbatch.core.devices.events import (
     Rounding,
@@ -182,6 +184,17 @@ def longest_step(m, now, of, dt):
     under, *_ = device_rates(m, devices, now, devices.x, still, START)
     start = Instant(now.y, rates(under, now.y, now.contact, still), now.contact, None, still)
     return float(resolved(under, devices, start, dt, dt))
+
+
+def rate_of_normal(m, now, of):
+    """Return N/M of a block that rocks [m/s²] and its rate, with devices ``of`` that are at rest until the Instant ``now``."""
+    devices, (y, _, contact, supports, ground) = devices_of(of, (), 0.0), now
+    devices.goes[:] = math.copysign(1.0, y.omega)
+    under, *_ = device_rates(m, devices, Moment(y, contact, supports), devices.x, ground, START)
+    devices.stage[:] = devices.x
+    k = rates(under, y, contact, ground)
+    normal = normal_force(under, y, k, ground.vertical)
+    return float(normal), float(_change_of_normal(under, devices, now._replace(k=k)))
 
 
 def friction_signals(m, y, contact, ground, offset, strength):

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from core_samples import values_of
+from core_samples import rate_of_normal, values_of
 
 import rockbatch as rb
 from rockbatch.core.block.model import Rocking, Stance
-from rockbatch.core.types import Ground, Moment, Pull
+from rockbatch.core.types import Ground, Instant, Moment, Pull
 from rockbatch.simulation import written_run
-from rockbatch.simulation.models import block
+from rockbatch.simulation.models import block, elements
 from rockbatch.simulation.runs import Run
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -60,6 +60,25 @@ def test_a_block_that_the_ground_would_have_to_hold_behind_an_impact_flies_on(un
     found = uncompiled(values_of, calls)
     assert [each.contact for each in found] == [Stance(0.0, 0.0, side, side), now.contact]
     assert found[0].y == now.y
+
+
+def test_the_normal_force_falls_with_the_forces_of_its_devices(uncompiled):
+    """By hand at θ = 0 about the right pivot, with a viscous and a hysteretic damper at mid-base, whose ė = b θ̇ and θ̈ b there."""
+    pier, friction, yields = rb.Pier(alpha=0.2, p=1.0), 0.1, 0.004
+    dampers = rb.Damper("viscous", nu=0.3, at=0.0), rb.Damper("hysteretic", f=friction, yield_m=yields, at=0.0)
+    laws, m = elements(pier, rb.RigidBase(restraints=dampers)), block(pier, rb.RigidBase())
+    b, h, omega = m.half_width, m.height, 0.4
+    ground = Ground(0.7, -2.0, -0.5, 3.0)
+    turned, force, down = m.inertia + b**2 + h**2, 0.3 * pier.p * b * omega, G + ground.vertical
+    turning = -((down + force) * b + h * ground.horizontal) / turned
+    faster = 0.3 * pier.p * b * turning + friction * G / yields * b * omega
+    jerk = (-(ground.vertical_slope + faster) * b + (down + force) * h * omega) / turned
+    jerk -= (h * ground.horizontal_slope + b * omega * ground.horizontal) / turned
+    rate = ground.vertical_slope + faster + b * jerk - 3.0 * h * omega * turning - b * omega**3
+    now = Instant(Rocking(0.0, 0.0, b * omega, omega), None, Stance(0.0, 1.0, 1.0, 1.0), None, ground)
+    found = uncompiled(rate_of_normal, m, now, laws)
+    assert found[0] == pytest.approx(down + force + b * turning - h * omega**2, rel=1e-12)
+    assert found[1] == pytest.approx(rate, rel=1e-4)
 
 
 def test_a_pivot_that_rises_from_the_ground_has_not_landed_for_rounding(uncompiled):
