@@ -118,7 +118,8 @@ def test_flight_is_followed_unless_a_base_says_stop_and_its_limit_is_a_height(ma
 
 
 def test_a_base_tells_what_it_can_do():
-    """Springs deflect, yielding ones settle, those of Bouc–Wen ratchet, and friction may hold a pier at a tilt."""
+    """Springs deflect, yielding ones settle, those of Bouc–Wen ratchet, landings on undamped ones have an ε or ask for tension,
+    and friction may hold a pier at a tilt."""
     bouc_wen = YieldingBase(50.0, eta=3.0)
     epp = bouc_wen.by_other_law()
     told = [(base.on_springs, base.yields, base.ratchets, base.has_residual) for base in (
@@ -128,6 +129,16 @@ def test_a_base_tells_what_it_can_do():
         (False, False, False, False), (True, False, False, False), (True, True, True, True), (True, True, False, True),
     ]  # fmt: skip
     assert not replace(bouc_wen, spring="hardening").ratchets
+    impacts = {
+        RigidBase(): (False, False),
+        ElasticBase(50.0): (True, False),
+        bouc_wen: (True, False),
+        ElasticBase(50.0, zeta=0.1): (False, False),
+        ElasticBase(50.0, impact="housner"): (False, True),
+        replace(bouc_wen, impact="housner"): (False, True),
+        replace(epp, impact="housner"): (False, True),
+    }
+    assert {base: (base.has_epsilon, base.asks_tension) for base in impacts} == impacts
     assert RigidBase().by_other_law() == RigidBase()
     holds = {
         Damper("friction", f=0.05): True,

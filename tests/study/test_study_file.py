@@ -615,17 +615,16 @@ def test_figures_5_and_6_have_the_paper_s_parameters(name, alpha, bases, wave, v
     assert study.varied == (varied, "impact")
 
 
-def test_fig7_has_the_paper_s_parameters_and_all_three_of_its_p():
+def test_fig7_has_the_paper_s_parameters_all_three_of_its_p_and_both_impacts():
     study = load_study(CONFIGS / "fig7.toml")
-    foundations = {
-        "rigid": RigidBase(flight="stop"),
-        "1": YieldingBase(40.0, 0.05, flight="stop", eta=2.5),
-        "2": YieldingBase(40.0, 0.05, flight="stop", eta=3.5),
-        "3": YieldingBase(80.0, 0.05, flight="stop", eta=2.5),
-        "4": YieldingBase(80.0, 0.05, flight="stop", eta=3.5),
-    }
+    foundations = [("rigid", RigidBase(flight="stop"))]
+    for name, beta, eta in (("1", 40.0, 2.5), ("2", 40.0, 3.5), ("3", 80.0, 2.5), ("4", 80.0, 3.5)):
+        foundations += [
+            (name, YieldingBase(beta, 0.05, flight="stop", eta=eta)),
+            (name, YieldingBase(beta, flight="stop", eta=eta, impact="housner")),
+        ]
     assert [(each.name, each.base, each.pier) for each in study.cases] == [
-        (name, base, Pier(0.13, p)) for p in (0.38, 0.36, 0.35) for name, base in foundations.items()
+        (name, base, Pier(0.13, p)) for p in (0.38, 0.36, 0.35) for name, base in foundations
     ]
     assert Pier(0.13, 0.35).size == pytest.approx(60.1, abs=0.05)  # the paper's R0, as printed
     assert {(each.theta_max_over_alpha, each.case) for each in study.references} == {

@@ -326,6 +326,21 @@ def test_a_pier_that_was_not_pulled_is_refused():
         rb.release(study_of({"impact_s": [0.3, 0.8, 1.3]}, initial_rotation_rad=0.0))
 
 
+@pytest.mark.parametrize(
+    ("base", "fit"),
+    [({"base": "elastic"}, None), ({"base": "elastic"}, "zeta"), ({"base": "yielding", "eta": 4}, "epsilon")],
+)
+def test_an_impact_whose_loss_follows_from_the_pier_is_refused_and_named(base, fit):
+    """Housner's e leaves nothing to be fitted, whatever the study wants to fit; an impact by epsilon is not refused so."""
+    soil = {"name": "soil", "beta": 60, **base, "impact": ["landing", "housner"]}
+    release = {"impact_s": [0.3, 0.8, 1.3]} | ({} if fit is None else {"fit": fit})
+    with pytest.raises(InputError) as error:
+        rb.release(study_of(release, soil))
+    (problem,) = [each for each in error.value.problems if "housner" in each]
+    assert 'case "soil" has impact = "housner", whose e follows from the pier' in problem
+    assert 'write impact = "landing" or zeta' in problem
+
+
 @pytest.mark.parametrize(("content", "words"), [
     ("time,amplitude_rad\n0.3,0.1\n", 'a.csv:1: "time": unknown column; write one of impact_s'),
     ("impact_s,impact_ms\n0.3,300\n", "are given by two columns"),
