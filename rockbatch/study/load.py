@@ -353,7 +353,6 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, known_pie
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
         output=[key for key in BROUGHT if getattr(output, key)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},

@@ -493,19 +493,9 @@ ELSEWHERE = {
 """Tables whose keys have their tests in other places, by their header, or the name of their analysis."""
 
 
-MIRRORED = [("[[check]]", "polarity")]
-"""Keys without effect: studies of both polarities are symmetric, so that the demands of mirror images are the same."""
-
-
 def test_every_key_of_every_table_has_a_use():
     """A new key of these tables fails until a study is given in which it tells."""
     for section in STUDY:
         if section.header in ELSEWHERE or (section.at and section.at[0] in ELSEWHERE):
             continue
-        found = USES[section.header].keys() | {key for header, key in MIRRORED if header == section.header}
-        assert found == set(section), section.header
-
-
-@pytest.mark.parametrize(("header", "key"), MIRRORED)
-def test_a_key_that_chooses_between_mirror_images_changes_no_verdict(header, key):
-    assert outcome(Use(CHECKED, ("check", 0), "-", verdicts), key) is False
+        assert USES[section.header].keys() == set(section), section.header
