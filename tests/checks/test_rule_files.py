@@ -165,7 +165,7 @@ def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_
 
 def test_a_polarity_of_a_check_is_refused_with_the_reason(tmp_path):
     path = rules_file(tmp_path / "pier.toml", STUDY + MARGIN + 'polarity = "-"\n')
-    with pytest.raises(InputError, match="polarity: .*mirror images, of which each run counts once; leave it out"):
+    with pytest.raises(InputError, match=r"polarity: .*mirror images, of which each run counts once; leave it out"):
         rb.load_study(path)
 
 
