@@ -97,7 +97,6 @@ substeps = 1
 quiet_s = 0.5
 
 [output]
-both_laws = false
 histories = "none"
 
 [[case]]

@@ -47,8 +47,9 @@ def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) ->
     """
     applying = [rule for rule, verdict in judged if verdict.verdict != DOES_NOT_APPLY]
     ended = {
-        name: [_ended(suite, name) & ~_allowed(suite, kind.event, applying) for suite in suites]
+        name: [_ended(suite, name) for suite in suites]
         for name, kind in ENDINGS.items()
+        if not _allowed(kind.event, applying)
     }
     if not any(runs.any() for of_status in ended.values() for runs in of_status):
         return [verdict for _, verdict in judged]
@@ -68,14 +69,9 @@ def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
     return noted(suite, OVERTURNS) & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
-def _allowed(suite: Rows, event: str, rules: Sequence[Rule]) -> npt.NDArray[np.bool_]:
-    """Return True for each run that a check counts that says how many records may end so, shape (n,)."""
-    polarity = suite.texts("polarity")
-    allowed = np.zeros(len(suite), dtype=bool)
-    for rule in rules:
-        if rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run):
-            allowed |= True if rule.polarity is None else polarity == rule.polarity
-    return allowed
+def _allowed(event: str, rules: Sequence[Rule]) -> bool:
+    """Return whether a check says how many records may end so."""
+    return any(rule.demand == event or (rule.statistic == _SAYS_ALL and DEMANDS[rule.demand].per_run) for rule in rules)
 
 
 def _reason(verdict: Verdict, suites: Sequence[Rows], ended: Mapping[str, Sequence[npt.NDArray[np.bool_]]]) -> str:

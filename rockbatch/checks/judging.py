@@ -85,14 +85,14 @@ def judge(
     Raises
     ------
     InputError
-        Where a rule asks for a case, scale, polarity or column that the results do not have.
+        Where a rule asks for a case, scale or column that the results do not have.
     """
     runs = with_case(peaks)
     if runs.empty:
         raise InputError("there is no run to check")
     with_mirrors, scales = Rows(runs), [float(scale) for scale in runs["scale"].unique()]
     stations = records or dict(zip(with_mirrors.texts("record"), with_mirrors.texts("station"), strict=True))
-    available: dict[str, Any] = {"scales": scales, "polarities": {*with_mirrors.texts("polarity")}}
+    available: dict[str, Any] = {"scales": scales}
     available["other_law"] = OTHER_LAW in runs or not any(map(creeps, cases))
     kinds = {"", *(COLUMNS[name].device for name in runs if name in COLUMNS)}  # of devices; others bring no columns
     available["output"] = [
@@ -125,18 +125,10 @@ def judge(
             judged = []
             for rule in rules:
                 if chooses(rule, str(axes[0].case["case"]), scale):
-                    of_rule = [_of_rule(rule, axis, polarities, tables[rule.at_m]) for axis in axes]
+                    of_rule = [Axis(axis.case, axis.suite.beside(tables[rule.at_m])) for axis in axes]
                     judged.append((rule, _verdict(rule, of_rule, scale, rule.count or count, events or {})))
             verdicts += left_open(judged, [axis.suite for axis in axes])
     return verdicts
-
-
-def _of_rule(rule: Rule, axis: Axis, polarities: Sequence[str], table: Rows) -> Axis:
-    """Return the runs that a rule is about, with the columns of its ``table``; of a mirror image the demands are the same."""
-    suite = axis.suite.beside(table)
-    if rule.polarity in polarities:
-        suite = suite.where(suite.texts("polarity") == rule.polarity)
-    return Axis(axis.case, suite)
 
 
 def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Rows:

@@ -120,7 +120,8 @@ def _peak(path: Path, first: int, end: int) -> tuple[float, float]:
         a, b = h * float(omega[i]), h * float(omega[i + 1])
         square, linear = 3.0 * (a + b - 2.0 * travel), 2.0 * (3.0 * travel - 2.0 * a - b)
         larger = -0.5 * (linear + math.copysign(math.sqrt(linear * linear - 4.0 * square * a), linear))
-        for s in (larger / square if square else math.inf, a / larger):  # of which one is between 0 and 1
+        # One of both is between 0 and 1, unless the rate only grazes 0 at an end
+        for s in (larger / square if square else math.inf, a / larger if larger else math.inf):
             if not 0.0 < s < 1.0:
                 continue
             value = float(theta[i]) + s * travel + s * (1 - s) * ((1 - s) * (a - travel) + s * (travel - b))

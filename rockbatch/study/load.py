@@ -18,9 +18,9 @@ from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
+from rockbatch.pier import NO_SECTIONS, Damper, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
-from rockbatch.quantities.catalogue import BROUGHT
+from rockbatch.quantities.catalogue import BROUGHT, COLUMNS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -29,7 +29,7 @@ from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.rule_choices import implausible, unmet
 from rockbatch.study.rule_files import SUITE, read_checks
 from rockbatch.study.rules import CHECK, Rule
-from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
+from rockbatch.study.spec import LEAST_STROKE_MM, LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
@@ -317,6 +317,8 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     if not output.forces:
         _complain_without_forces(file)
     along = along_the_axis(cases)
+    for key, problem in _idle(output, along, motion_spec.recorded):
+        file.complain(("output", key), f"[output]: {key}: {problem}; leave it out")
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
     file.finish()
     return Study(
@@ -350,9 +352,8 @@ def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, known_pie
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        polarities=motions.polarity,
         other_law=output.both_laws or not any(case.base.ratchets for case in cases),
-        output=[key for key in BROUGHT if getattr(output, key)],
+        output=[key for key in BROUGHT if getattr(output, key) or not _brings(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
     if not known_piers:
@@ -399,6 +400,30 @@ def _complain_without_forces(file: TomlFile) -> None:
         for key, problem in _OF_FORCES.items():
             if key in table.data:
                 table.complain(f"{key}: {problem}, or leave it out", key)
+
+
+def _idle(output: Output, cases: Sequence[Case], recorded: bool) -> Iterator[tuple[str, str]]:
+    """Yield each key of [output] that changes nothing in these cases, if there are any, and why."""
+    if not cases:
+        return
+    if output.devices_work and not _brings("devices_work", cases):
+        yield "devices_work", "no case has a damper or a tendon"
+    elif output.least_stroke_mm != LEAST_STROKE_MM and Damper.what not in _kinds(cases):
+        yield "least_stroke_mm", "no case has a damper"
+    if not (output.both_laws or any(case.base.ratchets for case in cases)):
+        yield "both_laws", "no case has Bouc–Wen springs, which alone are run by another law, too"
+    if output.sa_pairs and not recorded:
+        yield "sa_pairs", "pulses are no pairs of components"
+
+
+def _brings(key: str, cases: Sequence[Case]) -> bool:
+    """Return whether a key of [output] brings columns of these cases: those of devices need the device."""
+    return any(COLUMNS[name].device in _kinds(cases) for name in BROUGHT[key])
+
+
+def _kinds(cases: Sequence[Case]) -> set[str]:
+    """Return the kinds of devices in these cases, and "" of columns that need none."""
+    return {"", *(device.what for case in cases for device in case.base.restraints)}
 
 
 def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:

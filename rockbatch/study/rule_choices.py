@@ -38,7 +38,6 @@ def unmet(
     *,
     cases: Collection[str],
     scales: Collection[float],
-    polarities: Collection[str],
     other_law: bool,
     output: Collection[str],
     sections: Collection[float] = (),
@@ -55,8 +54,6 @@ def unmet(
     for scale in rule.scale:
         if not any(math.isclose(scale, factor) for factor in scales):
             yield f"scale = {scale:g}: the motions are scaled by {', '.join(f'{factor:g}' for factor in scales)} only"
-    if rule.polarity and rule.polarity not in polarities:
-        yield f"polarity = {shown(rule.polarity)}: the motions have {shown(next(iter(polarities)))} only; leave it out"
     if rule.other_law and not other_law:
         yield (
             "other_law: there is no settlement by the other law; write both_laws = true under [output] of the study "

@@ -84,8 +84,6 @@ class Rule:
         Names or globs of the cases to check; all if empty.
     scale : tuple of float
         Scales to check; all if empty.
-    polarity : "+", "-" or None
-        The only polarity to look at.
     overturned, flight, failed : str
         How such runs count, one of :data:`COUNTING`; a run that has not settled, or was not run, is failed. ``None`` takes
         the usual: overturned is infinite, the others are unknown; under "asce7-16" all are unacceptable, hence infinite.
@@ -123,7 +121,6 @@ class Rule:
     basis: str = "judgement"
     case: tuple[str, ...] = ()
     scale: tuple[float, ...] = ()
-    polarity: str | None = None
     overturned: str | None = None
     flight: str | None = None
     failed: str | None = None
@@ -252,7 +249,6 @@ CHECK = Section(("check",), (
         "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
     "scale": Key(positive, "1.0",
         "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
-    "polarity": Key(choice("+", "-"), '"+"', "The only polarity to look at."),
     "overturned": Key(choice(*COUNTING), '"infinite"',
         'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
         '"value", as the table has it; "left out". "infinite" if it is not given.'),
@@ -267,7 +263,10 @@ CHECK = Section(("check",), (
     "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
     "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",
     "reason": "source reference clause comment note notes description why", "name": "id label title",
-}), instead=names({"the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units"}))  # fmt: skip
+}), instead=names({
+    "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
+    "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity polarities sign",
+}))  # fmt: skip
 """A [[check]]; :class:`Rule` says what its keys mean."""
 
 

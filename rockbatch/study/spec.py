@@ -81,6 +81,11 @@ class MotionSpec:
     override: Path | MotionSet | None = None
 
     @property
+    def recorded(self) -> bool:
+        """Return whether there are motions besides pulses and still ground."""
+        return bool(self.paths or self.fema_p695 or self.override is not None)
+
+    @property
     def simulated(self) -> str:
         """The one polarity that is simulated: pier and foundation are symmetric, so the other gives the mirror image."""
         return "+" if "+" in self.polarity else "-"

@@ -1,26 +1,31 @@
 """The ground motions of a study: read, selected, scaled, and pulses beside them."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
+from rockbatch.motions.baseline import Offset
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.scaling import at_targets, scaled_as_listed
-from rockbatch.motions.selection import selected
+from rockbatch.motions.selection import Selection, selected
 from rockbatch.motions.sequences import with_sequences
+from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.study.load import Study
+from rockbatch.study.spec import MotionSpec
 
 
 def ground_motions(study: Study) -> MotionSet:
     """Return all motions of a study: its files, packaged records and pulses, and what could not be used.
 
     Records are read, freed of their offsets, turned and paired, joined to sequences, then selected, then scaled to the study's
-    target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, or in a strict study if
-    anything is unusable.
+    target; its ``scale`` and ``polarity`` are left to the runs. Raises ``InputError`` if nothing is left, in a strict study if
+    anything is unusable, and for keys about recorded motions without any.
     """
     spec, both = study.motions, _both_axes(study)
+    if wrong := _without_records(spec, both):
+        raise InputError(*wrong)
     gravity, azimuths = study.cases[0].pier.gravity, _azimuths(study)
     if isinstance(spec.override, MotionSet):
         records = _as_given(spec.override, spec.vertical)
@@ -60,6 +65,31 @@ def ground_motions(study: Study) -> MotionSet:
         folders = ", ".join(str(path) for path in spec.paths)
         raise InputError(f"{folders}: no ground motion that can be used; `rockbatch motions PATH` shows why", *reasons)
     return replace(records, motions=[*records.motions, *pulses])
+
+
+_OF_FILES = ("unit", "dt", "columns", "sensitivity", "role", "layout")
+_OF_RECORDS = (
+    "vertical", "offset", "azimuths", "select", "target", "vertical_target", "vertical_scale", "confirm", "confirm_pga",
+    "leave_out", "strict",
+)  # fmt: skip
+"""What pulses and still ground have no use for; scale and polarity are theirs too."""
+
+
+def _without_records(spec: MotionSpec, both_axes: bool) -> list[str]:
+    """Return a message for each key that only recorded motions use, without any; motions that take their place use them."""
+    if spec.paths or spec.override is not None:
+        return []
+    usual = {field.name: field.default for field in fields(spec)} | {"offset": Offset(), "select": Selection()}
+    idle = [
+        name
+        for name in (_OF_FILES if spec.fema_p695 else (*_OF_FILES, *_OF_RECORDS))
+        if getattr(spec, name) != usual[name]
+        and not (name == "azimuths" and both_axes)
+        and not (name == "confirm" and {*spec.confirm} <= {"scale"})
+        and not (name == "target" and isinstance(spec.target, SpectrumTarget) and spec.target.factors == "none")
+    ]
+    keys = ["axis_deg or every_deg" if name == "azimuths" else name for name in idle]
+    return [f'[motions]: {key}: is for recorded motions; write path = "../motions", or leave {key} out' for key in keys]
 
 
 def _azimuths(study: Study) -> tuple[float, ...]:

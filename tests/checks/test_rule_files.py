@@ -72,7 +72,6 @@ basis = "literature"
 reason = "why not"
 case = ["a", "b*"]
 scale = 1.5
-polarity = "-"
 overturned = "unknown"
 flight = "left out"
 failed = "value"
@@ -86,7 +85,7 @@ reason = "statics"
     first, second = load_rules(rules_file(tmp_path / "rules.toml", text))
     assert first == rb.Rule(
         "all", "settlement_m", at_most=1, statistic="count", above=0.02, basis="literature", reason="why not",
-        case=("a", "b*"), scale=(1.5,), polarity="-", overturned="unknown", flight="left out", failed="value",
+        case=("a", "b*"), scale=(1.5,), overturned="unknown", flight="left out", failed="value",
         other_law=True,
     )  # fmt: skip
     assert (second.sense, second.limit, second.basis) == ("at least", 2.0, "judgement")
@@ -154,14 +153,20 @@ def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
 
 def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_is_run(tmp_path):
     """There with its line; by ``rockbatch check`` it would come after hours of work."""
-    text = (MARGIN + 'case = "pad"\nscale = 2\npolarity = "-"\n').replace("theta_max_over_alpha", "settlement_m")
+    text = (MARGIN + 'case = "pad"\nscale = 2\n').replace("theta_max_over_alpha", "settlement_m")
     path = rules_file(tmp_path / "pier.toml", STUDY + text + "other_law = true\n[output]\nboth_laws = false\n")
     with pytest.raises(InputError) as caught:
         rb.load_study(path)
     told = [problem.removeprefix(f"{path}:") for problem in caught.value.problems]
-    assert [problem[:2] for problem in told] == ["26", "27", "28", "29"]
-    parts = ('did you mean "pads"?', "scaled by 1 only", 'have "+" only', "both_laws = true")
+    assert [problem[:2] for problem in told] == ["26", "27", "28"]
+    parts = ('did you mean "pads"?', "scaled by 1 only", "both_laws = true")
     assert all(part in problem for problem, part in zip(told, parts, strict=True))
+
+
+def test_a_polarity_of_a_check_is_refused_with_the_reason(tmp_path):
+    path = rules_file(tmp_path / "pier.toml", STUDY + MARGIN + 'polarity = "-"\n')
+    with pytest.raises(InputError, match=r"polarity: .*mirror images, of which each run counts once; leave it out"):
+        rb.load_study(path)
 
 
 def test_a_key_of_a_check_elsewhere_is_sent_home(tmp_path):

@@ -18,10 +18,12 @@ from motion_files import wiggle, write_at2
 from waveform_files import trace, write_mseed
 
 import rockbatch as rb
+from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.checks.judging import judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier.statics import statics
 from rockbatch.results.run_json import describe_case
+from rockbatch.study.load import OF_REFERENCE, REFERENCE
 from rockbatch.study.schema import STUDY
 from rockbatch.study.suite import ground_motions
 
@@ -77,10 +79,10 @@ def rows(tables):
     return [rb.run(rb.Study.from_dict(tables), jobs=1, progress=False).to_csv()]
 
 
-def is_taken(tables):
-    """Return whether a study is accepted: a key that confirms a value lets it pass."""
+def is_taken(tables, read=lambda study: study):
+    """Return whether a study is accepted, and what is read of it: a key that confirms a value lets it pass."""
     try:
-        rb.Study.from_dict(tables)
+        read(rb.Study.from_dict(tables))
     except InputError:
         return [False]
     return [True]
@@ -146,8 +148,9 @@ def recorded(kind="stations", **keys):
 
 def motions(tables):
     """Return the motions that are run, by their names and samples, and the files that are not used."""
+    of_study = rb.Study.from_dict(tables)
     try:
-        found = ground_motions(rb.Study.from_dict(tables))
+        found = ground_motions(of_study)
     except InputError as error:
         return error.problems
     used = [(motion.name, motion.dt, motion.horizontal.tolist(), motion.vertical is None) for motion in found]
@@ -155,17 +158,23 @@ def motions(tables):
     return [used, vertical, sorted(file.name for file in (*found.unusable, *found.left_out))]
 
 
-def whole_folder(tables):
+def whole_folder(tables, run=rb.run):
     """Return what a folder of results has, but for times and the text of the study."""
     folder = Path(tempfile.mkdtemp())
-    rb.run(rb.Study.from_dict(tables), folder, jobs=1, progress=False)
-    info = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    for name in ("created", "wall_s", "command", "study", "jobs", "machine"):
+    run(rb.Study.from_dict(tables), folder, jobs=1, progress=False)
+    (path,) = folder.glob("*.json")
+    info = json.loads(path.read_text(encoding="utf-8"))
+    for name in ("created", "wall_s", "command", "study", "jobs", "machine", "digest", "sha256"):
         info.pop(name, None)
     tables_found = {path.name: path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.csv"))}
     histories = folder / "histories.h5"
     kept = [] if not histories.exists() else list(map(str, rb.open_results(folder).responses))
     return [info, tables_found, kept]
+
+
+def references(tables):
+    """Return the published values as the study has them."""
+    return [*rb.Study.from_dict(tables).references]
 
 
 class Use(NamedTuple):
@@ -345,7 +354,8 @@ USES: dict[str, dict[str, Use]] = {
     "[[case]]": {
         **uses(CHECKED, ("case", 0), {"name": "other"}, verdicts),
         **uses(study(case={"name": "r", "base": "rigid"}), ("case", 0), {"restitution": 0.8, "friction": 0.05, "area_m2": 8.0}),
-        **uses(study(case=SOFT), ("case", 0), {"beta": 45.0, "epsilon": 0.2, "zeta": 0.06}),
+        **uses(study(case=SOFT), ("case", 0), {"beta": 45.0, "epsilon": 0.2, "zeta": 0.06, "impact": "housner"}),
+        **uses(study(), ("case", 0), {"contact_stiffness_kN_m": 5e6}),
         **uses(study(case=PADS), ("case", 0), {"stiffness_kN_m": 3.5e5}),
         **uses(SHAKEN | {"case": [SOFT | {"flight": "guided"}]}, ("case", 0), {"flight_limit_mm": 0.2}),
         **uses(SHAKEN | {"case": [SOFT]}, ("case", 0), {"flight": "stop"}),
@@ -464,13 +474,324 @@ USES: dict[str, dict[str, Use]] = {
         **uses(recorded() | {"output": {"intensity": True}}, ("output",), {"sa_pairs": ["rotd50"]}, whole_folder),
         **uses(study(output={}, case=ROCK | {"damper": [HYSTERETIC]}), ("output",), {"devices_work": True}, whole_folder),
         **uses(study(output={"devices_work": True}, case=ROCK | {"damper": [HYSTERETIC]}), ("output",), {
-            "least_stroke_mm": 0.5,
+            "least_stroke_mm": 500.0,
         }, whole_folder),
     },
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("header", USES)
+# Targets: factors on the records
+
+TABLE = [[0.1, 1.0], [0.5, 1.0], [2.0, 0.3]]
+EC8 = {"spectrum": "EN 1998-1", "type": 1, "ground": "B", "ag_g": 0.3, "factors": "each", "period_range_s": [0.2, 1.5]}
+ASCE = {"spectrum": "ASCE 7", "sds_g": 0.8, "sd1_g": 0.5, "tl_s": 1.2, "factors": "each", "period_range_s": [0.2, 1.5]}
+AASHTO = {
+    "spectrum": "AASHTO",
+    "as_g": 0.3,
+    "sds_g": 0.8,
+    "sd1_g": 0.5,
+    "factors": "each",
+    "period_range_s": [0.05, 1.5],
+}
+NZS = {
+    "spectrum": "NZS 1170.5",
+    "subsoil": "C",
+    "hazard_factor": 0.4,
+    "fault_km": 8.0,
+    "factors": "each",
+    "period_range_s": [0.2, 3.0],
+}
+EC8_UP = {"spectrum": "EN 1998-1 vertical", "type": 1, "ag_g": 0.3, "factors": "each", "period_range_s": [0.05, 1.0]}
+POINTS = {"spectrum": TABLE, "period_range_s": [0.2, 1.5]}
+WITH_SHARE = functools.partial(whole_folder)
+
+
+def of_target(name, target, values, tells=motions):
+    """Return uses of keys of a target of recorded motions."""
+    return uses(recorded(vertical=True, **{name: target}), ("motions", name), values, tells)
+
+
+def targets(name):
+    """Return a use of each key of a target of horizontal or vertical components."""
+    found = {
+        **of_target(name, {"pga_g": 0.3}, {"pga_g": 0.4}), **of_target(name, {"pgv_m_s": 0.3}, {"pgv_m_s": 0.4}),
+        **of_target(name, {"sa_g": 0.3, "period_s": 0.5}, {"sa_g": 0.4, "period_s": 0.7, "damping": 0.1}),
+        **of_target(name, POINTS, {
+            "spectrum": [[0.1, 1.0], [0.5, 1.0], [2.0, 0.5]], "period_range_s": [0.3, 1.0], "factors": "each",
+            "interpolation": "linear",
+        }),
+        **of_target(name, POINTS | {"factors": "none"}, {"at_least": 0.5}, WITH_SHARE),
+        **of_target(name, EC8, {
+            "ground": "C", "soil_factor": 1.5, "tb_s": 0.4, "tc_s": 0.7, "td_s": 1.0,
+        }),
+        **of_target(name, ASCE, {"tl_s": 1.0}), **of_target(name, AASHTO, {"as_g": 0.4, "sds_g": 0.7, "sd1_g": 0.4}),
+        **of_target(name, NZS, {"subsoil": "D", "hazard_factor": 0.3, "return_period_factor": 1.3, "fault_km": 4.0}),
+        **of_target(name, EC8, {"type": 2, "ag_g": 0.4}),
+        **confirms(recorded(vertical=True, **{name: {"pga_g": 0.3}}), ("motions", name), pga_g=8.0),
+    }  # fmt: skip
+    if name == "target":
+        return found | of_target(name, POINTS, {"pairs": "srss"})
+    return found | of_target(name, EC8_UP, {"avg_over_ag": 0.6})
+
+
+USES |= {"[motions.target]": targets("target"), "[motions.vertical_target]": targets("vertical_target")}
+USES["[motions.target]"]["avg_over_ag"] = USES["[motions.vertical_target]"]["avg_over_ag"]
+PUBLISHED = {"record": "*", "case": "r", "theta_max_over_alpha": 0.1, "source": "a paper", "alpha": 0.2}
+REFERRED = study("size", reference=[PUBLISHED]) | {
+    "pier": PIERS["size"] | {"alpha": [0.2, 0.25]}, "case": [ROCK, SOFT | {"name": "q"}],
+}  # fmt: skip
+USES["[[reference]]"] = uses(REFERRED, ("reference", 0), {
+    "record": "s*", "case": "q", "theta_max_over_alpha": 0.2, "source": "a book", "alpha": 0.25,
+}, references)  # fmt: skip
+
+
+# Analyses: another table or run.json
+
+TWO_PULSES = {"motions": {"pulse": [SINE, SINE | {"name": "t", "period_s": 1.2, "duration_s": 2.4}]}}
+
+
+def of_analysis(name, run, /, keys, path=(), tables=TWO_PULSES, pier="rectangle", case=ROCK, **values):
+    """Return uses of ``values`` of the table ``path`` in the analysis ``name`` with these ``keys``."""
+    whole = study(pier, case, **{name: keys}) | {"output": {}} | tables
+    return uses(whole, (name, *path), values, functools.partial(whole_folder, run=run))
+
+
+def confirmed(read, keys, path, **unusual):
+    """Return the use of the key that confirms an unusual value of an analysis."""
+    use = confirms(study("rectangle", **keys), path, **unusual)["confirm"]
+    return {"confirm": use._replace(tells=functools.partial(is_taken, read=read))}
+
+
+of_fragility = functools.partial(of_analysis, "fragility", rb.fragility)
+STRIPES = {"measure": "PGA", "levels_g": [0.2, 0.5, 1.0]}
+IDA = STRIPES | {"method": "ida", "hunt_step": 0.5, "window": 0.1}
+BY_PGV = {"measure": "PGV", "levels_m_s": [0.2, 1.0, 2.0]}
+BY_SA = {"measure": "Sa", "period_s": 1.0, "levels_g": [0.2, 0.5, 1.0]}
+LIMITED = TWO_PULSES | {"check": [CHECK | {"at_most": 0.05}, CHECK | {"name": "more", "at_most": 0.1}]}
+CLOUD = LIMITED | {"motions": TWO_PULSES["motions"] | {"scale": [0.8, 1.0, 1.2]}}
+THREE = {"levels_g": [0.1, 0.3, 1.0], "rate_per_year": [0.02, 0.003, 0.0001]}
+HAZARD = STRIPES | {"hazard": THREE}
+ADDED = STRIPES | {"dispersion": [{"name": "modelling", "value": 0.3}]}
+DRAWN = {"uncertain": {"uniform": {"alpha": [0.19, 0.21], "restitution": [0.85, 0.95]}}}
+STRIPED = {
+    "measure": "PGA",
+    "stripe": [{"level_g": 0.4, "records": ["s", "t"]}, {"level_g": 0.9, "records": ["s", "t"]}],
+}
+
+
+@functools.cache
+def table_file(text):
+    """Return a CSV file of this text."""
+    path = Path(tempfile.mkdtemp()) / "table.csv"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def drawn(spread, of_rock, of_pads, of_kilonewtons, **changed):
+    """Return uses of the inputs of one spread: those of rigid ground, and by ratios and in kN those of springs."""
+    damped, soft = SOFT | {"base": "yielding", "eta": 2.5, "spring": "epp", "zeta": 0.05}, SOFT | {"epsilon": 0.2}
+    heavy = PADS | {"base": "yielding", "yield_kN": 4e4, "spring": "epp", "zeta": 0.05}
+    found = {}
+    for case, sizes in ((ROCK, of_rock), (soft, of_pads), (damped, of_pads), (heavy, of_kilonewtons)):
+        for name, (size, other) in sizes.items():
+            if (name == "epsilon" and case is not soft) or (name in ("zeta", "eta") and case is not damped):
+                continue
+            keys = STRIPES | {"uncertain": {spread: {name: size}}}
+            found |= of_fragility(keys, ("uncertain", spread), case=case, pier="rectangle", **{name: other})
+    return found
+
+
+USES |= {
+    "[fragility]": {
+        **of_fragility(IDA, tolerance=0.3, hunt_step=0.25, window=0.2, levels_g=[0.2, 0.6, 1.0], confidence=0.9),
+        **of_fragility(STRIPES, least_scale=0.9, most_scale=2.0), **of_fragility(BY_PGV, levels_m_s=[0.2, 1.2, 2.0]),
+        **of_fragility(BY_SA, period_s=0.7, damping=0.1),
+        "method": of_fragility(STRIPES, method="ida")["method"]._replace(more={"hunt_step": 0.5, "window": 0.1}),
+        "measure": of_fragility(STRIPES, measure="Sa")["measure"]._replace(more={"period_s": 1.0}),
+        **of_fragility(STRIPES, tables=LIMITED, checks=["more"]),
+        **of_fragility({"measure": "PGA", "method": "cloud"}, tables=CLOUD, censored_below=0.9),
+        **confirmed(read_fragility, {"fragility": STRIPES}, ("fragility",), levels_g=[0.2, 50.0]),
+    },
+    "[fragility.hazard]": {
+        **of_fragility(HAZARD, ("hazard",), levels_g=[0.1, 0.35, 1.0], rate_per_year=[0.02, 0.004, 0.0001],
+            shape="quadratic", years=[10], source="a model"),
+        **of_fragility(STRIPES | {"hazard": {"levels_g": [0.3], "return_period_years": [475], "slope": 3.0}}, ("hazard",),
+            return_period_years=[975], slope=2.5),
+        **of_fragility(BY_PGV | {"hazard": {"levels_m_s": [0.1, 1.0], "rate_per_year": [0.02, 0.0001]}}, ("hazard",),
+            levels_m_s=[0.1, 1.2]),
+        **of_fragility(STRIPES | {"hazard": {"file": table_file("levels_g,rate_per_year\n0.1,0.02\n1,0.0001\n")}}, ("hazard",),
+            file=table_file("levels_g,rate_per_year\n0.1,0.02\n1,0.0002\n")),
+        **confirmed(read_fragility, {"fragility": HAZARD}, ("fragility", "hazard"), levels_g=[0.1, 0.3, 50.0]),
+    },
+    "[[fragility.dispersion]]": {
+        **of_fragility(ADDED, ("dispersion", 0), name="tests", value=0.4, source="judgement"),
+        **uses(study("rectangle", fragility=ADDED | DRAWN), ("fragility", "dispersion", 0), {
+            "without": ["alpha", "restitution"],
+        }, functools.partial(is_taken, read=read_fragility)),
+    },
+    "[[fragility.stripe]]": {
+        **of_fragility(STRIPED, ("stripe", 0), level_g=0.3, records=["t"], scales=[1.1, 0.9]),
+        **of_fragility({"measure": "PGV", "stripe": [
+            {"level_m_s": 0.4, "records": ["s", "t"]}, {"level_m_s": 0.9, "records": ["s", "t"]},
+        ]}, ("stripe", 0), level_m_s=0.3),
+        **of_fragility({"measure": "PGA", "stripe": [
+            {"level_g": 0.4, "file": table_file("record\ns\n")}, {"level_g": 0.9, "records": ["s", "t"]},
+        ]}, ("stripe", 0), file=table_file("record\nt\n")),
+        **confirmed(read_fragility, {"fragility": STRIPED}, ("fragility", "stripe", 1), level_g=50.0),
+    },
+    "[fragility.uncertain]": of_fragility(STRIPES | DRAWN, ("uncertain",), seed=2),
+    "[fragility.uncertain.lognormal]": drawn(
+        "lognormal", {"alpha": (0.02, 0.03), "restitution": (0.02, 0.03)},
+        dict.fromkeys(("beta", "epsilon", "zeta", "eta"), (0.02, 0.03)),
+        dict.fromkeys(("stiffness_kN_m", "yield_kN"), (0.02, 0.03)),
+    ),
+    "[fragility.uncertain.uniform]": drawn(
+        "uniform", {"alpha": ([0.19, 0.21], [0.19, 0.22]), "restitution": ([0.85, 0.95], [0.86, 0.95])},
+        {"beta": ([35.0, 45.0], [35.0, 50.0]), "epsilon": ([0.1, 0.3], [0.1, 0.4]), "zeta": ([0.04, 0.06], [0.04, 0.07]),
+            "eta": ([2.0, 3.0], [2.0, 3.5])},
+        {"stiffness_kN_m": ([2e5, 4e5], [2e5, 5e5]), "yield_kN": ([3e4, 5e4], [3e4, 6e4])},
+    ),
+    "[[fragility.uncertain.correlation]]": of_fragility(
+        STRIPES | {"uncertain": DRAWN["uncertain"] | {"correlation": [{"between": ["alpha", "restitution"], "value": 0.7}]}},
+        ("uncertain", "correlation", 0), value=-0.5,
+    ),
+}  # fmt: skip
+THREE_DRAWN = {"uncertain": {
+    "uniform": {"alpha": [0.19, 0.21], "epsilon": [0.1, 0.3], "beta": [35.0, 45.0]},
+    "correlation": [{"between": ["alpha", "epsilon"], "value": 0.7}],
+}}  # fmt: skip
+USES["[[fragility.uncertain.correlation]]"] |= of_fragility(
+    STRIPES | THREE_DRAWN, ("uncertain", "correlation", 0), case=SOFT | {"epsilon": 0.2}, between=["alpha", "beta"]
+)
+
+of_spectrum = functools.partial(of_analysis, "spectrum", rb.spectrum, case={"name": "r", "base": "rigid"})
+SPECTRUM = {"alpha": [0.2], "two_pi_over_p_s": [4.0, 8.0], "points": 3}
+MAP = {
+    "name": "m", "shape": "sine", "frequency": [1.0, 2.0], "frequencies": 2, "amplitude": [1.0, 4.0], "amplitudes": 3,
+    "tolerance": 0.2, "width": 1.0,
+}  # fmt: skip
+MP_MAP = MAP | {"shape": "mavroeidis-papageorgiou", "gamma": 1.5, "nu": 0.0}
+SIMILAR = {"alpha": [0.2], "omega_g_over_p": [1.0, 4.0], "pga_over_g_tan_alpha": [2.0], "points": 3}
+USES |= {
+    "[spectrum]": {
+        **of_spectrum(SPECTRUM, alpha=[0.25], two_pi_over_p_s=[4.0, 9.0], points=4, spacing="log"),
+        **of_spectrum({"alpha": [0.2], "p": [0.8, 1.5], "points": 3}, p=[0.8, 1.6]),
+        **of_spectrum({"alpha": [0.2], "size_m": [5.0, 20.0], "points": 3}, size_m=[5.0, 25.0]),
+        **of_spectrum(SIMILAR, tables=TWO_PULSES | {"pier": UNWEIGHED}, omega_g_over_p=[1.0, 5.0], pga_over_g_tan_alpha=[3.0]),
+    },
+    "[[spectrum.map]]": {
+        **of_spectrum({"map": [MAP]}, ("map", 0), name="n", shape="cosine", frequency=[1.0, 2.5], frequencies=3,
+            amplitude=[1.0, 5.0], amplitudes=4, tolerance=0.01, width=0.1),
+        **of_spectrum({"map": [MP_MAP]}, ("map", 0), gamma=1.8, nu=0.5),
+    },
+}  # fmt: skip
+
+of_sensitivity = functools.partial(of_analysis, "sensitivity", rb.sensitivity)
+RANGES: dict[str, tuple[Tables, list[Any], list[Any]]] = {
+    "alpha": (ROCK, [0.18, 0.21], [0.18, 0.22]), "p": (ROCK, [0.7, 0.9], [0.7, 1.0]), "mu": (SOFT, [2.5, 3.5], [2.5, 4.0]),
+    "restitution": (ROCK | {"restitution": 0.9}, [0.85, 0.95], [0.85, 0.92]), "beta": (SOFT, [35.0, 45.0], [35.0, 50.0]),
+    "epsilon": (SOFT | {"epsilon": 0.2}, [0.1, 0.3], [0.1, 0.4]), "zeta": (SOFT | {"zeta": 0.05}, [0.04, 0.06], [0.04, 0.07]),
+    "stiffness_kN_m": (PADS, [2e5, 4e5], [2e5, 5e5]), "eta": (SOFT | {"base": "yielding", "eta": 2.5}, [2.0, 3.0], [2.0, 3.5]),
+    "n": (SOFT | {"base": "yielding", "eta": 2.5, "n": 3.0}, [2.0, 4.0], [2.0, 5.0]),
+    "yield_kN": (PADS | {"base": "yielding", "yield_kN": 2.5e4}, [2e4, 3e4], [2e4, 3.5e4]),
+}  # fmt: skip
+"""A case that has the input, and two ranges of it."""
+OF_DEVICES: dict[str, dict[str, tuple[Tables, list[Any], list[Any]]]] = {
+    "damper": {
+        "force_kN": ({"kind": "friction", "force_kN": 500.0}, [400.0, 600.0], [400.0, 700.0]),
+        "f": ({"kind": "friction", "f": 0.05}, [0.04, 0.06], [0.04, 0.07]), "yield_mm": (HYSTERETIC, [1.0, 3.0], [1.0, 4.0]),
+        "coefficient_kN_s_m": ({"kind": "viscous", "coefficient_kN_s_m": 500.0}, [400.0, 600.0], [400.0, 700.0]),
+        "nu": ({"kind": "viscous", "nu": 0.2}, [0.1, 0.3], [0.1, 0.4]),
+        "exponent": ({"kind": "viscous", "nu": 0.2, "exponent": 0.7}, [0.6, 0.8], [0.6, 0.9]),
+        "brace_kN_m": (HYSTERETIC | {"brace_kN_m": 1e5}, [5e4, 2e5], [5e4, 3e5]),
+        "brace": (HYSTERETIC | {"brace": 2.0}, [1.0, 3.0], [1.0, 4.0]),
+    },
+    "tendon": {
+        "prestress_kN": ({"prestress_kN": 900.0, "stiffness_kN_m": 2e4}, [800.0, 1000.0], [800.0, 1100.0]),
+        "psi": ({"psi": 0.1, "lambda": 0.2}, [0.08, 0.12], [0.08, 0.13]),
+        "stiffness_kN_m": ({"prestress_kN": 900.0, "stiffness_kN_m": 2e4}, [1e4, 3e4], [1e4, 4e4]),
+        "yield_kN": ({"prestress_kN": 900.0, "stiffness_kN_m": 2e4, "yield_kN": 1600.0}, [1400.0, 1800.0], [1400.0, 1700.0]),
+        "lambda": ({"psi": 0.1, "lambda": 0.2}, [0.1, 0.3], [0.1, 0.4]),
+    },
+    "stop": {
+        "gap_mm": ({"gap_mm": 5.0, "lambda": 5.0}, [4.0, 6.0], [4.0, 7.0]),
+        "stiffness_kN_m": ({"gap_mm": 5.0, "stiffness_kN_m": 2e5}, [1e5, 3e5], [1e5, 4e5]),
+        "lambda": ({"gap_mm": 5.0, "lambda": 5.0}, [4.0, 6.0], [4.0, 7.0]),
+        "restitution": ({"gap_mm": 5.0, "lambda": 5.0, "restitution": 0.5}, [0.4, 0.6], [0.4, 0.7]),
+    },
+    "deck_spring": {
+        "gap_mm": ({"gap_mm": 5.0, "lambda": 0.2}, [4.0, 6.0], [4.0, 7.0]),
+        "stiffness_kN_m": ({"gap_mm": 5.0, "stiffness_kN_m": 2e4}, [1e4, 3e4], [1e4, 4e4]),
+        "lambda": ({"gap_mm": 5.0, "lambda": 0.2}, [0.1, 0.3], [0.1, 0.4]),
+        "restitution": ({"gap_mm": 5.0, "lambda": 0.2, "restitution": 0.5}, [0.4, 0.6], [0.4, 0.7]),
+    },
+}  # fmt: skip
+SAMPLED = {"samples": 4, "uniform": {"alpha": [0.18, 0.21]}}
+ONE_PULSE = {"motions": {"pulse": [SINE | {"dt_s": 0.04}]}}
+
+
+def ranges_of(spread):
+    """Return a use of each input of a spread, with another range."""
+    return {
+        name: of_sensitivity({"samples": 4, spread: {name: ends}}, (spread,), ONE_PULSE, "deck", case, **{name: other})[
+            name
+        ]
+        for name, (case, ends, other) in RANGES.items()
+    }
+
+
+def ranges_of_device(spread, what):
+    """Return a use of each input of a kind of device, with another range."""
+    return {
+        name: of_sensitivity(
+            {"samples": 4, spread: {what: {name: ends}}}, (spread, what), ONE_PULSE, "deck", ROCK | {what: [device]},
+            **{name: other},
+        )[name]
+        for name, (device, ends, other) in OF_DEVICES[what].items()
+    }  # fmt: skip
+
+
+CREEPS = SOFT | {"base": "yielding", "eta": 2.5}
+USES |= {
+    "[sensitivity]": {
+        **of_sensitivity(SAMPLED, statistic="max", samples=8, confidence=0.9, seed=2),
+        **of_sensitivity(SAMPLED, tables=STRONG, overturned=2.0),
+    },
+    "[sensitivity.choice]": {
+        name: of_sensitivity(SAMPLED, ("choice",), tables, "deck", case, **{name: values})[name]
+        for name, values, tables, case in (
+            ("kinematics", ["first-order", "finite"], ONE_PULSE, CREEPS), ("spring", ["bouc-wen", "epp"], ONE_PULSE, CREEPS),
+            ("vertical", [True, False], {"motions": {"path": records("stations")}}, ROCK),
+            ("polarity", ["+", "-"], ONE_PULSE, ROCK | {"stop": [{"gap_mm": 5.0, "lambda": 5.0, "at": "left"}]}),
+        )
+    },
+}  # fmt: skip
+for _use in USES["[sensitivity.choice]"].values():
+    _use.tables["sensitivity"] |= {"choice": {}}
+for _spread in ("uniform", "log_uniform"):
+    USES[f"[sensitivity.{_spread}]"] = ranges_of(_spread)
+    USES |= {f"[sensitivity.{_spread}.{what}]": ranges_of_device(_spread, what) for what in OF_DEVICES}
+
+RELEASED = {"motions": {"still_s": 5.0}, "pier": {"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": 0.1}}
+of_release = functools.partial(of_analysis, "release", rb.release, tables=RELEASED)
+MEASURED = {"impact_s": [0.33, 0.81, 1.22, 1.57], "amplitude_rad": [0.082, 0.068, 0.057, 0.048]}
+USES["[release]"] = {
+    **of_release(MEASURED, impact_s=[0.33, 0.81, 1.21, 1.56], amplitude_rad=[0.081, 0.068, 0.057, 0.048], clock="first impact",
+        confidence=0.9),
+    **of_release({"measured": table_file("impact_s\n0.33\n0.81\n1.22\n1.57\n")},
+        measured=table_file("impact_s\n0.33\n0.81\n1.21\n1.56\n")),
+    **of_release(MEASURED, case={"name": "r", "base": "elastic", "beta": 300.0}, fit="zeta"),
+}  # fmt: skip
+
+
+def _of_analysis(header):
+    """Return whether a table is one of an analysis, whose studies take longer."""
+    return header.strip("[]").partition(".")[0] in ("fragility", "spectrum", "sensitivity", "release")
+
+
+@pytest.mark.parametrize(
+    "header", [pytest.param(header, marks=pytest.mark.slow) if _of_analysis(header) else header for header in USES]
+)
 @pytest.mark.usefixtures("no_report")
 def test_another_value_of_every_key_tells(header, uncompiled):
     idle = {key: use.value for key, use in USES[header].items() if not outcome(use, key, uncompiled)}
@@ -484,28 +805,83 @@ def test_the_size_of_histories_is_refused_where_it_decides_nothing(histories):
     assert is_taken(study(output={"histories": "worst", "histories_MB": 5.0})) == [True]
 
 
-ELSEWHERE = {
-    "[[reference]]": "repeats the keys of cases; a value that no case has is refused (tests/study)",
-    "[motions.target]": "test_spectrum_target.py", "[motions.vertical_target]": "test_vertical_target.py",
-    "fragility": "tests/analyses/fragility", "spectrum": "tests/analyses/spectrum", "sensitivity": "tests/analyses",
-    "release": "tests/analyses",
+NO_OTHER_VALUE = {("[[case]]", "flexural_impact")}
+"""Keys that take one value only, and say so in a remark."""
+
+
+def test_another_value_of_a_key_with_one_is_refused():
+    assert is_taken(Use(BENDING, ("case", 0), "rate").changed("flexural_impact")) == [False]
+
+
+# Keys of recorded motions in a study of pulses alone
+
+OF_RECORDS = {
+    "vertical": False, "unit": "g", "dt": 0.02, "columns": ["time", "000"], "sensitivity": 2.0, "role": "horizontal",
+    "layout": "wrapped", "offset": "mean", "axis_deg": 30.0, "every_deg": 60.0, "select": {"pga_g": [0.1, 9.0]},
+    "target": {"pga_g": 0.3}, "vertical_target": {"pga_g": 0.3}, "vertical_scale": 0.5, "confirm": ["x"], "confirm_pga": ["*"],
+    "leave_out": ["x"], "strict": True,
 }  # fmt: skip
-"""Tables whose keys have their tests in other places, by their header, or the name of their analysis."""
 
 
-MIRRORED = [("[[check]]", "polarity")]
-"""Keys without effect: studies of both polarities are symmetric, so that the demands of mirror images are the same."""
+@pytest.mark.parametrize("key", OF_RECORDS)
+def test_keys_of_records_are_refused_without_any_and_used_by_a_path_instead(key):
+    """``rockbatch run --motions PATH`` and ``motions=`` take the place of the pulses, and are read as the study says."""
+    tables = study(motions={"pulse": [SINE], key: OF_RECORDS[key]})
+    told = "axis_deg or every_deg" if key in ("axis_deg", "every_deg") else key
+    with pytest.raises(InputError, match=rf"{told}: is for recorded motions; write path = .*, or leave {told} out"):
+        ground_motions(rb.Study.from_dict(tables))
+    of_path = rb.Study.from_dict(tables, motions=records("stations"))
+    assert of_path.motions != rb.Study.from_dict(study(), motions=records("stations")).motions
+
+
+def test_what_pulses_and_still_ground_have_a_use_for_stays_beside_them():
+    keys = {"scale": [20.0], "confirm": ["scale"], "polarity": ["+", "-"], "vertical": True, "strict": False}
+    compared = {"target": {"spectrum": [[0.1, 1.0], [2.0, 0.4]], "period_range_s": [0.2, 1.5], "factors": "none"}}
+    assert len(ground_motions(rb.Study.from_dict(study(motions={"pulse": [SINE]} | keys | compared)))) == 1
+    with pytest.raises(InputError, match="unit: is for recorded motions"):
+        ground_motions(rb.Study.from_dict(study(motions={"still_s": 5.0, "unit": "g"})))
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "without", "beside"),
+    [
+        ("devices_work", True, ROCK, ROCK | {"damper": [HYSTERETIC]}),
+        (
+            "both_laws",
+            False,
+            SOFT | {"base": "yielding", "eta": 2.5, "spring": "epp"},
+            SOFT | {"base": "yielding", "eta": 2.5},
+        ),
+    ],
+)
+def test_an_output_of_what_no_case_has_is_refused(key, value, without, beside):
+    assert [is_taken(study(case=case, output={key: value})) for case in (without, beside)] == [[False], [True]]
+
+
+def test_a_check_of_devices_that_no_case_has_asks_for_no_output_of_theirs():
+    """Following the one message would lead to the other."""
+    travel = {"name": "travel", "demand": "damper_travel_m", "at_most": 3.0, "reason": "agreed"}
+    assert is_taken(study(check=[travel])) == [True]
+    assert is_taken(study(check=[travel], case=ROCK | {"damper": [HYSTERETIC]})) == [False]
+
+
+# Published values
+
+
+@pytest.mark.parametrize("key", [key for key in REFERENCE if key not in OF_REFERENCE])
+def test_a_key_of_a_reference_is_refused_where_no_case_has_its_value(key):
+    kind = REFERENCE[key].example
+    value = json.loads(kind) if kind[0] in '"[0123456789' else kind
+    value = value[0] if isinstance(value, list) else value
+    value = 0.9 * value if isinstance(value, float) else value  # not what the case has
+    published = {"record": "*", "case": "r", "theta_max_over_alpha": 0.1, "source": "a paper", key: value}
+    with pytest.raises(InputError, match=f"{key} = .*: no case"):
+        rb.Study.from_dict(study("size", reference=[published]))
 
 
 def test_every_key_of_every_table_has_a_use():
     """A new key of these tables fails until a study is given in which it tells."""
     for section in STUDY:
-        if section.header in ELSEWHERE or (section.at and section.at[0] in ELSEWHERE):
-            continue
-        found = USES[section.header].keys() | {key for header, key in MIRRORED if header == section.header}
-        assert found == set(section), section.header
-
-
-@pytest.mark.parametrize(("header", "key"), MIRRORED)
-def test_a_key_that_chooses_between_mirror_images_changes_no_verdict(header, key):
-    assert outcome(Use(CHECKED, ("check", 0), "-", verdicts), key) is False
+        alone = {key for header, key in NO_OTHER_VALUE if header == section.header}
+        of_cases = REFERENCE.keys() - {*OF_REFERENCE, "alpha"} if section.header == REFERENCE.header else set()
+        assert USES[section.header].keys() | alone | of_cases == set(section), section.header

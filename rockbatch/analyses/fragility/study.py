@@ -284,7 +284,7 @@ def _of_one_record(rule: Rule) -> Rule:
     infinite, a fragility is not.
     """
     statistic = "max" if rule.statistic == "asce7-16" else rule.statistic
-    limit = replace(rule, scale=(), polarity=None, statistic=statistic)
+    limit = replace(rule, scale=(), statistic=statistic)
     if not DEMANDS[rule.demand].per_run:
         return limit
     flight, failed = (

@@ -452,14 +452,14 @@ def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
 def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
     path = written(tmp_path, STRIPES)
     text = path.read_text(encoding="utf-8").replace(
-        'at_most = 0.5\n', 'at_most = 0.5\nflight = "infinite"\nfailed = "value"\npolarity = "-"\n'
+        'at_most = 0.5\n', 'at_most = 0.5\nflight = "infinite"\nfailed = "value"\n'
     )  # fmt: skip
     text = text.replace("at_most = 0.005\n", 'at_most = 0.005\nfailed = "left out"\n')
     path.write_text(text, encoding="utf-8")
     _, half, settled = read_fragility(load_study(path)).limits
     path.write_text(f'{text}checks = ["set*", "half w[ab]y"]\n', encoding="utf-8")
     assert read_fragility(load_study(path)).limits[1:] == (half, settled)
-    assert (half.flight, half.failed, half.polarity) == ("unknown", "unknown", None)
+    assert (half.flight, half.failed) == ("unknown", "unknown")
     assert (settled.flight, settled.failed) == ("unknown", "left out")
     runs = of_statuses(["flight", "failed"], theta=0.6)
     assert list(states(half, Rows(runs), {"base": "rigid"})) == [EXCEEDED, UNDECIDED]  # beyond the limit before it flew
