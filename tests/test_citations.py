@@ -45,6 +45,7 @@ EQUATIONS = {
     15: "lift-off from rest:",
     16: "impact at θ = 0:",
     20: "θ_res =",
+    21: "V/M = ü_g + R0",
     28: "E(θ_n) = e² E(θ_n−1)",
 }
 """How each equation begins that other files than THEORY.md cite by its number."""

@@ -26,7 +26,9 @@ def outline(figure):
 
 
 def test_piers_are_to_one_scale():
-    figures = sketches([PIER | {"top_m": 30.0}, PIER | {"half_width_m": 1.0, "height_m": 10.0}], {"rigid", "yielding"})
+    figures = sketches(
+        [PIER | {"highest_m": 30.0}, PIER | {"half_width_m": 1.0, "height_m": 10.0}], {"rigid", "yielding"}
+    )
     (wide, tall), (narrow, low) = map(outline, figures)
     assert wide / tall == pytest.approx(8.0 / 30.0)
     assert narrow / low == pytest.approx(2.0 / 20.0)
@@ -35,13 +37,13 @@ def test_piers_are_to_one_scale():
 
 def test_the_deck_and_the_devices_are_to_scale():
     devices = (("tendon", Place(-2.0)), ("viscous damper", Place(4.0)), ("stop", Place(-4.0)))
-    (figure,) = sketches([PIER | {"top_m": 30.0, "deck_m": 33.0, "devices": devices}], {"rigid"})
-    scale = outline(figure)[1] / 30.0
+    (figure,) = sketches([PIER | {"highest_m": 33.0, "deck_m": 33.0, "devices": devices}], {"rigid"})
+    scale = outline(figure)[1] / 33.0
     (deck,) = marks(figure, "deck", Area)
     assert deck.y.mean() == pytest.approx(33.0 * scale)
     tendon = next(mark for mark in marks(figure, "tendon") if mark.title == "tendon")
     assert tendon.x.tolist() == pytest.approx([-2.0 * scale] * 2)
-    assert tendon.y.max() == pytest.approx(30.0 * scale)
+    assert tendon.y.max() == pytest.approx(33.0 * scale)
     (damper,) = marks(figure, "damper", Area)
     assert damper.x.mean() == pytest.approx(4.0 * scale + ASIDE)
     assert "with tendon and viscous damper and stop" in figure.description
@@ -67,7 +69,7 @@ def test_lines_of_a_sketch_end_where_what_they_show_does(base):
     b, top = (round(float(each.max()), 9) for each in (shaft.x, shaft.y))
     (centre,) = marks(figure, "peak", Points)
     ((_, h),) = at(centre)
-    assert at(centre) == [(0.0, pytest.approx(top / 2))]
+    assert at(centre) == [(0.0, pytest.approx(20.0 / 41.0 * top))]  # the shaft is drawn up to the deck
     assert sorted(at(shaft)) == [(-b, 0.0), (-b, top), (b, 0.0), (b, top)]
     rigid = [at(mark) for mark in marks(figure, "rigid")]
     assert [(-b, 0.0), (-b, top), (b, top), (b, 0.0), (-b, 0.0)] in rigid
@@ -127,7 +129,7 @@ def test_no_more_piers_are_drawn_than_can_be_taken_in():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"height_m": 0.0}, {"half_width_m": -1.0}, {"height_m": 1e300}, {"top_m": -3.0}, {"alpha": 0}]
+    "wrong", [{"height_m": 0.0}, {"half_width_m": -1.0}, {"height_m": 1e300}, {"highest_m": -3.0}, {"alpha": 0}]
 )
 def test_a_pier_that_cannot_be_is_not_drawn(wrong):
     assert sketches([PIER | wrong], {"rigid"}) == []

@@ -93,7 +93,8 @@ eta = [2.2, 3.0]
 """
 ANALYSES = {
     "fragility": tuple(
-        f"fragility{part}" for part in ("_scales", "", "_capacities", "_risk", "_deaggregation", "_runs")
+        f"fragility{part}"
+        for part in ("_scales", "", "_capacities", "_risk", "_runs")  # two records have no curve
     ),
     "spectrum": ("spectrum", "spectrum_suite", "overturning_map", "overturning_runs"),
     "sensitivity": ("sensitivity_runs", "sensitivity", "sobol"),

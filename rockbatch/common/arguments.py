@@ -5,6 +5,7 @@ import inspect
 import os
 import types
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import InitVar
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, Union, Unpack, get_args, get_origin, get_type_hints
 
@@ -79,6 +80,8 @@ def _is_unpacked(parameter: inspect.Parameter) -> bool:
 
 
 def _alternatives(annotation: Any) -> tuple[Any, ...]:
+    if isinstance(annotation, InitVar):
+        return _alternatives(annotation.type)
     if get_origin(annotation) in (Union, types.UnionType):
         return tuple(kind for part in get_args(annotation) for kind in _alternatives(part))
     return (annotation,)

@@ -49,7 +49,7 @@ WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 """Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
 
 ASKING_TENSION: tuple[Impact, ...] = ("housner",)
-"""Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact)."""
+"""Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact by Housner's e)."""
 
 OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
 """For each law that ratchets one that does not: the settlement lies between both (THEORY.md, Results of a run)."""
@@ -280,7 +280,7 @@ class ElasticBase(_Traits):
         Area of one support [m²], for bearing stresses (:func:`rockbatch.statics`).
     impact : "landing" or "housner"
         An impulse at the landing pivot, by ε; or Housner's e on the angular velocity, while the other pivot keeps its velocity,
-        for which the supports would have to pull (THEORY.md, Impact). The latter has no ε.
+        for which the supports would have to pull (THEORY.md, Impact by Housner's e). The latter has no ε.
     confirm : sequence of str
         Fields that are right though unusual: "friction", "beta", …
 

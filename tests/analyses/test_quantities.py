@@ -13,7 +13,7 @@ from rockbatch.reporting.markup import number
 
 PULSES = [
     SINE | {"name": f"sine {period}", "period_s": period, "amplitude_g": 0.4, "duration_s": 3.0}
-    for period in (0.6, 0.9, 1.2, 1.5)
+    for period in (0.6, 0.8, 1.0, 1.2, 1.5)
 ]
 RELEASE = study_text(
     pier={"width_m": 0.3, "height_m": 1.2, "initial_rotation_rad": 0.1}, motions={"still_s": 5.0}, cases=(RIGID,),
@@ -25,7 +25,7 @@ SENSITIVITY = study_text(
 FRAGILITY = study_text(
     pier={"alpha": 0.2, "p": 2.0}, pulses=PULSES, cases=(RIGID,), numerics={"tolerance": 1e-3},
     fragility={
-        "method": "ida", "measure": "PGA", "levels_g": [0.2, 0.25, 0.266], "dispersion": [{"name": "modelling", "value": 0.3}],
+        "method": "ida", "measure": "PGA", "levels_g": [0.2, 0.25, 0.3, 0.35], "dispersion": [{"name": "modelling", "value": 0.3}],
         "hazard": {"levels_g": [0.05, 0.2, 0.5], "return_period_years": [50, 475, 2475], "years": [50]},
     },
 )  # fmt: skip

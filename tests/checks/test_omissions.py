@@ -120,7 +120,8 @@ def test_one_axis_that_lands_leaves_the_demand_of_both_open():
 def test_runs_left_out_leave_nothing_open():
     table = runs([0.3, 0.4], name="rigid", impacts=[0, 6], **SHEAR).assign(status=["ok", "overturned"])
     found = judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0, overturned="left out")
-    assert (found.verdict, found.omitted) == ("pass", [BENDING])
+    assert (found.verdict, found.omitted) == ("not decided", [BENDING])  # no check says how many runs may overturn
+    assert found.high < 4000.0
     kept = judged(table, one=RIGID, demand="base_shear_kN", at_most=4000.0, overturned="value")
     assert (kept.verdict, kept.omitted) == ("not decided", [LANDINGS, BENDING])
 

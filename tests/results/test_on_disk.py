@@ -90,7 +90,10 @@ def same(one, other):
         else:
             pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
     frames = dict.fromkeys((*TABLES, "row"))  # the row is in peaks.csv
-    assert asdict(replace(one, **frames)) == asdict(replace(other, **frames))
+    ours, theirs = (asdict(replace(response, **frames)) for response in (one, other))
+    for values in (ours, theirs):  # what is unusual was confirmed before it was written
+        del values["pier"]["confirm"], values["base"]["confirm"]
+    assert ours == theirs
     assert type(one.base) is type(other.base)
     return True
 

@@ -61,7 +61,7 @@ FOUND = [  # part, what stands there, what shall, its key, and what is said
      "[pier]: deck_mass_t = 1.2: 0.0006 times the mass of the pier, mass_t = 2000"),
     ("pier", "mass_t = 3000", "mass_t = 30\ncolumns = 2\ndeck_mass_t = 9000", "deck_mass_t",
      "[pier]: deck_mass_t = 9000: 150 times the mass of the pier, mass_t = 60"),
-    ("pier", "mass_t = 3000", "deck_mass_t = 900\n[[pier.part]]\nmass_t = 1.8\nheight_m = 15", "deck_mass_t",
+    ("pier", "height_m = 30\nmass_t = 3000", "deck_mass_t = 900\ndeck_height_m = 30\n[[pier.part]]\nmass_t = 1.8\nheight_m = 15", "deck_mass_t",
      "[pier]: deck_mass_t = 900: 500 times the mass of the pier, mass_t = 1.8"),
     ("check", THETA[0], 'demand = "heel_uplift_mm"\nat_most = 0.15', "at_most",
      '[[check]] "uplift": at_most = 0.15: in mm, as heel_uplift_mm is, hardly more than nothing; 0.15 m are 150 mm'),

@@ -637,7 +637,8 @@ def test_fig7_has_the_paper_s_parameters_all_three_of_its_p_and_both_impacts():
 def test_the_example_s_comments_name_every_key_there_is():
     """A newcomer copies it: what it does not show does not exist."""
     text = (CONFIGS / "example.toml").read_text()
-    for key in chain(TOP, PIER_KEYS, MOTIONS, FEMA, PULSE_KEYS, NUMERICS, CASE, BASE_KEYS, *DEVICES.values()):
+    shown = chain(TOP, PIER_KEYS, MOTIONS, FEMA, PULSE_KEYS, NUMERICS, CASE, BASE_KEYS, *DEVICES.values())
+    for key in {*shown} - {"flexural_impact"}:  # which has no effect, and is left out
         assert re.search(rf"\b{key}\b", text), key
 
 

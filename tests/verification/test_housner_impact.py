@@ -1,4 +1,4 @@
-"""Impacts by Housner's e on springs (THEORY.md, Impact): momentum, energy, and random piers against the second solver.
+"""Impacts on springs (THEORY.md, Impact by Housner's e): momentum, energy, and random piers against the second solver.
 
 The impulses are those that the jump of v̇ and θ̇ takes at the two pivots, by the balances of momentum alone.
 """

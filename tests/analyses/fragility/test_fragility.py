@@ -21,7 +21,7 @@ from rockbatch.analyses.fragility.ida import Bracket, Capacity
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD, states
 from rockbatch.analyses.fragility.lognormal import Capacities, Lognormal, NoCurve, fit
 from rockbatch.analyses.fragility.risk import risk_table, risks
-from rockbatch.analyses.fragility.runs import ScaledRuns, intensities, output
+from rockbatch.analyses.fragility.runs import LevelPlan, ScaledRuns, intensities, output
 from rockbatch.analyses.fragility.section import section
 from rockbatch.analyses.fragility.study import OVERTURNING, FragilitySpec, read_fragility
 from rockbatch.analyses.fragility.tables import capacities, described, note, points
@@ -236,14 +236,15 @@ def test_the_command_writes_points_curves_capacities_and_all_runs(ida):
 def test_capacities_have_all_their_bounds_also_as_scales():
     case, spec = Case("rigid", Pier(0.2, 1.0), RigidBase(), {}), FragilitySpec("ida", "PGA", (0.2, 0.8), ())
     found = (
-        (0, Capacity(Bracket(0.2, 0.4), Bracket(0.25, 0.3), Bracket(0.35, 0.5), 2, 1, 0.05)),
-        (1, Capacity(*3 * (Bracket(0.8, math.inf),), 0, 0, 0.1)),
-        (2, Capacity(*3 * (Bracket(0.0, 0.2),), 0, 0, 0.0)),
-        (1, Capacity(*3 * (Bracket(0.3, 0.31),), 0, 3, 0.2)),
-        (1, Capacity(Bracket(0.8, math.inf), Bracket(0.2, 0.3), Bracket(0.8, math.inf), 1, 0, 0.1)),
+        ((0, 0), Capacity(Bracket(0.2, 0.4), Bracket(0.25, 0.3), Bracket(0.35, 0.5), 2, 1, 0.05)),
+        ((0, 1), Capacity(*3 * (Bracket(0.8, math.inf),), 0, 0, 0.1)),
+        ((0, 2), Capacity(*3 * (Bracket(0.0, 0.2),), 0, 0, 0.0)),
+        ((0, 1), Capacity(*3 * (Bracket(0.3, 0.31),), 0, 3, 0.2)),
+        ((0, 1), Capacity(Bracket(0.8, math.inf), Bracket(0.2, 0.3), Bracket(0.8, math.inf), 1, 0, 0.1)),
     )
     curve = Curve(case, OVERTURNING, (), "none", Undecided(0, 0, 0, 0), capacities=found)
-    rows = capacities([curve], spec, (), ["a", "b", "c"], [0.1, 0.2, 0.4])
+    plan = LevelPlan([0.1, 0.2, 0.4], [1.0] * 3, [{}] * 3, [{}] * 3)
+    rows = capacities([curve], spec, (), ["a", "b", "c"], [plan], [case])
     assert rows.columns[:6].to_list() == ["record", "case", "limit_state", "measure", "unit", "found"]
     assert rows["record"].to_list() == ["a", "b", "c", "b", "b"]
     assert rows["found"].to_list() == [

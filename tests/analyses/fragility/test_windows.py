@@ -12,6 +12,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.analyses.fragility.curves import assess
 from rockbatch.analyses.fragility.limit_states import EXCEEDED, LEFT_OUT, UNDECIDED, WITHSTOOD
+from rockbatch.analyses.fragility.runs import LevelPlan
 from rockbatch.analyses.fragility.study import read_fragility
 from rockbatch.analyses.fragility.tables import capacities, points
 from rockbatch.analyses.fragility.windows import SAMPLES, samples, windows
@@ -118,7 +119,8 @@ def test_the_default_hunt_goes_in_steps_of_a_quarter_of_a_percent_and_each_capac
     shares = [cap.decided.high / CAPACITIES[m] for (_, m), cap in curve.capacities if 0.4 < 0.9 * CAPACITIES[m] < 1.19]
     assert 15 < len(shares) < 30
     assert 0.9 < min(shares) <= max(shares) < 0.903
-    rows = capacities([curve], spec, (), [str(m) for m in range(30)], [1.0] * 30)
+    plan = LevelPlan([1.0] * 30, [1.0] * 30, [{}] * 30, [{}] * 30)
+    rows = capacities([curve], spec, (), [str(m) for m in range(30)], [plan], [curve.case])
     assert 0.9 * 0.0025 < rows["widest_step"].max() <= 0.0025 + 1e-12
 
 
