@@ -13,12 +13,15 @@ from rockbatch.reporting.svg import sketch
 from rockbatch.reporting.table import MOST_ROWS, Head, table
 from rockbatch.reporting.templates import Section, document
 
+_NAMED = ("event", "station_name", "record")
+"""Columns that stand in one cell, the name of the record."""
+
 COLUMNS = {
-    "record": Head("record", note="record: name of the stronger component"),
-    "event": Head("event", filter=True),
-    "station_name": Head("station", note="station_name"),
+    "record": Head("record", note="station_name, event, and record: the name of the stronger component"),
     "use": Head("use", note="use: what becomes of it", filter=True),
     "check": Head("to check", note="check: what is doubtful about it; the reasons are below"),
+    "acceleration": Head("acceleration", note="of the stronger component, on its own scale"),
+    "sa": Head("SA", note="response spectrum, 5 % damped, 0.05 to 5 s"),
     "pga_h_g": Head("PGA [g]", ".3f", "pga_h_g: of the stronger horizontal component"),
     "pga_h2_g": Head("across [g]", ".3f", "pga_h2_g: PGA of the other horizontal component"),
     "pga_v_g": Head("vertical [g]", ".3f", "pga_v_g: PGA of the vertical component"),
@@ -33,7 +36,7 @@ COLUMNS = {
     "distance_km": Head("R [km]", "g", "distance_km"),
     "vs30_m_s": Head("Vs30 [m/s]", "g", "vs30_m_s"),
 }
-"""Heads of the columns of :mod:`rockbatch.motions.ranking`."""
+"""Heads of the columns of :mod:`rockbatch.motions.ranking`, and of the pictures."""
 
 
 def write_records(path: Path, motions: MotionSet, title: str, about: str) -> None:
@@ -59,28 +62,34 @@ def scorecard(records: Sequence[RankedRecord]) -> Markup:
     shown = records[:MOST_ROWS]
     read = [record for record in shown if record.motions]
     drawn = dict(zip(map(id, read), spectra([record.motions[0] for record in read]), strict=True))
-    heads = [*COLUMNS.values(), Head("acceleration"), Head("SA", note="response spectrum, 5 % damped, 0.05 to 5 s")]
-    rows: list[list[object]] = []
+    rows = []
     for record in shown:
-        cells = [_cell(record, name) for name in COLUMNS]
-        pictures = [sketch(trace(record.motions[0])), sketch(drawn[id(record)])] if record.motions else [None, None]
-        rows.append([*cells, *pictures])
+        pictures = {"acceleration": trace(record.motions[0]), "sa": drawn[id(record)]} if record.motions else {}
+        cells: dict[str, object] = record.values | {name: sketch(picture) for name, picture in pictures.items()}
+        cells |= {"record": _name(record), "use": _use(record)}
+        rows.append([cells.get(name) for name in COLUMNS])
     legend = tag(
         "p",
         "PGV, dt, length and D5–95 are those of the stronger component, which is drawn. Spectra are 5 % damped, from 0.05 to "
         "5 s, all on one logarithmic scale of three decades; lines are powers of ten of g.",
         class_="legend",
     )
-    return join(table(heads, rows, sortable=True, name="Records", open_=True, worst_of=len(records)), legend)
+    return join(
+        table([*COLUMNS.values()], rows, sortable=True, name="Records", open_=True, worst_of=len(records)), legend
+    )
 
 
-def _cell(record: RankedRecord, name: str) -> object:
-    value = record.values[name]
-    if name == "use":
-        return tag("span", value, class_={Use.HELD_BACK: "undecided", Use.NOT_READ: "fail"}.get(record.use))
-    if name == "record" and record.files:
-        return tag("span", value, title=record.files)
-    return value
+def _name(record: RankedRecord) -> Markup:
+    """Return station and event of a record above its name in tables, with its files as a note."""
+    event, station, name = (record.values[column] for column in _NAMED)
+    first, *others = filter(None, (station, event, name))
+    return tag("span", first, *(tag("small", " ", words) for words in others), class_="named", title=record.files)
+
+
+def _use(record: RankedRecord) -> Markup:
+    """Return what becomes of a record, with the reasons as a note."""
+    marked = {Use.HELD_BACK: "undecided", Use.NOT_READ: "fail"}.get(record.use)
+    return tag("span", record.use.value, class_=marked, title="\n".join(record.reasons) or None)
 
 
 def _reasons(files: Sequence[Unusable | LeftOut], name: str) -> Markup:
