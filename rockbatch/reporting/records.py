@@ -26,8 +26,6 @@ COLUMNS = {
     "pga_h2_g": Head("across [g]", ".3f", "pga_h2_g: PGA of the other horizontal component"),
     "pga_v_g": Head("vertical [g]", ".3f", "pga_v_g: PGA of the vertical component"),
     "pgv_h_m_s": Head("PGV [m/s]", ".3f", "pgv_h_m_s: of the stronger component"),
-    "dt_s": Head("dt [s]", "g", "dt_s"),
-    "duration_s": Head("length [s]", ".1f", "duration_s: from the first to the last sample"),
     "d5_95_s": Head("D5–95 [s]", ".1f", "d5_95_s: significant duration, from 5 to 95 % of the Arias intensity"),
     "pulse_period_s": Head(
         "pulse [s]", ".1f", "pulse_period_s: by PEER's list, else of a component that is pulse-like by Baker (2007)"
@@ -35,6 +33,8 @@ COLUMNS = {
     "magnitude": Head("M", note="magnitude"),
     "distance_km": Head("R [km]", "g", "distance_km"),
     "vs30_m_s": Head("Vs30 [m/s]", "g", "vs30_m_s"),
+    "dt_s": Head("dt [s]", "g", "dt_s"),
+    "duration_s": Head("length [s]", ".1f", "duration_s: from the first to the last sample"),
 }
 """Heads of the columns of :mod:`rockbatch.motions.ranking`, and of the pictures."""
 
