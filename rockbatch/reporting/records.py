@@ -47,7 +47,9 @@ def write_records(path: Path, motions: MotionSet, title: str, about: str) -> Non
 def page(motions: MotionSet, title: str, about: str) -> str:
     """Return the page as HTML: ``about`` below its title, the records, then the reasons of files that are not used."""
     records = ranked(motions)
-    remarks = [[motion.named, finding.text] for motion in motions for finding in motion.findings]
+    remarks = [
+        [tag("span", motion.named, class_="named"), finding.text] for motion in motions for finding in motion.findings
+    ]
     sections = [
         Section("Records", "records", scorecard(records) if records else tag("p", "No record was found.")),
         Section("Not used", "unusable", _reasons(motions.unusable, "Not used"), badge=len(motions.unusable)),
@@ -93,5 +95,7 @@ def _use(record: RankedRecord) -> Markup:
 
 
 def _reasons(files: Sequence[Unusable | LeftOut], name: str) -> Markup:
-    rows = [[file.name, file.source, file.reason] for file in files]
+    rows = [
+        [tag("span", file.name, class_="named"), tag("span", file.source, class_="path"), file.reason] for file in files
+    ]
     return table([Head("record"), Head("file"), Head("why")], rows, prose=True, name=name) if rows else Markup("")
