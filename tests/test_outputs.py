@@ -186,6 +186,7 @@ def test_a_lock_that_becomes_a_pipe_stays(tmp_path):
 UNIT = ("--unit", "g", "--role", "horizontal")
 NAMED = {
     "motions": lambda path, places: ["motions", str(places["records"]), *UNIT, "--csv", path],
+    "page": lambda path, places: ["motions", str(places["records"]), *UNIT, "--html", path],
     "statics": lambda path, places: ["statics", str(places["study"]), "--csv", path],
     "curves": lambda path, places: ["statics", str(places["study"]), "--curves", path],
     "report": lambda path, places: ["report", str(places["results"]), "--out", path],

@@ -110,6 +110,7 @@ _MOTIONS: Arguments = {
     "path": value(Path, "PATH", "files or folders (recursive)", nargs="+"),
     "--all": flag("list every recording, what was done to it, and every file that is not used"),
     "--csv": value(Path, "FILE", "write the table to FILE too; - is stdout"),
+    "--html": value(Path, "FILE", "write a page with the measures, trace and spectrum of each record; - is stdout"),
     "--write-manifest": flag("draft PATH/motions.toml from what was found"),
     "--strict": flag("fail if any file cannot be used"),
     "--unit": {"help": 'acceleration unit of files that do not state theirs, such as "cm/s2"'},
@@ -183,7 +184,8 @@ COMMANDS = {
     ),
     "motions": Command(
         "list the records of a folder, and the files that are not used", "rockbatch motions records --csv records.csv",
-        "commands.motions.main", _MOTIONS, "  FILE           the table, with --csv\n  motions.toml   with --write-manifest",
+        "commands.motions.main", _MOTIONS,
+        "  FILE           the table, with --csv, or the page, with --html\n  motions.toml   with --write-manifest",
     ),
     "check": Command(
         "hold finished results against design checks", "rockbatch check reports/pier", "commands.check.main",

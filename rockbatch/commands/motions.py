@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.streams import filled, in_width, say, show
+from rockbatch.commands.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
-from rockbatch.common.grouping import grouped
-from rockbatch.common.units import GRAVITY
-from rockbatch.motions import LeftOut, Motion, MotionSet, ReadOptions, Unusable, read_motions
+from rockbatch.common.grouping import distinct, grouped
+from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
+from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked
+from rockbatch.motions.ranking import rows as csv_rows
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
@@ -43,8 +44,24 @@ _SHOWN = {  # heads of the table in the terminal, and how their numbers are writ
     "file_v": ("vertical", ""),
 }
 
+_GLANCE = {  # the same of the scorecard, whose units stand above it
+    "pga_h_g": ("PGA", ".3f"),
+    "pga_h2_g": ("2nd", ".3f"),
+    "pga_v_g": ("up", ".3f"),
+    "pgv_h_m_s": ("PGV", ".2f"),
+    "dt_s": ("dt", "g"),
+    "d5_95_s": ("D5-95", ".1f"),
+    "pulse_period_s": ("Tp", ".1f"),
+    "magnitude": ("M", ".3g"),
+    "distance_km": ("R", ".1f"),
+    "vs30_m_s": ("Vs30", ".0f"),
+}
+_UNITS = "PGA of both horizontals and up in g, PGV in m/s, dt, D5-95 and Tp (pulse) in s, R in km, Vs30 in m/s"
+_NAMES = (10, 24)
+"""Fewest and most letters of a record's name in the scorecard."""
+
 MOST_LINES = 60
-LEAST_STATIONS = 12
+LEAST_LINES = 16
 MOST_GROUPS = 4
 """Reasons of each kind that are printed, each with an example; rare ones first."""
 _VARIABLE = re.compile(r'"[^"]*"|\([^)]*\)|[^\s;:,]*[\d/][^\s;:,]*')
@@ -67,11 +84,14 @@ def main(arguments: argparse.Namespace) -> int:
             raise InputError("--write-manifest: give one folder, which it is written into")
         say(str(write_manifest(arguments.path[0], options)))
     suite = read_motions(arguments.path, options=options)
-    rows = [row(motion) for motion in suite]
     if arguments.csv:
-        _write(arguments.csv, rows, suite)
+        _write(arguments.csv, suite)
+    if arguments.html:
+        from rockbatch.reporting.records import write_records
+
+        write_records(arguments.html, suite, f"Records in {', '.join(map(str, arguments.path))}", counts(suite))
     if arguments.all:
-        _show_all(rows, suite)
+        _show_all([row(motion) for motion in suite], suite)
     else:
         show(overview(suite))
     if arguments.strict and suite.unusable:
@@ -79,17 +99,19 @@ def main(arguments: argparse.Namespace) -> int:
     return 1 if suite.unusable or not suite.motions else 0
 
 
-def overview(suite: MotionSet) -> str:
-    """Return the counts, what is missing or odd by its reason, and a line for each station, in at most :data:`MOST_LINES`."""
-    stations = suite.stations()
+def counts(suite: MotionSet) -> str:
+    """Return how many files there are, and what becomes of them."""
     sources = {source for motion in suite for source in (motion.source, motion.vertical_source) if source}
     for not_used in (suite.unusable, suite.left_out):
         sources |= {file.source for file in not_used}
     files = {source.split(" (")[0] for source in sources}
-    lines = [
-        f"{count(len(files), 'file')}: {count(len(suite), 'usable recording')} of {count(len(stations), 'station')}, "
-        f"{len(suite.unusable)} not used, {len(suite.left_out)} left out"
-    ]
+    recordings = f"{count(len(suite), 'usable recording')} of {count(len(suite.stations()), 'station')}"
+    return f"{count(len(files), 'file')}: {recordings}, {len(suite.unusable)} not used, {len(suite.left_out)} left out"
+
+
+def overview(suite: MotionSet) -> str:
+    """Return the counts, what is missing or odd by its reason, and the scorecard of the records to look at first, in at most
+    :data:`MOST_LINES`."""
     entries = {
         "Not used": [(file.source, file.reason) for file in suite.unusable],
         "Look at these": [(motion.named, finding.text) for motion in suite for finding in motion.findings],
@@ -98,24 +120,42 @@ def overview(suite: MotionSet) -> str:
     }
     for most in range(MOST_GROUPS, 0, -1):
         groups = [line for title, of_title in entries.items() for line in _by_reason(title, of_title, most)]
-        if len(groups) <= MOST_LINES - LEAST_STATIONS - 5:
+        if len(groups) <= MOST_LINES - LEAST_LINES - 8:
             break
-    lines += groups
-    if stations:
-        room = max(MOST_LINES - len(lines) - 4, LEAST_STATIONS)
-        rows = [_of_station(name, motions) for name, motions in list(stations.items())[:room]]
-        lines += ["", in_width(["station", "event", "n", "PGA [g]", "check"], rows, left=(1, 4))]
-        if len(stations) > room:
-            lines.append(f"and {count(len(stations) - room, 'station')} more")
-    return "\n".join([*lines, "every recording: --all, or --csv FILE"])
+    records = [record for record in ranked(suite) if record.use in (Use.USED, Use.HELD_BACK)]
+    card = _scorecard(records, max(MOST_LINES - len(groups) - 8, LEAST_LINES)) if records else []
+    return "\n".join([counts(suite), *card, *groups, "", "every recording: --all, --csv FILE or --html FILE"])
 
 
-def _of_station(name: str, motions: Sequence[Motion]) -> list[str]:
-    """Return the line of a station: the greatest of its recordings, and what is odd about them."""
-    first = motions[0].origin
-    pga = max(motion.pga for motion in motions) / GRAVITY
-    checks = dict.fromkeys(finding.what for motion in motions for finding in motion.findings)
-    return [first.short_station or name, first.short_event, str(len(motions)), f"{pga:.3f}", ", ".join(checks)]
+def _scorecard(records: Sequence[RankedRecord], room: int) -> list[str]:
+    """Return the doubtful records, each with its doubts in a second line, and the strongest others, in ``room`` lines beside the
+    heads; and how many there are more."""
+    doubtful = [record for record in records if record.doubtful]
+    sound = records[len(doubtful) :]
+    first = min(len(doubtful), max(room // 4, (room - len(sound)) // 2))
+    shown = [*doubtful[:first], *sound[: room - 2 * first]]
+    known = [key for key in _GLANCE if any(record.values[key] is not None for record in shown)]
+    cells = [[_cell(record.values[key], _GLANCE[key][1]) for key in known] for record in shown]
+    numbers = aligned([[_GLANCE[key][0] for key in known], *cells], ())
+    least, most = _NAMES
+    letters = min(max((width() or WIDTH) - len(numbers[0]) - 2, least), most)
+    named = distinct(
+        [record.label for record in shown], lambda i, name: f"{name} {shown[i].values['event'] or ''}".strip()
+    )
+    names = ["record", *(shortened(name, letters) for name in named)]
+    table = [f"{name.ljust(letters)}  {line}".rstrip() for name, line in zip(names, numbers, strict=True)]
+    lines = ["", *filled(_UNITS).split("\n"), "", table[0]]
+    for record, line in zip(shown, table[1:], strict=True):
+        held = "held back: " if record.use is Use.HELD_BACK else "to check: "
+        lines += [line, *([f"    {held}{', '.join(record.doubts)}"] if record.doubtful else [])]
+    hidden = {"doubtful": len(doubtful) - first, "other": len(sound) - (len(shown) - first)}
+    kinds = " and ".join(f"{number} {kind}" for kind, number in hidden.items() if number)
+    plural = "" if sum(hidden.values()) == 1 else "s"
+    return [*lines, *([f"and {kinds} station{plural} more"] if kinds else [])]
+
+
+def _cell(value: Any, form: str) -> str:
+    return "" if value is None else format(value, form)
 
 
 def _by_reason(title: str, entries: Sequence[tuple[str, str]], most: int) -> list[str]:
@@ -145,19 +185,17 @@ def _show_all(rows: list[dict[str, Any]], suite: MotionSet) -> None:
     say(f"{count(len(suite.motions), 'record')}, {files}; {count(len(suite.stations()), 'station')}")
 
 
-def _write(path: Path, rows: list[dict[str, Any]], suite: MotionSet) -> None:
+def _write(path: Path, suite: MotionSet) -> None:
     """Write the table, with a row for each file that is not used."""
-    files: list[Unusable | LeftOut] = [*suite.unusable, *suite.left_out]
-    not_used = [{"record": file.name, "file_h": file.source, "reason": file.reason} for file in files]
-    heads = list(COLUMNS)
+    heads = [*COLUMNS, *ADDED]
     heads.insert(heads.index("azimuth_deg"), "reason")
-    write_output(path, csv_text(heads, [*rows, *not_used]))
+    write_output(path, csv_text(heads, csv_rows(suite)))
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
     """Return the rows as a table; a column without a value is left out."""
     used = {key: shown for key, shown in _SHOWN.items() if key == "record" or any(row[key] is not None for row in rows)}
-    cells = [["" if row[key] is None else format(row[key], form) for key, (_, form) in used.items()] for row in rows]
+    cells = [[_cell(row[key], form) for key, (_, form) in used.items()] for row in rows]
     flush_left = [place for place, key in enumerate(used) if key in TEXTS]
     return in_width([head for head, _ in used.values()], cells, left=flush_left)
 

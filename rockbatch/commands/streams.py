@@ -137,7 +137,7 @@ def in_width(
     """
     edge, left = width() or most, {*range(names), *left}
     lines = [
-        [*(_shortened(cell, edge // (2 * names)) for cell in line[:names]), *line[names:]] for line in (head, *rows)
+        [*(shortened(cell, edge // (2 * names)) for cell in line[:names]), *line[names:]] for line in (head, *rows)
     ]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     blocks = [list(range(names))]
@@ -152,6 +152,6 @@ def in_width(
     return "\n\n".join("\n".join(line.rstrip() for line in table) for table in tables)
 
 
-def _shortened(text: str, room: int) -> str:
+def shortened(text: str, room: int) -> str:
     """Return ``text`` with its middle left out if it is longer than ``room``; names differ at their ends."""
     return text if len(text) <= room else f"{text[: room // 4]}…{text[room // 4 + 1 - room :]}"

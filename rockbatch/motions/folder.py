@@ -277,8 +277,8 @@ def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -
     by_content = {content: file.source for file in alike if (content := _content(file))}
     copies = {file.source: by_content.get(_content(file)) for file in unrecognised} if by_content else {}
     return [
-        LeftOut(reading.name, reading.source, f"a copy of {copies[reading.source]}")
-        if copies.get(reading.source)
+        LeftOut(reading.name, reading.source, f"a copy of {original}", of=original)
+        if (original := copies.get(reading.source))
         else reading
         for reading in readings
     ]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -463,7 +463,8 @@ class Unusable:
     ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
     in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
     those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
-    ``problem`` is the kind of what has to be said, if it is one of ``Problem``.
+    ``problem`` is the kind of what has to be said, if it is one of ``Problem``. ``motion`` is what was read, with its findings,
+    if these have to be confirmed before it is used.
     """
 
     name: str
@@ -475,6 +476,7 @@ class Unusable:
     companion: str | None = None
     station: str = ""
     problem: Problem | None = None
+    motion: Motion | None = field(default=None, repr=False)
 
     def __str__(self) -> str:
         return f"{self.source}: {self.reason}"

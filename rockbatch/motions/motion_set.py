@@ -140,7 +140,7 @@ class MotionSet(Shown):
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":
-        """Return what is known of each motion, a row for each, as ``rockbatch motions --csv`` has it.
+        """Return what is known of each motion, a row for each; ``rockbatch motions --csv`` has these columns, and more.
 
         Returns
         -------

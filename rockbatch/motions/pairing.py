@@ -113,7 +113,8 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
             reason = f"{motion.label} {_NO_VERTICAL}"
             unusable.append(Unusable(motion.name, motion.files, reason, station=motion.of_station))
         elif refusal := doubt(motion.name, motion_findings, keys):
-            unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station))
+            held = replace(motion, findings=motion_findings)
+            unusable.append(Unusable(motion.name, motion.files, refusal, station=motion.of_station, motion=held))
         else:
             remarks = [f"confirmed: {finding.text}" if finding.gross else finding.text for finding in motion_findings]
             motions.append(replace(motion, findings=motion_findings, notes=(*motion.notes, *remarks)))

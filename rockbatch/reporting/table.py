@@ -42,13 +42,15 @@ def table(
     prose: bool = False,
     name: str | None = None,
     worst_of: int | None = None,
+    open_: bool = False,
 ) -> Markup:
     """Return a table in a container that scrolls if it is too wide. Columns without a value are left out.
 
     Of a ``sortable`` one, which has many rows, columns that say the same in all of them stand in a line above it.
     ``prose``: its cells hold text of several lines. ``worst_of`` is the number of rows of which these are the worst.
 
-    Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded.
+    Of more than :data:`MOST_ROWS` rows the first are shown, and a sentence says so; more than :data:`MOST_OPEN` are folded unless
+    the table is ``open_``.
     """
     whole = list(rows)
     rows, total = whole[:MOST_ROWS], worst_of or len(whole)
@@ -85,7 +87,7 @@ def table(
     wide = tag(
         "div", drawn, class_="wide prose" if prose else "wide", tabindex="0", role="region", aria_label=name or "Table"
     )
-    if len(rows) > MOST_OPEN:
+    if len(rows) > MOST_OPEN and not open_:
         wide = tag("details", tag("summary", f"{name or 'Table'}: {len(rows):,} rows"), wide)
     return join(
         shown_of(len(rows), total, "worst" if worst_of else "first"),

@@ -14,7 +14,7 @@ import numpy as np
 from rockbatch.common.files import is_plain, read_text, replacing
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
-from rockbatch.motions.motion import Motion
+from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
@@ -151,10 +151,16 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "spectra": spectra(motions.motions, fitted, gravity, target),
         **({} if target is None else {"target": target.described(fitted, gravity) | _rocking(study, target)}),
         **_vertical_target(study, motions, gravity),
-        "unusable": [asdict(file) | {"lacks": list(file.lacks)} for file in motions.unusable],
+        "unusable": [_not_used(file) for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
         "references": [asdict(reference) for reference in study.references],
     }
+
+
+def _not_used(file: Unusable) -> dict[str, Any]:
+    """Return the entry of a file that is not used; the samples of one that is held back are not in it."""
+    entry = {name: value for name, value in vars(file).items() if name != "motion"}
+    return entry | {"lacks": list(file.lacks), "problem": file.problem and file.problem.name.lower()}
 
 
 def describe_study(study: Study) -> dict[str, str]:

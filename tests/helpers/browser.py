@@ -15,6 +15,18 @@ import pytest
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+RAN = "window.ran = 1"
+HOSTILE = [
+    f"<script>{RAN};alert(1)</script>", f'"><img src=x onerror="{RAN}">', f"</title><script>{RAN}</script>",
+    f"<svg/onload='{RAN}'>",
+    f"</style><style>body {{ display: none }}</style>--><script>{RAN}</script>", f"' onmouseover='{RAN}' x='", "]]>${1}{{7*7}}",
+    f'<iframe src="javascript:parent.{RAN}"></iframe>', "<base href=https://x.invalid/>", f"javascript:{RAN}", "__proto__",
+    "<meta http-equiv=refresh content='0;url=https://x.invalid/'>", "<link rel=stylesheet href=https://x.invalid/a.css>",
+    f"&lt;script&gt;{RAN}", f"\\u003cscript>{RAN}</script>", "\u202eKCAB\u2066a\u200b\u061c", "A" * 3000,
+    "/".join(60 * ["x" * 30]),
+    "<form action=https://x.invalid/><button>", "<!--", "</script></body></html>", "url(https://x.invalid/x.png)",
+]  # fmt: skip
+"""Names, some of which would run a script or fetch a file if they were no words."""
 # Runs before the page: records errors
 WATCH = """
 const wrong = [];

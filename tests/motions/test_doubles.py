@@ -101,6 +101,7 @@ def test_a_copy_with_a_suffix_that_nobody_knows_is_no_unusable_file(tmp_path):
     copies = dict.fromkeys(("x.90", "more.zip/x.91", "x.92.gz"), "a copy of x.txt")
     why = "a copy of z.AT2, which is used; write use = true in motions.toml to use this one"
     assert left_out(found) == {**copies, "z.90": why}
+    assert {file.of for file in found.left_out} == {"x.txt", "z.AT2"}
     assert [file.source for file in found.unusable] == ["y.90"]
 
 

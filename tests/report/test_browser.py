@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-from browser import browse, needs_chromium, printed
+from browser import HOSTILE, browse, needs_chromium, printed
 from check_samples import verdict
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, write_results
 
@@ -15,19 +15,6 @@ from rockbatch.pier import Pier
 from rockbatch.reporting import write_comparison, write_report
 
 pytestmark = needs_chromium
-
-
-RAN = "window.ran = 1"
-HOSTILE = [
-    f"<script>{RAN};alert(1)</script>", f'"><img src=x onerror="{RAN}">', f"</title><script>{RAN}</script>",
-    f"<svg/onload='{RAN}'>",
-    f"</style><style>body {{ display: none }}</style>--><script>{RAN}</script>", f"' onmouseover='{RAN}' x='", "]]>${1}{{7*7}}",
-    f'<iframe src="javascript:parent.{RAN}"></iframe>', "<base href=https://x.invalid/>", f"javascript:{RAN}", "__proto__",
-    "<meta http-equiv=refresh content='0;url=https://x.invalid/'>", "<link rel=stylesheet href=https://x.invalid/a.css>",
-    f"&lt;script&gt;{RAN}", f"\\u003cscript>{RAN}</script>", "\u202eKCAB\u2066a\u200b\u061c", "A" * 3000,
-    "/".join(60 * ["x" * 30]),
-    "<form action=https://x.invalid/><button>", "<!--", "</script></body></html>", "url(https://x.invalid/x.png)",
-]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
