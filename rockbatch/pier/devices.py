@@ -1,6 +1,7 @@
 """What all devices between a pier and the ground share: where they are checked, and their values in kN."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -41,7 +42,7 @@ class Doubt(NamedTuple):
     meaning: str
 
 
-class Device(InNotebook):
+class Device(InNotebook, ABC):
     """A device between the pier and the ground; each class says what is wrong about it, and what is odd under a pier."""
 
     what: ClassVar[str]
@@ -52,9 +53,9 @@ class Device(InNotebook):
     def __post_init__(self) -> None:
         refuse([f"{self.what}: {problem}" for problem in self._wrong()])
 
+    @abstractmethod
     def _measured(self) -> Sequence[str]:
         """Return its fields with numbers that count."""
-        raise NotImplementedError
 
     def _wrong(self) -> list[str]:
         """Return what is impossible about it under any pier: one sentence each."""
@@ -64,9 +65,9 @@ class Device(InNotebook):
             for problem in BOUNDS[name].problems(name.replace("lam", "lambda"), getattr(self, name))
         ]
 
+    @abstractmethod
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
         """Yield what is odd about it under ``pier``, confirmed or not."""
-        raise NotImplementedError
 
     def _usual_under(self, pier: Pier) -> Self:
         """Return it, made from values in kN under ``pier``; raise ``InputError`` if one is unusual and not confirmed."""
