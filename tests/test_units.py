@@ -26,7 +26,7 @@ def test_every_spelling_of_a_unit_has_its_factor(spellings, factor):
 
 @pytest.mark.parametrize("unit", ["m/s", "cm", "counts", "V", "", "m/s3", "nm/s"])
 def test_what_is_no_acceleration_is_refused_with_the_units_to_write(unit):
-    with pytest.raises(ValueError, match="write one of g, g/10, m/s2"):
+    with pytest.raises(ValueError, match="write one of g, g/10, mg, m/s2"):
         acceleration_factor(unit)
 
 

@@ -15,6 +15,7 @@ from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.likeness import correlation
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.plausible import FARTHEST_MEAN
+from rockbatch.motions.stationxml import Inventories
 
 pytestmark = needs_records
 
@@ -41,7 +42,8 @@ def described() -> list:
 @cache
 def components(path) -> list[Component]:
     options = STATED.get(path.suffix.lower(), ReadOptions())
-    readings = read_record(RecordFile(path, path.name, path.read_bytes(), options, G))
+    inventories = Inventories([(xml, xml.name, "") for xml in path.parent.glob("*.xml")])
+    readings = read_record(RecordFile(path, path.name, path.read_bytes(), options, G, inventories))
     assert all(isinstance(reading, Component) for reading in readings)
     return [corrected(reading, Offset()) for reading in readings]
 

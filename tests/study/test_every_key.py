@@ -102,6 +102,13 @@ def verdicts(tables):
     return [vars(verdict) for verdict in judge(of_study.checks, peaks, entries, count=of_study.count)]
 
 
+def verdicts_in_folder(tables):
+    """Return the verdicts that a folder of results has, which knows the events of its records."""
+    folder = Path(tempfile.mkdtemp())
+    rb.run(rb.Study.from_dict(tables), folder, jobs=1, progress=False)
+    return rb.check(folder)["verdict"].tolist()
+
+
 @functools.cache
 def records(kind):
     """Return a folder with two stations of three components, or with one file of text: a column, a table, or wrapped lines."""
@@ -118,8 +125,12 @@ def records(kind):
             for path in sorted(folder.iterdir())
         ]
         (folder / "motions.toml").write_text("".join(entries), encoding="utf-8")
+    elif kind == "one event":
+        for i, name in enumerate("ABC"):
+            write_at2(folder, f"RSN{i}_{name}_000.AT2", 0.3 * series[i], title=f"Made-up, 1/17/1994, {name}, 000")
     elif kind == "counts":
-        write_mseed(folder / "all.mseed", trace("HNE"), trace("HNN"), trace("HNZ"))
+        channels = zip(("HNE", "HNN", "HNZ"), series, strict=False)
+        write_mseed(folder / "all.mseed", *(trace(code, (1e6 * one).astype("int32")) for code, one in channels))
     elif kind == "column":
         (folder / "x.txt").write_text("".join(f"{value:.6e}\n" for value in series[0]), encoding="utf-8")
     elif kind == "table":
@@ -313,6 +324,7 @@ CHECKED = study(suite={}, check=[CHECK]) | TWO
 SOFT = {"name": "r", "base": "elastic", "beta": 40.0}
 BOTH_AXES = recorded(axis_deg=30.0) | {"case": [ROCK | {"other_width_m": 5.0}], "suite": {}}
 SHAKEN = recorded(vertical=True, scale=10.0)
+ONE_EVENT = recorded("one event") | {"check": [CHECK | {"statistic": "en1998-2"}], "suite": {}}
 TINY = {"motions": {"pulse": [SINE | {"period_s": 0.4, "duration_s": 0.4}]}}
 YIELDING = study(case=SOFT | {"base": "yielding", "eta": 2.5, "spring": "bouc-wen"}) | TINY
 BENDING = study(case=ROCK | {"shaft": "elastic"}) | TINY | {"pier": PIERS["deck"] | {"flexural_period_s": 0.5}}
@@ -414,12 +426,14 @@ USES: dict[str, dict[str, Use]] = {
         **uses(study(case=SOFT, check=[STIFF]), ("check", 0), {"at_least": 2e5}, verdicts),
         **uses(BOTH_AXES | {"check": [CHECK]}, ("check", 0), {"both_axes": "srss"}, verdicts),
         **uses(study(check=[CHECK]), ("check", 0), {"other_law": True}, is_taken),
+        **uses(ONE_EVENT, ("check", 0), {"per_event": 2}, verdicts_in_folder),
         **confirms(study(check=[CHECK]), ("check", 0), at_most=5.0),
     },
     "[suite]": {
         **uses(CHECKED, ("suite",), {"checks": checks_file()}, verdicts),
         **uses(CHECKED, ("suite",), {"count": "component"}, verdicts),
         **uses(BOTH_AXES | {"check": [CHECK]}, ("suite",), {"both_axes": "srss"}, verdicts),
+        **uses(ONE_EVENT, ("suite",), {"per_event": 2}, verdicts_in_folder),
     },
     "[[motions.sequence]]": {
         **uses(IN_SEQUENCE, ("motions", "sequence", 0), {
@@ -439,9 +453,8 @@ USES: dict[str, dict[str, Use]] = {
         }, motions),
         **uses(recorded(offset="pre-event", offset_window_s=[0.0, 1.0]), ("motions",), {"offset_window_s": [0.0, 2.0]}, motions),
         **uses(study() | {"motions": {"pulse": [SINE]}}, ("motions",), {"scale": 1.5, "polarity": "-", "still_s": 5.0}, rows),
-        **uses(recorded("column", unit="g", dt=0.01, role="horizontal"), ("motions",), {
-            "unit": "cm/s2", "dt": 0.02, "role": "vertical",
-        }, motions),
+        **uses(recorded("column", unit="g", dt=0.01, role="horizontal"), ("motions",), {"unit": "cm/s2", "dt": 0.02}, motions),
+        **uses(recorded("column", unit="g", dt=0.01), ("motions",), {"role": "horizontal"}, motions),
         **uses(recorded("table", unit="g", columns=["time", "000", "090", "up"]), ("motions",), {
             "columns": ["time", "000", "-", "up"],
         }, motions),

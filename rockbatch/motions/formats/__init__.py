@@ -51,6 +51,7 @@ _FOREIGN = {  # first bytes of files that hold records, but are not read
     b"MATLAB 5.0 MAT-file": "a MATLAB file",
     b"GSE2 ": "GSE2",
 }
+_LOCATION = 2  # characters of a location code
 _TEXT = ".txt .csv .dat .bbp .acc .sgs .tsv .inp"
 _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time(s) NS(cm/s2) UD(cm/s2)"
 
@@ -147,17 +148,25 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
 def with_name(component: Component, name: str, orientation: Orientation | None) -> Component:
     """Return the only component of a file with what the file's name states of its direction, instead of what was said of that.
 
-    Digits that the station's name ends in are no azimuth.
+    Digits that the station's name ends in are no azimuth, nor are those of a location code.
     """
     statements = tuple(s for s in component.statements if s.kind is not Kind.NAME)
-    station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)
-    if orientation and not (orientation.label.isdigit() and station.endswith(orientation.label)):
+    if orientation and not _is_of_sensor(orientation.label, component):
         weak = is_place_or_direction(orientation.label) or len(Path(name).stem) == 1
         statements += (Statement(Kind.NAME, f"its file is called {shown(name)}", orientation, weak=weak),)
     if statements == component.statements:
         return component
     orientation = settled(statements, component.orientation.label)
     return replace(component, statements=statements, orientation=orientation)
+
+
+def _is_of_sensor(label: str, component: Component) -> bool:
+    """Return whether the digits of a file's name are those of its station or location, which beside a channel has two."""
+    if not label.isdigit():
+        return False
+    station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)
+    has_channel = any(statement.kind is Kind.CODE for statement in component.statements)
+    return station.endswith(label) or label == component.sensor.location or (has_channel and len(label) == _LOCATION)
 
 
 def usable(reading: Component | Unusable) -> Component | Unusable:
