@@ -417,6 +417,12 @@ class TwoSprings:
             else:
                 self._change(i, self._branch(i))
             return
+        if self.e is not None and self.rate(i, y) > 0.0:  # after a hop too low for the search: the bounces are over
+            self.out.impacts += 1
+            self._note(t, "impact", i)
+            self._stop(i)
+            self._settle(t, i, ah, av)
+            return
         both = (
             self.mode[other] == "free"
             and self.pivot(other, y) - self.rest[other] < 1e-13 * self.dy
@@ -472,6 +478,13 @@ class TwoSprings:
         lever = self.lever(self.mode, y)[0] if self.finite else full
         self.constraint += energy(lever) - energy(full)
 
+    def _stop(self, i: int) -> None:
+        """Take its velocity from a pivot; the other one keeps its own."""
+        y, rate = self.y, self.rate(i, self.y)
+        arm, other = self.arm(i, y), self.arm(1 - i, y)
+        y[OM] -= rate / (arm - other)
+        y[VD] += other * rate / (arm - other)
+
     def _branch(self, i: int) -> str:
         rising = bool(self.zeta) and self.rate(i, self.y) > 0.0
         return "load" if self.law == "bouc-wen" and not rising else "unload"
@@ -525,12 +538,18 @@ class TwoSprings:
                         out.status = "chatter"
                         return self._finish(t)
                 if out.t_flight is not None and not self.guided:
-                    out.status = "flight"
+                    out.status = "overturned" if self._falls() else "flight"
                     return self._finish(t)
                 if abs(self.y[TH]) > 0.5 * math.pi:
                     out.status = "overturned"
                     return self._finish(t)
         return self._finish(self.legs[-1][1])
+
+    def _falls(self) -> bool:
+        """Return whether a pier that leaves the ground turns outwards where no ground acceleration can turn it back."""
+        y, beyond = self.y, abs(self.y[TH]) - math.atan2(self.b, self.h)
+        strongest = max(abs(h0 + slope * (t - t0)) for t0, t1, h0, slope, *_ in self.legs for t in (t0, t1))
+        return beyond >= 0.0 and y[TH] * y[OM] > 0.0 and self.g * math.tan(beyond) >= strongest
 
     def _finish(self, t: float) -> ReferenceRun:
         y, out = self.y, self.out

@@ -5,6 +5,7 @@ The impulses are those that the jump of v̇ and θ̇ takes at the two pivots, by
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -26,12 +27,14 @@ from rockbatch.core.types import (
     IMPACT_RIGHT,
     LEFT,
     RIGHT,
+    SEPARATION_LEFT,
+    SEPARATION_RIGHT,
     Ground,
     Moment,
 )
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier
-from rockbatch.simulation import run_fixed, springs
+from rockbatch.simulation import Run, run_fixed, springs, written_run
 
 STILL = Ground(0.0, 0.0, 0.0, 0.0)
 IN_AIR, ON_LEFT, ON_RIGHT = (
@@ -164,36 +167,95 @@ def test_a_pivot_that_housners_e_lifts_goes_on_in_the_air(mirrored):
 # Whole runs
 
 
+TOLERANCE = 1e-7
+"""Of α: error of a peak."""
+
+EVENTS = {
+    SEPARATION_LEFT: ("separation", "left"),
+    SEPARATION_RIGHT: ("separation", "right"),
+    IMPACT_LEFT: ("impact", "left"),
+    IMPACT_RIGHT: ("impact", "right"),
+    IMPACT_BOTH: ("impact", "both"),
+}
+
+
+class Course(NamedTuple):
+    """What a run comes to: its peak over α, pivots in the air at its end, bounces of the left and of the right pivot."""
+
+    status: str
+    peak: float
+    afloat: int
+    bounces: tuple[int, int]
+
+    def same_peak(self, other):
+        """An overturning pier is stopped somewhere: where is a matter of definition."""
+        return self.status == other.status and (self.status == "overturned" or abs(self.peak - other.peak) <= TOLERANCE)
+
+    def same_bounces(self, other):
+        return (self.afloat, self.bounces) == (other.afloat, other.bounces)
+
+
+def course(run, events, pier, base):
+    """Of bounces those of more than 2·10⁻⁵/ω_v, hence of landings at more than about 10⁻⁵ g/ω_v: beside a supporting pivot that
+    rises and stops there is no last one, and rounding decides how many of the lower ones are told apart."""
+    left_at, bounces = {}, {"left": 0, "right": 0}
+    for t, kind, pivot in events:
+        for side in ("left", "right") if pivot == "both" else (pivot,):
+            if kind == "impact":
+                bounces[side] += t - left_at[side] > 2e-5 / (base.beta * pier.p)
+            if kind in ("impact", "separation"):
+                left_at[side] = t
+    return Course(run.status, run.theta_max / pier.alpha, run.separations - run.impacts, tuple(bounces.values()))
+
+
+def by_reference(pier, base, motion):
+    run = reference(pier, base, motion)
+    return course(run, run.events, pier, base)
+
+
+def in_steps(pier, base, motion, steps):
+    result, rows = written_run(Run(pier, base, motion), steps, 0.0, 5000, wait=False)
+    events = [(row.t, *EVENTS[row.kind]) for row in rows[: result.rows] if row.kind in EVENTS]
+    return course(run_fixed(pier, base, motion, steps, 0.0, wait=False), events, pier, base)
+
+
+def settled(pier, base, motion):
+    """The run in 256 steps to a sample, or in 1024 if four times as long ones change what it comes to."""
+    coarse, fine = in_steps(pier, base, motion, 64), in_steps(pier, base, motion, 256)
+    return fine if fine.same_peak(coarse) and fine.same_bounces(coarse) else in_steps(pier, base, motion, 1024)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "seeds",
     [
         pytest.param(range(60), id="common"),
+        pytest.param((158, 236, 249), id="endless bounces"),
         *(pytest.param(range(first, first + 40), marks=pytest.mark.thorough) for first in range(60, 300, 40)),
     ],
 )
 def test_random_piers_follow_the_reference(seeds):
-    """Hard cases with the steps of 64 to a sample: peak to 3e-7 α, status, and all counts. Where a bounce is endless (e < 0.1 and
-    a supporting pivot that rises and stops) the second solver's event search comes to no end, and the run is left out."""
-    compared, endless = 0, 0
+    """Hard cases: status, the peak to 1e-7 α, and all bounces above a rest velocity. Of a chaotic run nothing is held that the
+    reference itself changes if the motion is 1 + 10⁻⁹ times as strong."""
+    peaks = counts = chaotic = 0
     for seed in seeds:
         pier, base, motion = hard_case(seed, npts=200)
         if not has_usual_n(base) or (seed < 60 and not is_common(base)):
             continue
         base = replace(base, epsilon=0.0, impact="housner")
-        expected = reference(pier, base, motion)
-        outcome = run_fixed(pier, base, motion, 64, 0.0, wait=False)
-        if expected.status == "chatter":
-            assert pier.restitution < 0.1, seed
-            endless += 1
+        expected, again = by_reference(pier, base, motion), by_reference(pier, base, motion.scaled(1.0 + 1e-9))
+        if not again.same_peak(expected):
+            chaotic += 1
             continue
-        assert outcome.status == expected.status, seed
-        if outcome.status != "overturned":  # where it is stopped is a matter of definition
-            assert (outcome.impacts, outcome.separations) == (expected.impacts, expected.separations), seed
-            assert outcome.theta_max == pytest.approx(expected.theta_max, abs=3e-7 * pier.alpha), seed
-            compared += 1
-    assert compared >= 5
-    assert endless <= 2
+        found = settled(pier, base, motion)
+        assert found.same_peak(expected), (seed, found, expected)
+        peaks += expected.status != "overturned"
+        if again.same_bounces(expected):
+            assert found.same_bounces(expected), (seed, found, expected)
+            counts += 1
+    assert peaks >= min(len(seeds), 5)
+    assert counts >= peaks - 2
+    assert chaotic <= 1
 
 
 def bouncing(seed):
