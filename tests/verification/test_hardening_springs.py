@@ -118,7 +118,9 @@ def test_strong_springs_hardly_harden():
     """η = 10⁴: plasticity of order (1/η)⁵, so the peak is that of Bouc–Wen springs to rounding."""
     motion = pulse("sine", 1.5, 0.5, dt=0.01, end=4.0)
     peaks = [
-        run_fixed(TOWER, YieldingBase(50.0, 0.4, eta=1e4, spring=spring), motion, 8, 0.0, wait=False).theta_max
+        run_fixed(
+            TOWER, YieldingBase(50.0, 0.4, eta=1e4, spring=spring, confirm=("eta",)), motion, 8, 0.0, wait=False
+        ).theta_max
         for spring in ("bouc-wen", "hardening")
     ]
     assert peaks[1] == pytest.approx(peaks[0], abs=1e-8 * TOWER.alpha)
