@@ -85,7 +85,7 @@ def test_full_contact_rocking_frequency_is_the_closed_form():
     """Constant ü_g = a from rest: θ = −(h a/(I ω_r²)) (1 − cos ω_r t). RK4 at ω_v h = 0.03: 1e-6 of the amplitude."""
     omega_r = full_contact_frequency(FIG5, 50.0)
     assert omega_r == pytest.approx(8.67484279, abs=1e-8)
-    for pier in (FIG5, Pier(0.2, 0.02)):
+    for pier in (FIG5, Pier(0.2, 0.02, confirm=("p",))):
         assert rocking_frequency(pier, ElasticBase(50.0)) == pytest.approx(
             full_contact_frequency(pier, 50.0), rel=1e-12
         )
@@ -292,7 +292,7 @@ def test_a_large_exponent_approaches_the_elastic_plastic_spring(uncompiled):
 def test_springs_that_never_yield_are_elastic():
     """η = 10⁴, n = 5: plasticity of order (1/η)⁵, so the elastic result to rounding, events and all."""
     assert springs(FIG5, YieldingBase(50.0, eta=3.0)).law == BOUC_WEN
-    strong = run_fixed(FIG5, YieldingBase(50.0, 0.4, eta=1e4), SINE, 8, 0.0, wait=False)
+    strong = run_fixed(FIG5, YieldingBase(50.0, 0.4, eta=1e4, confirm=("eta",)), SINE, 8, 0.0, wait=False)
     elastic = run_fixed(FIG5, ElasticBase(50.0, 0.4), SINE, 8, 0.0, wait=False)
     assert strong.theta_max == pytest.approx(elastic.theta_max, abs=1e-8 * FIG5.alpha)
     assert (strong.impacts, strong.separations) == (elastic.impacts, elastic.separations)
