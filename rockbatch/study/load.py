@@ -18,7 +18,7 @@ from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
 from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import NO_SECTIONS, Damper, Pier, described, symmetric
+from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
@@ -29,7 +29,7 @@ from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.rule_choices import implausible, unmet
 from rockbatch.study.rule_files import SUITE, read_checks
 from rockbatch.study.rules import CHECK, Rule
-from rockbatch.study.spec import LEAST_STROKE_MM, LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
@@ -317,8 +317,6 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     if not output.forces:
         _complain_without_forces(file)
     along = along_the_axis(cases)
-    for key, problem in _idle(output, along, motion_spec.recorded):
-        file.complain(("output", key), f"[output]: {key}: {problem}; leave it out")
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
     file.finish()
     return Study(
@@ -400,20 +398,6 @@ def _complain_without_forces(file: TomlFile) -> None:
         for key, problem in _OF_FORCES.items():
             if key in table.data:
                 table.complain(f"{key}: {problem}, or leave it out", key)
-
-
-def _idle(output: Output, cases: Sequence[Case], recorded: bool) -> Iterator[tuple[str, str]]:
-    """Yield each key of [output] that changes nothing in these cases, if there are any, and why."""
-    if not cases:
-        return
-    if output.devices_work and not _brings("devices_work", cases):
-        yield "devices_work", "no case has a damper or a tendon"
-    elif output.least_stroke_mm != LEAST_STROKE_MM and Damper.what not in _kinds(cases):
-        yield "least_stroke_mm", "no case has a damper"
-    if not (output.both_laws or any(case.base.ratchets for case in cases)):
-        yield "both_laws", "no case has Bouc–Wen springs, which alone are run by another law, too"
-    if output.sa_pairs and not recorded:
-        yield "sa_pairs", "pulses are no pairs of components"
 
 
 def _brings(key: str, cases: Sequence[Case]) -> bool:

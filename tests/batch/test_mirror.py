@@ -193,16 +193,6 @@ def test_statistics_checks_and_the_report_count_mirror_images_once(study, tmp_pa
 
 
 @pytest.mark.usefixtures("no_report")
-def test_a_check_of_the_reversed_direction_is_one_of_the_mirror_image_which_has_its_history(study, tmp_path, capsys):
-    path = study()
-    path.write_text(path.read_text(encoding="utf-8") + 'polarity = "-"\n', encoding="utf-8")
-    assert main(["run", str(path), "--out", str(tmp_path / "out")]) == 1
-    verdicts = pd.read_csv(tmp_path / "out" / "checks.csv")
-    assert (verdicts["records"] == 2).all()
-    assert (verdicts["verdict"] == "fail").all()
-    assert len(rb.open_results(tmp_path / "out").responses) == ROWS
-
-
 def test_analyses_simulate_one_polarity_and_say_so(study, tmp_path, capsys):
     path = study()
     text = path.read_text(encoding="utf-8")

@@ -389,15 +389,12 @@ def test_a_median_says_nothing_of_the_records_beyond_it_unless_a_check_says_how_
     assert with_count(table, median, demand=status, at_most=0) == ["pass", "fail"]
     other = "failed" if status == "overturned" else "overturned"
     assert with_count(table, median, demand=other)[0] == "not decided"
-    assert with_count(table, median, demand=status, polarity=None, scale=(1.0,)) == ["pass", "pass"]
+    assert with_count(table, median, demand=status, scale=(1.0,)) == ["pass", "pass"]
 
 
-def test_a_check_of_other_cases_scales_or_polarities_says_nothing_of_this_one():
+def test_a_check_of_other_cases_or_scales_says_nothing_of_this_one():
     median = Rule("median", "theta_max_over_alpha", 0.5, statistic="median")
     fallen = runs([0.1, 0.2, 0.3], status=["ok", "ok", "overturned"])
-    both = pd.concat([runs([0.1, 0.2, 0.3], polarity="+"), fallen.assign(polarity="-")])
-    assert with_count(both, median, polarity="-") == ["pass", "pass"]
-    assert with_count(both, median, polarity="+") == ["not decided", "not decided"]
     scales = pd.concat([runs([0.1, 0.2, 0.3]), fallen.assign(scale=2.0)])
     assert with_count(scales, median, scale=(2.0,)) == ["pass", "pass", "pass"]
     assert with_count(scales, median, scale=(1.0,)) == ["pass", "pass", "not decided"]

@@ -536,12 +536,12 @@ def test_a_run_on_springs_begins_with_nothing_read_and_its_patience_behind_the_q
 ):
     """A record of 101 samples, read from 4 behind it, with a patience of 80."""
     m, base = springs(FIG5, ElasticBase(50.0)), ElasticBase(50.0)
-    run = SimpleNamespace(read_after=4.0, patience=80.0, read_wait=wait, gravity=9.81, prestress=0.5)
+    run = SimpleNamespace(dt=0.01, read_after=4.0, patience=80.0, read_wait=wait, gravity=9.81, prestress=0.5)
     values = {"clock__npts": 101.0, "clock__samples": samples}
     _, waiting = uncompiled(waiting_after, ("springs.ending", "set_deadline"), values, m, run)
     nothing = dict.fromkeys(("read_left", "read_right", "drift_left", "drift_right"), math.nan)
     nothing |= dict.fromkeys(
-        ("last_drift_left", "last_drift_right", "stored", "further_right", "further_left", "growth"), 0.0
+        ("last_drift_left", "last_drift_right", "stored", "further_right", "further_left", "further_growth"), 0.0
     )
     expected = nothing | {
         "earliest": 104.0, "patience": 80.0, "read_wait": wait, "longest": longest, "read_by": read_by, "load": 10.31,
@@ -588,7 +588,7 @@ def test_a_base_is_foreseen_to_tilt_on_as_between_its_readings(spring, uncompile
         exponent = 5.0 * h * amplified * sinks / b**2 if ratchets else 0.0
         more = math.expm1(exponent) / exponent if exponent > 0.0 else 1.0
         expected = more * max(0.0, turns.max()), more * max(0.0, -turns.min()), math.expm1(exponent)
-        assert [waiting[name] for name in ("further_right", "further_left", "growth")] == pytest.approx(
+        assert [waiting[name] for name in ("further_right", "further_left", "further_growth")] == pytest.approx(
             expected, rel=1e-8
         )
         seen |= {(expected[0] > 0.0, expected[1] > 0.0)}

@@ -488,7 +488,7 @@ RATES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("damping", [0.02, 1.5])
+@pytest.mark.parametrize("damping", [0.02, 1.0])
 def test_steps_respect_how_fast_a_shaft_vibrates_or_creeps_beside_a_rotation(damping):
     """The greatest eigenvalue of rotation and deflection, which share the inertia of their coupling."""
     parts = [Part(100.0, 10.0, 3500.0, 20.0), Part(50.0, 21.0, 50.0, 0.0)]

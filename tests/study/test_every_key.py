@@ -804,22 +804,6 @@ def test_what_pulses_and_still_ground_have_a_use_for_stays_beside_them():
         ground_motions(rb.Study.from_dict(study(motions={"still_s": 5.0, "unit": "g"})))
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "without", "beside"),
-    [
-        ("devices_work", True, ROCK, ROCK | {"damper": [HYSTERETIC]}),
-        (
-            "both_laws",
-            False,
-            SOFT | {"base": "yielding", "eta": 2.5, "spring": "epp"},
-            SOFT | {"base": "yielding", "eta": 2.5},
-        ),
-    ],
-)
-def test_an_output_of_what_no_case_has_is_refused(key, value, without, beside):
-    assert [is_taken(study(case=case, output={key: value})) for case in (without, beside)] == [[False], [True]]
-
-
 def test_a_check_of_devices_that_no_case_has_asks_for_no_output_of_theirs():
     """Following the one message would lead to the other."""
     travel = {"name": "travel", "demand": "damper_travel_m", "at_most": 3.0, "reason": "agreed"}

@@ -311,7 +311,7 @@ def test_finite_kinematics_keep_the_angular_momentum_of_an_impact_only_upright(a
     x, y = b * math.cos(theta) + h * math.sin(theta), h * math.cos(theta) - b * math.sin(theta)
     omega = -1.0
     v_rate = (b * math.cos(theta) - h * math.sin(theta)) * omega  # the right pivot stays
-    after = land(m, State(0.0, theta, v_rate, omega, 0.0, -1.0), LEFT)
+    after, _ = land(m, State(0.0, theta, v_rate, omega, 0.0, -1.0), LEFT, Contact(0.0, 1.0, 0.0, 0.0, 0.0))
     one, both = h * math.cos(theta) + b * math.sin(theta), h * math.cos(theta)
     before = (m.inertia + y * one) * omega - x * v_rate
     kept = (m.inertia + y * both) * after.omega - x * after.v_rate

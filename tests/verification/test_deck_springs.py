@@ -49,7 +49,7 @@ def test_the_energy_of_a_blow_is_that_of_closed_forms(e, gap):
     alpha, inertia = FIG5.alpha, FIG5.inertia_about_pivot
     spring = DeckSpring(0.3, gap, e, "right")
     omega = 0.6 * FIG5.p * math.sqrt(2.0 * (1.0 - math.cos(alpha)))
-    rows, use = thrown(FIG5, RigidBase(0.05, (spring,)), omega)
+    rows, use = thrown(FIG5, RigidBase(0.05, (spring,), confirm=("restitution",)), omega)
     upright = np.flatnonzero(rows.kind > 0.0)[0] - 1
     theta = rows.theta[: upright + 1].max()
     deflection = HEIGHT * math.sin(theta) + FIG5.half_width * (1.0 - math.cos(theta)) - gap

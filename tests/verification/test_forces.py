@@ -633,13 +633,17 @@ def test_a_run_says_where_it_would_slide():
     assert float(note.split()[3]) == pytest.approx(first, abs=0.011)
     assert f"the friction demand reaches {least:.3g}, the interface has 0.25; sliding is not followed" in note
     assert outcome_of(PIER, rb.RigidBase(friction=2 * least), motion).note == ""
-    hops = outcome_of(PIER, replace(BASES["elastic"], friction=5.0), motion)
+    hops = outcome_of(PIER, replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion)
     assert hops.forces.friction_demand < 5.0
     carried = f"keys have to carry a base shear of up to {hops.forces.key_shear / G:.3g} of the weight"
     assert hops.note == f"where the normal force is below 0.1 of the weight, friction holds little: {carried}"
-    weighed = outcome_of(replace(PIER, mass_t=3000.0), replace(BASES["elastic"], friction=5.0), motion)
+    weighed = outcome_of(
+        replace(PIER, mass_t=3000.0), replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion
+    )
     assert weighed.note == f"{hops.note}, {3000.0 * hops.forces.key_shear:,.0f} kN"
-    hard = outcome_of(PIER, rb.RigidBase(restitution=0.1, friction=2.0), replace(motion, vertical=None))
+    hard = outcome_of(
+        PIER, rb.RigidBase(restitution=0.1, friction=2.0, confirm=("restitution",)), replace(motion, vertical=None)
+    )
     assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
     assert "would slide at an impact" in hard.note
 

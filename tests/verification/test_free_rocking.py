@@ -21,7 +21,9 @@ DT = 0.005
 def let_go(alpha: float, start: float, e: float, duration: float):
     """Run and history rows of a block with p = 2 rad/s let go at ``start`` α, for ``duration``/p [s]."""
     still = np.zeros((round(duration / P / DT) + 1, 4))
-    return run_block(block(Pier(alpha, P), RigidBase(e)), start * alpha, 0.0, still, DT, 4, 100_000)
+    return run_block(
+        block(Pier(alpha, P), RigidBase(e, confirm=("restitution",))), start * alpha, 0.0, still, DT, 4, 100_000
+    )
 
 
 def time_to_rest(start: float, e: float) -> float:

@@ -303,7 +303,9 @@ def test_a_hundred_thousand_impacts_on_a_rigid_base_end_when_their_series_does()
     """
     restitution, omega = 0.99995, 1e-4
     expected = 2.0 * omega / (FIG5.p**2 * math.sin(FIG5.alpha) * (1.0 - restitution))
-    run, _ = run_block(block(FIG5, RigidBase(restitution)), 0.0, omega, np.zeros((3001, 4)), 0.01, 2)
+    run, _ = run_block(
+        block(FIG5, RigidBase(restitution, confirm=("restitution",))), 0.0, omega, np.zeros((3001, 4)), 0.01, 2
+    )
     assert run.impacts > 100_000
     assert run.t_rest == pytest.approx(expected, rel=1e-6)
 

@@ -143,7 +143,7 @@ def test_a_frame_has_the_published_frequency_and_restitution(ratio, slower, e):
 
 def test_a_frame_under_a_deck_that_outweighs_its_columns_is_the_published_limit():
     """γ → ∞: √(2/3) and cos 2α; what is left is of order 1/γ."""
-    frame = Pier.frame(Pier(0.15, 1.0, mass_t=1.0), 2, 2e9, confirm=("deck_mass_t",))
+    frame = Pier.frame(Pier(0.15, 1.0, mass_t=1.0, confirm=("mass_t",)), 2, 2e9, confirm=("deck_mass_t",))
     assert frame.p == pytest.approx(math.sqrt(2 / 3), abs=1e-9)
     assert frame.restitution == pytest.approx(math.cos(0.3), abs=1e-9)
 
@@ -235,9 +235,9 @@ def test_stiffness_and_strength_become_beta_and_eta_and_back():
         (lambda: Pier.of_parts(4.0, [(1.0, 10.0)]), "they have no rotary inertia about their common centre"),
         (lambda: Pier.of_parts(4.0, [(1.0, 0.0, 2.0)]), "they have no height"),
         (lambda: Pier.with_deck(4.0, 30.0, 2000.0, -1.0), "deck_mass_t = -1: must be a number above 0"),
-        (lambda: Pier.frame(Pier(0.1, 1.0, mass_t=1.0), 1, 1.0), "columns = 1: must be a whole number, 2 or above"),
+        (lambda: Pier.frame(Pier(0.1, 1.0, mass_t=100.0), 1, 100.0), "columns = 1: must be a whole number, 2 or above"),
         (lambda: Pier.frame(Pier(0.1, 1.0), 2, 1.0), "mass_t is missing, of one column"),
-        (lambda: Pier.frame(Pier(0.1, 1.0, 4.0, mass_t=1.0), 2, 1.0), "mu = 4: the columns of a frame are solid"),
+        (lambda: Pier.frame(Pier(0.1, 1.0, 4.0, mass_t=100.0), 2, 100.0), "mu = 4: the columns of a frame are solid"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_name(make, said):

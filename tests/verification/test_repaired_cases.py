@@ -58,7 +58,7 @@ def test_a_lift_off_by_a_hair_is_one_hop(excess, restitution):
     before, fall = excess / (0.4 + excess) * dt, most / excess * (0.1 + excess) / dt
     omega, theta = 0.5 * most * before, most * before**2 / 6
     t = (most + np.sqrt(most**2 + 2 * fall * omega)) / fall
-    found = run_fixed(pier, RigidBase(restitution), motion, 1)
+    found = run_fixed(pier, RigidBase(restitution, confirm=("restitution",)), motion, 1)
     assert (found.status, found.impacts, found.separations) == ("ok", 1, 1)
     assert found.theta_max == pytest.approx(theta + omega * t + most * t**2 / 2 - fall * t**3 / 6, rel=1e-6)
 

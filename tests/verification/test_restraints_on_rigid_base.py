@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import rockbatch as rb
+from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.core import types
 from rockbatch.core.block import lanes
@@ -34,7 +35,7 @@ GOES_ON = np.zeros(1, np.uint8)
 
 
 def base(*restraints, restitution=None):
-    return RigidBase(restitution, restraints)
+    return RigidBase(restitution, restraints, confirm=("restitution",))
 
 
 def extremes(theta):
@@ -511,12 +512,19 @@ def test_without_force_the_block_is_that_of_the_lanes():
 
 
 def test_impossible_devices_are_refused():
-    wrong = [
-        Damper("friction", f=-0.1), Damper("hysteretic", f=0.1), Damper("viscous", nu=1.0, exponent=5.0), Damper("rubber"),
-        Tendon(psi=-1.0), Tendon(psi=0.5, strength=0.4), Tendon(at="middle"), Damper("friction", f=0.1, at=99.0),
-    ]  # fmt: skip
-    for each in wrong:
-        assert len(problems(FIG5, base(each))) == 1, each
+    for kind, values in (
+        (Damper, {"kind": "friction", "f": -0.1}),
+        (Damper, {"kind": "hysteretic", "f": 0.1}),
+        (Damper, {"kind": "viscous", "nu": 1.0, "exponent": 5.0}),
+        (Damper, {"kind": "rubber"}),
+        (Tendon, {"psi": -1.0}),
+        (Tendon, {"psi": 0.5, "strength": 0.4}),
+        (Tendon, {"at": "middle"}),
+    ):
+        with pytest.raises(InputError) as caught:
+            kind(**values)
+        assert len(caught.value.problems) == 1, values
+    assert len(problems(FIG5, base(Damper("friction", f=0.1, at=99.0)))) == 1
     frame = Pier.frame(replace(Pier.rectangle(1.0, 5.0), mass_t=100.0), 2, 400.0)
     for each in (Damper("viscous", nu=0.1, at="deck"), DeckSpring(lam=1.0)):
         assert "columns" in problems(frame, base(each))[0]

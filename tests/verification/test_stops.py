@@ -35,7 +35,7 @@ def test_the_energy_of_a_blow_is_that_of_closed_forms(e, lam):
     stop = Stop(0.04, lam, e)
     k = stiffness(FIG5, stop.lam)
     omega = 0.6 * FIG5.p * math.sqrt(2.0 * (1.0 - math.cos(alpha)))
-    rows, use = thrown(FIG5, RigidBase(0.05, (stop,)), omega)  # no other blow follows
+    rows, use = thrown(FIG5, RigidBase(0.05, (stop,), confirm=("restitution",)), omega)  # no other blow follows
     upright = np.flatnonzero(rows.kind > 0.0)[0] - 1  # again, before its impact
     peak = np.argmax(rows.theta[:upright])
     theta = rows.theta[peak]

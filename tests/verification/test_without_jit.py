@@ -88,7 +88,7 @@ def parts() -> dict[str, Any]:
     for speed in (-sunk, sunk):
         waiting.last_drift_left[0] = waiting.last_drift_right[0] = 0.5 * speed
         foresee(lanes, 0, m)
-        growths.append(float(waiting.growth[0]))
+        growths.append(float(waiting.further_growth[0]))
     found["growth of a lean, its base sinking or rising"] = growths
     return found
 

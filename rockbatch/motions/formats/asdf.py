@@ -44,7 +44,7 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
             stations = [station for name in waveforms if (station := _group(waveforms, name)) is not None]
             channels = [channel for station in stations for channel in _channels(station)]
             traces = [trace for station in stations for trace in _traces(station)]
-    except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
+    except (OSError, KeyError, OverflowError, RuntimeError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"not an HDF5 file that can be read ({type(error).__name__}); fetch it again") from None

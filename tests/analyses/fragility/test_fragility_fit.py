@@ -112,11 +112,11 @@ def test_the_band_leaves_one_half_where_the_interval_of_the_median_ends():
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_about_as_often_as_they_say():
-    """Suites of 30 records, by IDA up to a level that a third of them survives: 95 % within 5 % is 2.3 deviations of 100."""
+    """Suites of 30 records, by IDA up to a level that a sixth of them survives: 95 % within 5 % is 2.3 deviations of 100."""
     rng = np.random.default_rng(4)
     held = np.zeros(2)
     for _ in range(100):
-        found = fitted(bracketed(np.exp(rng.normal(0.0, 0.5, 30)), 0.01, limit=1.24))
+        found = fitted(bracketed(np.exp(rng.normal(0.0, 0.5, 30)), 0.01, limit=1.6))
         held += [
             found.median_interval[0] <= 1.0 <= found.median_interval[1],
             found.dispersion_interval[0] <= 0.5 <= found.dispersion_interval[1],
@@ -134,7 +134,7 @@ def test_the_same_records_at_every_level_keep_the_curve_and_do_not_count_as_many
         beyond = np.exp(rng.normal(0.0, 0.5, (30, 1))) <= levels
         fresh = fitted(fresh_records(levels, np.full(12, 30), beyond.sum(axis=0)))
         same = fitted(Capacities.of_same_records(levels, ~beyond, beyond))
-        assert (same.median, same.dispersion) == (fresh.median, fresh.dispersion)
+        assert (same.median, same.most_likely_dispersion) == (fresh.median, fresh.most_likely_dispersion)
         held += [one.median_interval[0] <= 1.0 <= one.median_interval[1] for one in (fresh, same)]
     assert held[0] < 75
     assert held[1] == pytest.approx(95, abs=5)
