@@ -313,7 +313,7 @@ p = 0.5
         "to the study file; did you mean study.toml?",
     ]
     assert [p for p in problems if p.startswith("11:")] == [
-        "11: [motions]: scale = 0: expected a number above 0; write for example scale = [1.0]",
+        '11: [motions]: scale = 0: expected a number above 0, or "list"; write for example scale = [1.0]',
         "11: [motions]: scale = 1.0: given twice; write it once",
     ]
     assert any(problem.startswith("23: [numerics]: tolerance and substeps are given") for problem in problems)
