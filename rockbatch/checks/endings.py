@@ -21,7 +21,7 @@ from rockbatch.study.rules import Rule
 
 
 class Ending(NamedTuple):
-    """What a record with such a run does, in the singular and the plural, and the event that a check on its number is about."""
+    """Verb phrases for a record that ends so, singular and plural, and the demand of a check on their number."""
 
     singular: str
     plural: str

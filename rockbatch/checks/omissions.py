@@ -1,4 +1,4 @@
-"""What a force leaves out: landings on ground that does not give, the modes of a shaft, its bending (THEORY.md, Forces)."""
+"""Omissions of a force: landings on rigid ground, the modes of a shaft, its bending (THEORY.md, Forces)."""
 
 from typing import NamedTuple
 

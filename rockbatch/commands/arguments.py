@@ -88,7 +88,7 @@ _ENGINE: Arguments = {
 """The engine that carries out the runs."""
 
 DISCARDING = ("--fresh",)
-"""Options that discard finished results: nobody is led to them by a suggestion or an abbreviation."""
+"""Options that discard finished results: never suggested, and never taken from an abbreviation."""
 
 _CSV = {
     "--csv": value(

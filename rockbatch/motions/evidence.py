@@ -1,4 +1,4 @@
-"""What states the direction of a component: angles, channel code, header, file name, or a person.
+"""Statements of the direction of a component: by angles, channel code, header, file name or the user.
 
 Readers collect it; ``directions.py`` judges it for a whole set.
 """

@@ -1,4 +1,4 @@
-"""What records share: their station, or their earthquake; intervals count these, as components of one are not independent."""
+"""Clusters of records, by station or by earthquake: intervals count clusters, since records of one are not independent."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
