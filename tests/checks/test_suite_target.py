@@ -101,6 +101,7 @@ def test_a_case_that_passes_at_a_scale_at_which_its_suite_is_too_low_is_not_gree
         ("rigid at 1.5", PASS, "passes 1 check"),
         ("rigid at 0.5", NOT_DECIDED, "not decided, under a suite that fails"),
     ]
+    assert [row.cells[0].verdict.verdict for row in card.rows] == [PASS, NOT_DECIDED]
 
 
 # The conditions of a code
