@@ -167,10 +167,14 @@ class Judge:
 
 
 def _failing_anew(names: list[str]) -> str:
-    """Return the first of these tests that fails in a process of its own."""
+    """Return the first of these tests that fails in a process of its own.
+
+    It writes no bytecode: Python would take that of an error for the next one's of the same second and length.
+    """
     process = subprocess.Popen(
         [sys.executable, "-m", "pytest", *OPTIONS, *names], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         stdin=subprocess.DEVNULL, text=True, errors="replace", start_new_session=True,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
     )  # fmt: skip
     try:
         output, _ = process.communicate(timeout=2 * LONGEST)
