@@ -28,8 +28,9 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.bases import OTHER_LAW, RATCHETING, fastest
+from rockbatch.pier.bases import OTHER_LAW, RATCHETING
 from rockbatch.pier.devices import doubt as pier_doubt
+from rockbatch.pier.frequencies import fastest
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.simulation import run_fixed
 from rockbatch.simulation.models import LAWS, springs

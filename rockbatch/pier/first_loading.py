@@ -7,8 +7,9 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.pier.bases import ElasticBase, YieldingBase, static_deflection
+from rockbatch.pier.bases import ElasticBase, YieldingBase
 from rockbatch.pier.block import Pier
+from rockbatch.pier.frequencies import static_deflection
 
 Array = npt.NDArray[np.float64]
 

@@ -21,9 +21,10 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
+from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
