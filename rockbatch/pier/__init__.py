@@ -3,13 +3,11 @@
 from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
 from rockbatch.pier.bases import WITH_EPSILON as WITH_EPSILON
-from rockbatch.pier.bases import WITH_EXPONENT as WITH_EXPONENT
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase
 from rockbatch.pier.bases import Flight as Flight
 from rockbatch.pier.bases import Kinematics as Kinematics
 from rockbatch.pier.bases import RigidBase as RigidBase
-from rockbatch.pier.bases import SpringLaw as SpringLaw
 from rockbatch.pier.bases import YieldingBase as YieldingBase
 from rockbatch.pier.bases import in_kilonewtons as in_kilonewtons
 from rockbatch.pier.bases import neglected as neglected
@@ -31,6 +29,9 @@ from rockbatch.pier.frequencies import tilt_over_residual as tilt_over_residual
 from rockbatch.pier.frequencies import vertical_frequency as vertical_frequency
 from rockbatch.pier.frequencies import yield_deflection as yield_deflection
 from rockbatch.pier.landing import landing_force as landing_force
+from rockbatch.pier.laws import LAWS as LAWS
+from rockbatch.pier.laws import WITH_EXPONENT as WITH_EXPONENT
+from rockbatch.pier.laws import SpringLaw as SpringLaw
 from rockbatch.pier.parts import Part as Part
 from rockbatch.pier.places import Place as Place
 from rockbatch.pier.places import offsets as offsets

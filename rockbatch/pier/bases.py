@@ -14,7 +14,9 @@ from rockbatch.common.errors import InputError, Superseded
 from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import LEAST, MOST, Bounds, Usual
 from rockbatch.pier.block import Pier
+from rockbatch.pier.first_loading import Curve, Straight
 from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
+from rockbatch.pier.laws import LAWS, Law, SpringLaw
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.sizes import refuse, unusual
@@ -34,24 +36,14 @@ FLIGHT_LIMIT_MM = 5.0
 
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
-SpringLaw = Literal["bouc-wen", "epp", "hardening"]
 Impact = Literal["landing", "housner"]
 Shaft = Literal["rigid", "elastic"]
-
-WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
-"""Laws whose first loading is Bouc–Wen's curve with the exponent n; the other has a sharp corner."""
-
-RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
-"""Laws with cyclic settlement (ratcheting): their springs settle a little with every cycle below their yield force."""
 
 WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 """Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
 
 ASKING_TENSION: tuple[Impact, ...] = ("housner",)
 """Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact by Housner's e)."""
-
-OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
-"""For each law that ratchets one that does not: the settlement lies between both (THEORY.md, Results of a run)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
 """Message about a support with both."""
@@ -86,7 +78,7 @@ BOUNDS = {
 """Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""
 
 WORDS: dict[str, tuple[str, ...]] = {
-    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw), "shaft": get_args(Shaft),
+    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": tuple(LAWS), "shaft": get_args(Shaft),
     "impact": get_args(Impact),
 }  # fmt: skip
 """Possible words of the fields of bases."""
@@ -180,7 +172,7 @@ class _Traits(InNotebook):
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """Return the same base with its springs by the other law (:data:`OTHER_LAW`); itself if it has none."""
+        """Return the same base with its springs by the other law if its own ratchets; else itself."""
         return self
 
 
@@ -324,6 +316,11 @@ class ElasticBase(_Traits):
         return 1.0
 
     @property
+    def first_loading(self) -> Curve:
+        """Return the curve of the springs' first loading, over the force and deflection by which they are measured."""
+        return Straight(math.inf)
+
+    @property
     def has_epsilon(self) -> bool:
         """Return whether ``epsilon`` applies: not to damped supports, nor to impacts by Housner's e."""
         return self.zeta is None and self.impact in WITH_EPSILON
@@ -392,18 +389,28 @@ class YieldingBase(ElasticBase):
         return self.eta
 
     @property
+    def law(self) -> Law:
+        """Return the law of these springs."""
+        return LAWS[self.spring]
+
+    @property
+    def first_loading(self) -> Curve:
+        """Return the curve of the springs' first loading."""
+        return self.law.first_loading(self.n)
+
+    @property
     def has_exponent(self) -> bool:
         """Return whether ``n`` applies to these springs."""
-        return self.spring in WITH_EXPONENT
+        return self.law.has_exponent
 
     @property
     def ratchets(self) -> bool:
         """Return whether these springs settle cyclically under vibration (ratcheting)."""
-        return self.spring in RATCHETING
+        return self.law.creep is not None
 
     def by_other_law(self) -> Self:
         """Return these springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves if they do not ratchet."""
-        return replace(self, spring=OTHER_LAW.get(self.spring, self.spring))
+        return self if self.law.creep is None else replace(self, spring=self.law.creep.other)
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""

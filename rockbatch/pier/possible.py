@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from rockbatch.common.units import rounded_up
 from rockbatch.pier.bases import LEAST_ETA, Base, ElasticBase, RigidBase, YieldingBase
 from rockbatch.pier.bending import problems as bending_problems
@@ -13,16 +15,16 @@ from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
 def least_beta(pier: Pier, base: Base) -> float:
     """Return β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
 
-    A Bouc–Wen or hardening spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the
-    factor r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
+    A spring under the weight, z = −1/η, or with tendons −(1 + ψ)/η, is softer where it is loaded than where it is unloaded, by
+    the factor r of its first loading, 1 − |z|ⁿ by Bouc–Wen; both together have 2r/(1 + r) of the elastic springs' stiffness in
     rotation.
     """
-    if not (isinstance(base, YieldingBase) and base.has_exponent and base.eta > 1 and base.n >= 1):
+    if not (isinstance(base, YieldingBase) and base.eta > 1 and base.n >= 1):
         return pier.least_beta
     carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
     if carried <= 1:
         return pier.least_beta
-    softer = -math.expm1(-base.n * math.log(carried))
+    softer = float(base.first_loading.tangent(np.array(1.0 / carried)))
     return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
 
 
@@ -37,9 +39,14 @@ def enough_eta(pier: Pier, base: Base) -> float:
     The inverse of :func:`least_beta` for a β above that of elastic springs; :func:`least_eta` for another.
     """
     least = least_eta(pier, base)
-    if isinstance(base, YieldingBase) and base.has_exponent and base.beta > pier.least_beta:
+    if isinstance(base, YieldingBase) and base.beta > pier.least_beta:
         excess = 2.0 * (base.beta / pier.least_beta) ** 2 - 1.0
-        least *= (1.0 - 1.0 / excess) ** (-1.0 / base.n)
+        low, high = 0.0, 1.0  # of z, between which the stiffness falls to 1/excess
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            stiff = float(base.first_loading.tangent(np.array(middle))) > 1.0 / excess
+            low, high = (middle, high) if stiff else (low, middle)
+        least /= high
     return least
 
 
