@@ -7,7 +7,6 @@ sheet, releases and the static state of a run all take it from here.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -21,23 +20,6 @@ SLOW = 0.99
 """zⁿ from which on the series of a Bouc–Wen curve takes too many terms."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-
-
-class Curve(Protocol):
-    """First loading of a spring."""
-
-    @property
-    def corner(self) -> bool:
-        """Return whether the curve is straight up to a sharp corner at F_y."""
-
-    def force(self, deflection: Array) -> Array:
-        """Return F/F_y at a ``deflection``/δ_y ≥ 0."""
-
-    def deflection(self, force: float) -> float:
-        """Return the deflection/δ_y under a ``force``/F_y < 1."""
-
-    def tangent(self, force: Array) -> Array:
-        """Return the tangent stiffness over the elastic one at a ``force``/F_y from 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +90,10 @@ class Smooth:
     def tangent(self, force: Array) -> Array:
         """Return the tangent stiffness of the spring without its brace over the elastic one."""
         return self.softening(1.0 - force)
+
+
+Curve = Straight | Smooth
+"""First loading of a spring."""
 
 
 @dataclass(frozen=True)

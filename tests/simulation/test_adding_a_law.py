@@ -71,7 +71,7 @@ print(json.dumps({
     "dissipated": outcome.dissipated_left + outcome.dissipated_right,
     "creeps": creeps({"parameters": base.parameters(pier)}),
     "other": base.by_other_law().spring,
-    "help": CASE.keys["spring"].meaning,
+    "help": CASE["spring"].words,
 }))
 """
 
