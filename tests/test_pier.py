@@ -12,6 +12,7 @@ from core_samples import FIG5
 from rockbatch.common.errors import InputError
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import (
+    LAWS,
     WITH_EXPONENT,
     Damper,
     DeckSpring,
@@ -28,11 +29,11 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
-from rockbatch.pier.bases import OTHER_LAW, RATCHETING, fastest
 from rockbatch.pier.devices import doubt as pier_doubt
+from rockbatch.pier.frequencies import fastest
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.simulation import run_fixed
-from rockbatch.simulation.models import LAWS, springs
+from rockbatch.simulation.models import CODES, springs
 
 
 @pytest.mark.parametrize(("p", "size"), [(1.0, 7.36), (0.35, 60.1)])
@@ -224,18 +225,16 @@ def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_t
     assert at(2.0 * FIG5.least_beta * FIG5.p) == pytest.approx(0.75, rel=1e-12)
 
 
-def test_every_spring_law_has_a_code_in_the_core_and_one_that_creeps_another_law_to_compare_with():
-    known = set(get_args(SpringLaw))
-    assert set(LAWS) == known
-    assert set(OTHER_LAW) == set(RATCHETING)
-    assert len(set(LAWS.values())) == len(known)
-    for spring in known:
+def test_every_law_stands_in_both_tables_and_one_that_creeps_names_one_that_does_not():
+    assert set(get_args(SpringLaw)) == set(LAWS) == set(CODES) - {"elastic"}
+    for spring, law in LAWS.items():
         base = YieldingBase(40.0, eta=3.0, spring=spring)
         other = base.by_other_law()
         assert not other.ratchets
-        assert base.ratchets == (other != base)
-        assert springs(Pier(0.13, 0.38), base).law == LAWS[spring]
-        assert base.has_exponent == (spring in WITH_EXPONENT)
+        assert base.ratchets == (other != base) == (law.creep is not None)
+        model = springs(Pier(0.13, 0.38), base)
+        assert (model.law, model.creep > 0.0) == (CODES[spring], base.ratchets)
+        assert base.has_exponent == law.has_exponent == (spring in WITH_EXPONENT)
 
 
 SQUARE = Pier.rectangle(6.0, 30.0, mass_t=1000.0)

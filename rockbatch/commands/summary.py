@@ -10,6 +10,7 @@ from rockbatch.checks.suite_target import NAMES
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
+from rockbatch.pier.laws import steady
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.results.rows import with_case
 from rockbatch.study import PIER_KEYS, Study
@@ -92,7 +93,9 @@ def failed_later(runs: "pd.DataFrame") -> str:
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = f'; {share} the springs ratchet on free vibration: take spring = "epp" or "hardening", or zeta of 0.2 or more'
+        advice = (
+            f"; {share} the springs ratchet on free vibration: take spring = {steady('or')}, or zeta of 0.2 or more"
+        )
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 

@@ -10,12 +10,14 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
-from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
+from rockbatch.pier.bases import Base, ElasticBase
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.free_rocking import FreeRocking, Swings
+from rockbatch.pier.frequencies import vertical_frequency
 from rockbatch.pier.places import symmetric
+from rockbatch.pier.possible import problems
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -28,6 +28,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.laws import steady
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
     Line,
@@ -61,7 +62,7 @@ _STATUS = {
     types.GROWING: (
         "failed",
         f"left alone after the record, {RATCHETS}: yielding springs ratchet on free vibration; "
-        'spring = "epp" and "hardening" do so least',
+        f"spring = {steady('and')} do so least",
     ),
 }
 

@@ -21,9 +21,11 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.pier.block import unlikely_mass
+from rockbatch.pier.laws import meanings
 from rockbatch.pier.plausibility import wrong_device
+from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
@@ -91,9 +93,7 @@ BASE_KEYS = {
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
-        'Law of the supports: "bouc-wen", smooth, as in the paper; "epp", elastic and then perfectly plastic; or '
-        '"hardening", loaded at first as "bouc-wen", and elastic below the greatest force borne so far.', many=True,
-        only=_YIELDS),
+        f"Law of the supports: {meanings()}.", many=True, only=_YIELDS),
     "n": Key(within(BOUNDS["n"]), "5",
         "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.", many=True,
         only=_YIELDS | {"spring": WITH_EXPONENT}),
