@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.omissions import open_landings
-from rockbatch.common.notes import CHAOTIC, OVERTURNS
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
@@ -86,7 +85,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
     status = runs.texts("status")
     counting = np.ones(len(runs), dtype=bool)
     if demand.event:
-        open_ = noted(runs, OVERTURNS) & (rule.demand == "overturned")
+        open_ = runs.facts("may_overturn") & (rule.demand == "overturned")
         if rule.demand != "failed":  # what a run that was cut short would have come to is open
             open_ |= (status == "failed") | (status == "flight")
         return Bounds(value, value, np.where(open_, 1.0, value), False), counting
@@ -100,7 +99,7 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.counts("overturned") == "infinite":
-        high = np.where(noted(runs, OVERTURNS), np.inf, high)
+        high = np.where(runs.facts("may_overturn"), np.inf, high)
     unknown = open_landings(demand, runs, case) & np.isfinite(value)
     for name in USUAL:
         ended, kind = status == name, rule.counts(name)
@@ -128,12 +127,17 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
 def chaotic(rule: Rule, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
     """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
     of_peak = np.isnan(runs.numbers("theta_max_error")) | DEMANDS[rule.demand].residual
-    return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
+    return np.isnan(error) & of_peak & are_chaotic(runs)
 
 
-def noted(runs: Rows, words: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose note has these words, shape (n,)."""
-    return np.array([words in note for note in runs.texts("note")], dtype=bool)
+def are_chaotic(runs: Rows) -> npt.NDArray[np.bool_]:
+    """Return True for each run that is chaotic, shape (n,).
+
+    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
+    """
+    error, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
+    withheld = np.isnan(error) & ended_well & bool(np.isfinite(error).any())
+    return np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
 
 
 def by_other_law(rule: Rule, runs: Rows, case: Case) -> Values | None:
@@ -145,9 +149,9 @@ def by_other_law(rule: Rule, runs: Rows, case: Case) -> Values | None:
 def counted(rule: Rule, suites: Iterable[Rows]) -> str:
     """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
     numbers = Counter(
-        NOT_RUN if reason == NOT_RUN else status
+        NOT_RUN if missing else status
         for runs in suites
-        for status, reason in zip(runs.texts("status"), runs.texts("reason"), strict=True)
+        for status, missing in zip(runs.texts("status"), runs.missing, strict=True)
     )
     parts = []
     for name in (*USUAL, NOT_RUN):

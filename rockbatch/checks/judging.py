@@ -12,13 +12,13 @@ import numpy.typing as npt
 from rockbatch.checks.bounds import (
     SCATTER,
     Bounds,
+    are_chaotic,
     by_other_law,
     by_record,
     chaotic,
     counted,
     governing,
     lacking,
-    noted,
     of_runs,
     on_both_axes,
 )
@@ -28,7 +28,6 @@ from rockbatch.checks.omissions import OMISSIONS, omissions
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
@@ -306,7 +305,7 @@ def _laws(rule: Rule, suite: Rows, case: Case, deciding: int | None) -> str:
 
 def _chaotic(rule: Rule, suite: Rows, case: Case) -> str:
     """Return the remark on runs that claim no error because their results are chaotic."""
-    if DEMANDS[rule.demand].event or not noted(suite, CHAOTIC).any():
+    if DEMANDS[rule.demand].event or not are_chaotic(suite).any():
         return ""
     wild = int(chaotic(rule, suite, DEMANDS[rule.demand].evaluate(suite, case).error).sum())
     if not wild:
