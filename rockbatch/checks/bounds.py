@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.checks.omissions import open_landings
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import Values
-from rockbatch.results.rows import NOT_RUN
-from rockbatch.study.rules import USUAL, Rule
 
 SCATTER = 2.0
 """Factor within which a chaotic result is known: of 41, motions 10⁻⁸ stronger or weaker moved five further (THEORY.md)."""
@@ -37,7 +37,7 @@ _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
 
 
 def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
-    """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.study.rules.BOTH_AXES`.
+    """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.checks.rules.BOTH_AXES`.
 
     Every way grows with both demands, so that bounds combine to bounds.
     """

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.results.rows import counts_as
-from rockbatch.study.rules import Rule
+from rockbatch.quantities.rows import counts_as
 
 
 class Ending(NamedTuple):

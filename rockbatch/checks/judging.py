@@ -25,6 +25,8 @@ from rockbatch.checks.bounds import (
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
 from rockbatch.checks.omissions import OMISSIONS, omissions
+from rockbatch.checks.rule_choices import FAR, chooses, has_section, limit_key, unmet
+from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
@@ -32,11 +34,9 @@ from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
+from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS, Values
-from rockbatch.results.rows import complete, counts_as, rows_of_cases, simulated, with_case
-from rockbatch.results.sections import MEANING as OF_SECTIONS
-from rockbatch.study.rule_choices import FAR, chooses, has_section, limit_key, unmet
-from rockbatch.study.rules import Rule
 
 MOST_NAMES = 5
 
@@ -75,7 +75,7 @@ def judge(
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
-        How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`; a code's statistic counts stations.
+        How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`; a code counts stations.
     sections : DataFrame, optional
         Rows of sections.csv, for rules about a section.
     events : mapping, optional

@@ -12,7 +12,7 @@ from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
-from rockbatch.results.rows import with_case
+from rockbatch.quantities.rows import with_case
 from rockbatch.simulation.outcome import LEANS, Failure
 from rockbatch.study import PIER_KEYS, Study
 

@@ -17,8 +17,8 @@ from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
+from rockbatch.quantities.rows import simulated
 from rockbatch.results.columns import columns, row
-from rockbatch.results.rows import simulated
 from rockbatch.results.suite_statistics import suite
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study

@@ -17,8 +17,8 @@ from rockbatch.common.errors import InputError
 from rockbatch.pier import ElasticBase, RigidBase, YieldingBase
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, FACTS, IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.quantities.statistics import STATISTICS, exceedance, quantile, tolerance_rank
-from rockbatch.results.rows import rows_of_cases
 
 INF = math.inf
 

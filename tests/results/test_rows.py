@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockbatch.quantities.arrays import MISSING, Rows
-from rockbatch.results.rows import complete
+from rockbatch.quantities.rows import complete
 
 
 def table_of(rng: np.random.Generator, records: int) -> pd.DataFrame:

@@ -5,11 +5,11 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
+from rockbatch.checks.rule_choices import chooses
+from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, has_device
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.study.rule_choices import chooses
-from rockbatch.study.rules import Rule
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
 """States of a run with respect to a limit.
