@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.omissions import open_landings
+from rockbatch.checks.omissions import omissions, open_landings
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.demands import Demand
 from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import Values
 
@@ -29,6 +30,22 @@ class Bounds(NamedTuple):
     low: Values
     high: Values
     estimated: bool
+
+
+class Demanded(NamedTuple):
+    """The demand of a rule in the n runs of a case.
+
+    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the spring law of the case, and
+    ``by_other`` that by the other law, NaN if that did not go through and None if it was not run; ``chaotic`` runs; and what
+    the demand leaves out in runs that count (``omitted``), by the names of :data:`rockbatch.checks.omissions.OMISSIONS`.
+    """
+
+    bounds: Bounds
+    counting: npt.NDArray[np.bool_]
+    own: Values
+    by_other: Values | None
+    chaotic: npt.NDArray[np.bool_]
+    omitted: list[str]
 
 
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
@@ -78,24 +95,26 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
     return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}
 
 
-def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
-    """Return the bounds of every run, and True for those that count at all."""
+def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
+    """Return the demand of a rule in the runs of a case, with its bounds and what is remarkable about it."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     status = runs.texts("status")
-    counting = np.ones(len(runs), dtype=bool)
+    counting, own = np.ones(len(runs), dtype=bool), value
     if demand.event:
         open_ = runs.facts("may_overturn") & (rule.demand == "overturned")
         if rule.demand != "failed":  # what a run that was cut short would have come to is open
             open_ |= (status == "failed") | (status == "flight")
-        return Bounds(value, value, np.where(open_, 1.0, value), False), counting
+        bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
+        return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
     estimated = bool(np.isfinite(error).any())
-    margin, wild = np.nan_to_num(error), chaotic(rule, runs, error)
+    margin, wild = np.nan_to_num(error), _chaotic(demand, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
-    by_other = by_other_law(rule, runs, case)
-    if by_other is not None:  # the worse counts
+    by_other = None
+    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse counts
+        by_other = demand.other_law(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.counts("overturned") == "infinite":
@@ -121,29 +140,19 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
     value, high = np.where(unknown, low, value), np.where(unknown, np.inf, high)
     if demand.landing and bends(case):
         low, high = np.where(np.isfinite(low), 0.0, low), np.full(len(runs), np.inf)
-    return Bounds(value, low, high, estimated), counting
+    omitted = omissions(demand, runs.where(counting), case)
+    return Demanded(Bounds(value, low, high, estimated), counting, own, by_other, wild, omitted)
 
 
-def chaotic(rule: Rule, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
-    of_peak = np.isnan(runs.numbers("theta_max_error")) | DEMANDS[rule.demand].residual
-    return np.isnan(error) & of_peak & are_chaotic(runs)
-
-
-def are_chaotic(runs: Rows) -> npt.NDArray[np.bool_]:
-    """Return True for each run that is chaotic, shape (n,).
+def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
+    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak.
 
     An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
     """
-    error, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
-    withheld = np.isnan(error) & ended_well & bool(np.isfinite(error).any())
-    return np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
-
-
-def by_other_law(rule: Rule, runs: Rows, case: Case) -> Values | None:
-    """Return values by the other spring law, shape (n,), NaN if it did not go through; None if it was not run."""
-    other_law = DEMANDS[rule.demand].other_law
-    return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
+    of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
+    withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
+    chaotic = np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
+    return np.isnan(error) & (np.isnan(of_peak) | demand.residual) & chaotic
 
 
 def counted(rule: Rule, suites: Iterable[Rows]) -> str:

@@ -65,7 +65,8 @@ def check(
     0  rotation  rigid    pass
     1  rotation   pads    pass
     """
-    return as_table(verdicts(results, rules, study=study))
+    judged = verdicts(results, rules, study=study)
+    return as_table(judged)
 
 
 def verdicts(

@@ -604,7 +604,7 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
     for name, demand in DEMANDS.items():
         if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
             continue
-        bounds, counting = of_runs(Rule("check", name, 0.5), suite, case(base=base))
+        bounds, counting, *_ = of_runs(Rule("check", name, 0.5), suite, case(base=base))
         value, low, high = (part[counting] for part in bounds[:3])
         assert (low <= value).all(), name
         assert (value <= high).all(), name
