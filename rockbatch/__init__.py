@@ -9,7 +9,7 @@ _NAMES = {
     "batch.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
-    "checks.checking": "check",
+    "results.checking": "check",
     "common.errors": "InputError",
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",

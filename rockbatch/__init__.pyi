@@ -8,7 +8,6 @@ from rockbatch.analyses.spectrum.analysis import spectrum as spectrum
 from rockbatch.batch.running import run as run
 from rockbatch.batch.single import simulate as simulate
 from rockbatch.checks import Rule as Rule
-from rockbatch.checks.checking import check as check
 from rockbatch.common.errors import InputError as InputError
 from rockbatch.common.version import __version__ as __version__
 from rockbatch.motions import Motion as Motion
@@ -31,6 +30,7 @@ from rockbatch.pier import YieldingBase as YieldingBase
 from rockbatch.pier.statics import Statics as Statics
 from rockbatch.pier.statics import statics as statics
 from rockbatch.reporting import report as report
+from rockbatch.results.checking import check as check
 from rockbatch.results.opened import open_results as open_results
 from rockbatch.simulation.response import Response as Response
 from rockbatch.study import Study as Study

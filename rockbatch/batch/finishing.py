@@ -17,7 +17,6 @@ from rockbatch.batch.plan import Plan
 from rockbatch.batch.repeated import HALF_CYCLES, rows_beside
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
-from rockbatch.checks.checking import verdicts
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.errors import InputError
@@ -26,6 +25,7 @@ from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
 from rockbatch.reporting import REPORT, write_report
 from rockbatch.results.beside_peaks import SEMICOLONS, write
+from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.intensity import INTENSITY, intensities

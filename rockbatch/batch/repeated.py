@@ -86,7 +86,7 @@ def _sections(study: Study, run: Run, row: "pd.Series") -> list[dict[str, Any]]:
     assert requested is not None
     if row["status"] == "failed" or steps_of(run.motion, int(row["substeps"]), quiet_s) > MOST_STEPS_OF_FORCES:
         return []
-    outcome = repeated(run, row, quiet_s).noted(row["note"])
+    outcome = repeated(run, row, quiet_s).changed(chaotic=not pd.isna(row["chaotic"]) and bool(row["chaotic"]))
     try:
         sections = forces_in_sections(run, outcome, quiet_s, section_heights(run.pier, requested), error=error)
     except InputError:  # too many impacts to be written down

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
-from rockbatch.checks.checking import verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
 from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import worst_of_cases
@@ -20,6 +19,7 @@ from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
 from rockbatch.reporting import report as make_report
 from rockbatch.reporting import write_report
+from rockbatch.results.checking import verdicts
 from rockbatch.results.labelled import labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved

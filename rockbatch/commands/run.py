@@ -14,8 +14,8 @@ from rockbatch.commands.messages import Terminal
 from rockbatch.commands.options import engine, folder
 from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import failed_later, flexible, of_targets, summary, warnings
+from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.beside_peaks import write_semicolons
-from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
 

@@ -13,8 +13,8 @@ from rockbatch.commands.streams import in_width, shown
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.reporting.markup import number
-from rockbatch.results.rows import rows_of_cases
 
 MOST_COLUMNS = 5
 """Checks that stand though they pass in every case."""

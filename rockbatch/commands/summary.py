@@ -4,15 +4,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
 from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.pier.laws import steady
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
-from rockbatch.results.rows import with_case
+from rockbatch.quantities.rows import with_case
+from rockbatch.simulation.outcome import LEANS, Failure
 from rockbatch.study import PIER_KEYS, Study
 
 MOST_RUNS = 1000
@@ -56,17 +58,18 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     """Return remarks on the runs as a whole, a sentence each."""
 
-    def warning(runs: "pd.Series[bool]", singular: str, plural: str) -> str:
+    def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return a sentence with the number of these runs, in the singular or the plural; empty for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
-    rotate = warning(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
-    lean = warning(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = warning(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
+    runs = Rows(table)
+    rotate = warning(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
+    lean = warning(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = warning(runs.facts("slides"), "1 run asks", "{} runs ask")
     sentences = [
         _other_law(table, varied),
-        rotate and f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"',
+        rotate and f'{rotate} further than linearised kinematics holds; see the column note, and run kinematics = "finite"',
         lean and (
             f"theta_max/alpha {lean} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
             "with rocking = true under [output] so has a column, for all runs"
@@ -89,7 +92,7 @@ def failed_later(runs: "pd.DataFrame") -> str:
     failed = (runs["status"] == "failed") & runs[IN_MOTION_ERROR].notna()
     if not failed.any():
         return ""
-    ratchet = int(runs.loc[failed, "reason"].str.contains(RATCHETS).sum())
+    ratchet = int((runs.loc[failed, "failure"] == Failure.RATCHETS).sum())
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"

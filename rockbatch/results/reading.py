@@ -15,7 +15,7 @@ from rockbatch.common.errors import EditedTable, InputError, MissingColumns
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
-from rockbatch.quantities.catalogue import COUNTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
+from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
 from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
@@ -187,7 +187,9 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
                 index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
             )  # fmt: skip
         for name in table.columns.intersection(list(COUNTS)):
-            if (table[name].abs() > MOST_COUNT).any():
+            if (table[name].abs() > MOST_COUNT).any() or (
+                name in FACTS and not table[name].isin([0, 1, math.nan]).all()
+            ):
                 raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
         finite = [name for name in numbers if name not in UNBOUNDED]
@@ -221,10 +223,9 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
                     continue
                 row = dict(zip(head, cells, strict=True))
                 bad += [
-                    f'{place}: {name} = "{row[name][:80]}": expected {"a whole number" if name in COUNTS else "a number"} '
-                    "or nothing"
+                    f'{place}: {name} = "{row[name][:80]}": expected {_expected(name)} or nothing'
                     for name in numbers
-                    if not _is_number(row[name], name in COUNTS, name in UNBOUNDED)
+                    if not _is_number(row[name], name)
                 ]
                 if row["status"] not in STATUSES:
                     bad.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
@@ -237,11 +238,21 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
     return bad
 
 
-def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
+def _expected(name: str) -> str:
+    """Return what a filled cell of a column holds, in words."""
+    if name in FACTS:
+        return "0, 1"
+    return "a whole number" if name in COUNTS else "a number"
+
+
+def _is_number(text: str, name: str) -> bool:
+    """Return whether a cell of column ``name`` is a number as it takes them, or empty."""
     try:
         value = float(text or 0)
     except ValueError:
         return False
-    if unbounded and value == math.inf:
+    if name in FACTS:
+        return value in (0.0, 1.0)
+    if name in UNBOUNDED and value == math.inf:
         return True
-    return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
+    return math.isfinite(value) and (name not in COUNTS or (value.is_integer() and abs(value) <= MOST_COUNT))

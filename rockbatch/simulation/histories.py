@@ -8,7 +8,6 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
@@ -233,7 +232,7 @@ def with_observed(
 
 def _claims_errors(outcome: Outcome) -> bool:
     """Return whether what is observed of a run may claim an error, by a run of twice its step."""
-    return outcome.status != "failed" and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note
+    return outcome.status != "failed" and outcome.substeps % 2 == 0 and not outcome.chaotic
 
 
 def forces_in_sections(

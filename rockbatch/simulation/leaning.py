@@ -4,10 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.common.notes import LEANS
 from rockbatch.motions.motion import Samples
 from rockbatch.pier import ElasticBase, Pier, tilt_over_residual, vertical_frequency, yield_deflection
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.outcome import LEANS, Outcome
 from rockbatch.simulation.starting import start_of
 
 MOSTLY = 0.5

@@ -3,10 +3,27 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import Any, NamedTuple
 
 RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
 """A note on a run whose greatest rotation says nothing that was not given."""
+
+LEANS = "lean"
+"""``theta_max_is`` of a peak at which the pier hardly rocks, on a base that has yielded."""
+
+
+class Failure(StrEnum):
+    """Kind of failure of a run; its ``reason`` describes it."""
+
+    CONTACTS = "contacts"  # too many contact events within one sample
+    BLEW_UP = "blew up"  # the integration came to infinity
+    UNDECIDED = "undecided"  # left alone after the record, the pier may yet overturn
+    RATCHETS = "ratchets"  # left alone after the record, its springs ratchet
+    NOT_SETTLED = "not settled"  # the results did not converge when the step was halved
+    LARGE_STEP = "large step"  # refused: a fixed step too large for the springs
+    MANY_STEPS = "many steps"  # refused: it would take too long
+    UNUSABLE = "unusable"  # its record cannot be used
 
 
 TERMS = (
@@ -62,6 +79,8 @@ class PeakForces:
         By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
     landing_force : float or None
         Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
+    slides : bool or None
+        True if the greatest friction demand, of impacts too, exceeds the friction of the interface; ``None`` without a limit.
     """
 
     base_shear: float
@@ -85,6 +104,7 @@ class PeakForces:
     flight_longest: float | None = None
     error: float | None = None
     landing_force: float | None = None
+    slides: bool | None = None
 
     def mirrored(self) -> "PeakForces":
         """Return the demands of the mirror image."""
@@ -128,9 +148,18 @@ class Outcome:
     status : str
         "ok", "overturned", "flight" (the run was stopped by it) or "failed".
     reason : str
-        Why it failed, or what made it fly; empty otherwise.
+        Why it failed, or what made it fly, in words for people; empty otherwise.
+    failure : Failure or None
+        The kind of failure of a run that failed.
     note : str
-        Remarks on a valid run, e.g. counts that did not converge; empty otherwise.
+        Remarks on a valid run for people, e.g. counts that did not converge; empty otherwise.
+    chaotic : bool or None
+        True if a change of the motion or of the step that no record resolves changes the peak or the residuals beyond the
+        tolerance; ``None`` if that is not known, with a fixed step and of a run that failed.
+    may_overturn : bool or None
+        True if the run did not overturn, and does under a motion 10⁻⁸ stronger or weaker; ``None`` likewise.
+    beyond_linearised : bool or None
+        True if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations.
     theta_max, t_max : float
         Greatest rotation |θ| [rad] until the end of the run, and its time [s].
     theta_max_in_motion : float
@@ -251,6 +280,10 @@ class Outcome:
     deflection_max_error: float | None = None
     top_drift_max: float | None = None
     top_drift_max_error: float | None = None
+    failure: Failure | None = None
+    chaotic: bool | None = None
+    may_overturn: bool | None = None
+    beyond_linearised: bool | None = None
 
     @property
     def was_run(self) -> bool:

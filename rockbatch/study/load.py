@@ -10,6 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rockbatch.checks.rule_choices import implausible, unmet
+from rockbatch.checks.rule_files import SUITE, read_checks
+from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
@@ -26,9 +29,6 @@ from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.study.rule_choices import implausible, unmet
-from rockbatch.study.rule_files import SUITE, read_checks
-from rockbatch.study.rules import CHECK, Rule
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
@@ -142,7 +142,7 @@ class Study(Shown):
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
     rules that its results are held against, ``count`` what counts as one record of its suite, one of
-    :data:`rockbatch.study.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
+    :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
     ``lined`` is False if the text was made of tables, so that messages give no lines.
 
     Examples

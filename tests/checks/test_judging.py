@@ -13,7 +13,7 @@ from rockbatch.checks.bounds import of_runs
 from rockbatch.common.errors import InputError
 from rockbatch.pier import ElasticBase, RigidBase
 from rockbatch.quantities.arrays import Rows
-from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, IN_MOTION, IN_MOTION_ERROR
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS, FACTS, IN_MOTION, IN_MOTION_ERROR
 
 INF = math.inf
 
@@ -120,22 +120,18 @@ def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
     assert (Rule("a", "eta", at_least=2).words, Rule("a", "eta", at_least=2).counting) == ("eta", "")
 
 
-CHAOTIC = "the peak is chaotic, a motion 1e-08 weaker moves it by 2.4e-03 rad: no error of it is claimed"
-FALLS = "the peak is chaotic, a motion 1e-08 weaker overturns the pier: no error of it is claimed"
-
-
 @pytest.mark.parametrize(
     ("theta", "verdict"), [(0.2, "pass"), (0.3, "not decided"), (0.9, "not decided"), (1.1, "fail")]
 )
 def test_a_chaotic_peak_is_known_to_a_factor_of_2_and_is_said(theta, verdict):
     """0.3 α may be 0.6 α under a motion that no record tells from this one, and 0.9 α 0.45 α; the limit is 0.5 α."""
-    found = judged(runs([0.1, theta], theta_max_error=[1e-6, None], note=["", CHAOTIC]))
+    found = judged(runs([0.1, theta], theta_max_error=[1e-6, None], chaotic=[0, 1]))
     assert (found.verdict, found.low, found.high) == (verdict, pytest.approx(theta / 2), pytest.approx(2 * theta))
     assert "1 run is chaotic, and is known to a factor of 2" in found.note
 
 
 def test_an_event_of_a_chaotic_run_is_one_and_not_known_to_a_factor():
-    table = runs([0.1, 0.3], theta_max_error=None, note=CHAOTIC, flight_s=[math.nan, 2.0])
+    table = runs([0.1, 0.3], theta_max_error=None, chaotic=1, flight_s=[math.nan, 2.0])
     found = judged(table, demand="flight", statistic="mean", at_most=0.5)
     assert (found.verdict, found.low, found.high) == ("pass", 0.5, 0.5)
 
@@ -153,13 +149,13 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
     }
     cells[IN_MOTION] = np.where(np.isnan(cells[IN_MOTION_ERROR]), np.nan, rng.uniform(0.0, 1.0, n))
     cells["status"] = rng.choice(["ok", "ok", "overturned", "flight", "failed"], n)
-    cells["note"] = rng.choice(["", CHAOTIC, FALLS, "the residuals are chaotic"], n)
+    cells |= {name: rng.choice([0.0, 1.0, np.nan], n) for name in FACTS}
     plain = runs(rng.uniform(0.0, 1.2, n)).drop(columns=cells, errors="ignore")
     suite = Rows(pd.concat([plain, pd.DataFrame(cells)], axis=1))
     for name, demand in DEMANDS.items():
         if demand.per_case or demand.needs == "sections" or (demand.bases and base.name not in demand.bases):
             continue
-        bounds, counting = of_runs(Rule("check", name, 0.5), suite, case(base=base))
+        bounds, counting, *_ = of_runs(Rule("check", name, 0.5), suite, case(base=base))
         value, low, high = (part[counting] for part in bounds[:3])
         assert (low <= value).all(), name
         assert (value <= high).all(), name
@@ -167,8 +163,7 @@ def test_the_bounds_of_any_demand_hold_its_value_and_those_of_an_event_are_yes_o
 
 
 def test_chaotic_residuals_leave_the_demands_on_a_peak_that_converged_as_they_are():
-    table = runs([0.1], theta_max_error=1e-6, ductility_left=2.0, ductility_right=1.0, settlement_m=0.02,
-                 note="the residuals are chaotic, a motion 1e-08 off moves them: no error of them is claimed")  # fmt: skip
+    table = runs([0.1], theta_max_error=1e-6, ductility_left=2.0, ductility_right=1.0, settlement_m=0.02, chaotic=1)
     pads = case(base=replace(PADS, spring="epp"))
     found = judged(table, one=pads, demand="ductility", at_most=3.0)
     assert (found.verdict, found.high) == ("pass", 2.0)
@@ -178,6 +173,7 @@ def test_chaotic_residuals_leave_the_demands_on_a_peak_that_converged_as_they_ar
 
 @pytest.mark.parametrize(("demand", "limit"), [("overturned", 0.0), ("theta_max_over_alpha", 0.85)])
 def test_a_pier_that_overturns_under_a_motion_a_hair_weaker_passes_nothing(demand, limit):
-    found = judged(runs([0.1, 0.3], theta_max_error=[1e-6, None], note=["", FALLS]), demand=demand, at_most=limit)
+    table = runs([0.1, 0.3], theta_max_error=[1e-6, None], chaotic=[0, 1], may_overturn=[0, 1])
+    found = judged(table, demand=demand, at_most=limit)
     assert found.verdict == "not decided"
     assert judged(runs([0.1, 0.3], theta_max_error=1e-6), demand=demand, at_most=limit).verdict == "pass"

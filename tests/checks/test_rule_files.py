@@ -16,13 +16,13 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, write_verdicts
-from rockbatch.checks.checking import verdicts
+from rockbatch.checks.rule_files import CHECK, load_rules
 from rockbatch.commands import check
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS, listed
 from rockbatch.reporting import write_report
-from rockbatch.study.rule_files import CHECK, load_rules
+from rockbatch.results.checking import verdicts
 
 pytestmark = pytest.mark.usefixtures("no_report")
 

@@ -12,11 +12,11 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts
-from rockbatch.checks.checking import verdicts
+from rockbatch.checks.rule_files import load_rules
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.study.rule_files import load_rules
+from rockbatch.results.checking import verdicts
 
 pytestmark = pytest.mark.usefixtures("no_report")
 

@@ -9,7 +9,7 @@ from check_samples import case, judged, runs
 from rockbatch.checks import Rule, judge
 from rockbatch.common.errors import InputError
 from rockbatch.pier import YieldingBase
-from rockbatch.results.rows import rows_of_cases
+from rockbatch.quantities.rows import rows_of_cases
 
 INF = math.inf
 

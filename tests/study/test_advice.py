@@ -6,10 +6,10 @@ import tomllib
 import pytest
 from studies import write_study
 
+from rockbatch.checks.rule_files import load_rules
 from rockbatch.common.errors import InputError
 from rockbatch.motions.manifest import Manifest
 from rockbatch.study import Study, load_study
-from rockbatch.study.rule_files import load_rules
 
 STUDY = """\
 title = "Pier 4"

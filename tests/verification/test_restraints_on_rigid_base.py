@@ -403,7 +403,7 @@ def test_a_pier_that_is_held_beyond_alpha_has_not_survived(foundation, damper):
     outcome = run_fixed(FIG5, replace(foundation, restraints=(damper,)), motion, 8)
     assert FIG5.alpha < outcome.theta_max < math.pi / 2
     assert outcome.status == "failed"
-    assert outcome.reason == LEFT_ALONE[0]
+    assert outcome.failure == LEFT_ALONE[0]
 
 
 YIELDS = base(

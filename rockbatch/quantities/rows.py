@@ -59,7 +59,7 @@ def _fits(runs: "pd.DataFrame", columns: Mapping[str, float | str]) -> npt.NDArr
 
 
 def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str]) -> Rows:
-    """Return ``rows`` of a case at one scale, and a failed one for each that is missing, as after an interrupt.
+    """Return ``rows`` of a case at one scale, and a failed one for each that is missing or has no status, as after an interrupt.
 
     They are in the order of record and polarity. ``stations`` has all records, each with its station, empty if it is not known.
     """
@@ -67,14 +67,14 @@ def complete(rows: Rows, stations: Mapping[str, str], polarities: Sequence[str])
     missing = {*product(stations, polarities)}.difference(names)
     named = sorted([*zip(names, rows.places, strict=True), *((absent, MISSING) for absent in missing)])
     places = np.array([place for _, place in named], dtype=np.intp)
-    status, reason = rows.at(places).texts("status"), rows.at(places).texts("reason")
+    places = np.where(rows.at(places).texts("status") == "", MISSING, places)
+    status = rows.at(places).texts("status")
     return rows.at(
         places,
         record=np.array([record for (record, _), _ in named], dtype=object),
         polarity=np.array([polarity for (_, polarity), _ in named], dtype=object),
         station=np.array([stations.get(record) or "" for (record, _), _ in named], dtype=object),
         status=np.where(status == "", "failed", status),
-        reason=np.where(status == "", NOT_RUN, reason),
     )
 
 

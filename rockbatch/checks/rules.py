@@ -96,7 +96,7 @@ class Rule:
         How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
         "greater" unless given, and of demands that do not add up (:data:`rockbatch.quantities.catalogue.DIRECTED`).
     confirm : tuple of str
-        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.study.rule_choices`).
+        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
 
     Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
 

@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.common.errors import InputError
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.study.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.toml.kinds import choice, count, text
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
@@ -67,7 +67,7 @@ def read_checks(
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
 
-    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.study.rule_choices.unmet` does; ``opened``
+    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.checks.rule_choices.unmet` does; ``opened``
     opens the file that [suite] names, or raises ``InputError``.
     """
     suite = file.table("suite")

@@ -4,13 +4,13 @@ import fnmatch
 import math
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
+from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, weight
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.study.rules import Rule
 from rockbatch.toml.meant import in_another_unit
 
 FAR = 100.0

@@ -6,21 +6,21 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks.judging import judge
+from rockbatch.checks.rule_choices import implausible
+from rockbatch.checks.rule_files import Checks, load_rules, read_checks
+from rockbatch.checks.rules import Rule
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import Verdict, as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
+from rockbatch.quantities.rows import with_case
 from rockbatch.results.columns import given_table
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.rows import with_case
 from rockbatch.results.run_json import INFO, describe_case
 from rockbatch.results.sections import SECTIONS, read_sections
 from rockbatch.study import Study, load_study
-from rockbatch.study.rule_choices import implausible
-from rockbatch.study.rule_files import Checks, load_rules, read_checks
-from rockbatch.study.rules import Rule
 from rockbatch.toml.reader import TomlFile
 
 PathLike = str | os.PathLike[str]
@@ -65,7 +65,8 @@ def check(
     0  rotation  rigid    pass
     1  rotation   pads    pass
     """
-    return as_table(verdicts(results, rules, study=study))
+    judged = verdicts(results, rules, study=study)
+    return as_table(judged)
 
 
 def verdicts(
