@@ -206,6 +206,6 @@ COMMANDS = {
             "--all": flag("unfold every section, so that all of them are printed"),
         },
     ),
-    **{name: _of_analysis(name, door) for name, door in doors().items()},
+    **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},
 }  # fmt: skip
 """All commands, in the order of the help."""
