@@ -119,7 +119,7 @@ class Manifest:
             try:
                 file = TomlFile.read(path, SECTIONS) if path.suffix == ".toml" else _from_csv(path)
             except InputError as error:
-                manifest.refused += error.problems
+                manifest.refused += error.messages
             else:
                 manifest._take(file)
         return manifest
@@ -164,7 +164,7 @@ class Manifest:
             try:
                 file.finish()
             except InputError as error:
-                problems += error.problems
+                problems += error.messages
         if problems:
             raise InputError(*problems)
 

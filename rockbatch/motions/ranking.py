@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
-from rockbatch.motions.motion import LeftOut, Motion, Problem, Unusable
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet, row
 from rockbatch.motions.velocity_pulses import LEAST_PGV, pulse_of
 
@@ -28,7 +29,7 @@ class Use(Enum):
     LEFT_OUT = "left out"
 
 
-_DOUBTS = {Problem.DIRECTION: "direction", Problem.CONTRADICTION: "contradiction"}
+_DOUBTS: dict[type[InputError], str] = {NoDirection: "direction", Contradiction: "contradiction"}
 
 COLUMNS = (
     "record", "event", "station_name", "use", "check", "pga_h_g", "pga_h2_g", "pga_v_g", "pgv_h_m_s", "dt_s", "duration_s",
@@ -134,14 +135,14 @@ def use_of(file: Unusable | LeftOut) -> Use:
     """Return what becomes of a file without a motion in the set."""
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
-    return Use.HELD_BACK if file.motion or file.problem or file.lacks else Use.NOT_READ
+    return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ
 
 
 def doubts(file: Unusable | LeftOut) -> list[str]:
     """Return what has to be said of a file before it is used, in a word or two each."""
     if isinstance(file, LeftOut):
         return []
-    words = [_DOUBTS[file.problem]] if file.problem else []
+    words = [_DOUBTS[file.kind]] if file.kind in _DOUBTS else []
     return [*words, *(f"no {key}" for key in file.lacks), *_whats([file.motion] if file.motion else [])]
 
 

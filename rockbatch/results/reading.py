@@ -129,7 +129,7 @@ def _noting(problems: list[str]) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        problems += error.problems
+        problems += error.messages
 
 
 @contextmanager

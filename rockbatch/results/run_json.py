@@ -160,7 +160,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
 def _not_used(file: Unusable) -> dict[str, Any]:
     """Return the entry of a file that is not used; the samples of one that is held back are not in it."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
-    return entry | {"lacks": list(file.lacks), "problem": file.problem and file.problem.name.lower()}
+    return entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
 
 
 def describe_study(study: Study) -> dict[str, str]:

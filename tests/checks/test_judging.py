@@ -131,7 +131,7 @@ def test_what_a_rule_chooses_and_the_results_do_not_have_is_reported_at_once():
     ]
     with pytest.raises(InputError) as caught:
         judge(rules, runs(), [case()])
-    case_, scale, law = caught.value.problems
+    case_, scale, law = caught.value.messages
     assert 'check "a": case = "pad"' in case_
     assert 'did you mean "pads"?' in case_
     assert "scale = 2: the motions are scaled by 1 only" in scale
@@ -559,7 +559,7 @@ def test_ratio_and_margin_are_the_distance_to_the_limit():
 def test_a_rule_that_makes_no_sense_is_refused_with_what_to_write(asked, problem):
     with pytest.raises(InputError) as caught:
         Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
-    assert any(problem in each for each in caught.value.problems)
+    assert any(problem in each for each in caught.value.messages)
 
 
 def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():
