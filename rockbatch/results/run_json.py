@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.files import is_plain, read_text, replacing
+from rockbatch.common.version import commit
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Motion, Unusable
@@ -124,10 +125,11 @@ VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that numbers depend on."""
+    """Return the versions of Python and of the packages that numbers depend on, and the commit of a checkout."""
     from importlib.metadata import version  # 20 ms that nobody needs who reads results
 
-    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}
+    packages = {name: version(name) for name in VERSIONS_OF}
+    return {"python": platform.python_version(), **packages} | ({"commit": commit()} if commit() else {})
 
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
