@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
@@ -108,7 +108,7 @@ class Manifest:
 
     entries: dict[Path, list[Entry]]
     files: list[TomlFile]
-    refused: list[str]
+    refused: list[Problem]
     sequences: list[tuple[str, ShockSequence]] = field(default_factory=list)  # with the manifest of each
 
     @classmethod
@@ -119,7 +119,7 @@ class Manifest:
             try:
                 file = TomlFile.read(path, SECTIONS) if path.suffix == ".toml" else _from_csv(path)
             except InputError as error:
-                manifest.refused += error.messages
+                manifest.refused += error.problems
             else:
                 manifest._take(file)
         return manifest
@@ -164,9 +164,8 @@ class Manifest:
             try:
                 file.finish()
             except InputError as error:
-                problems += error.messages
-        if problems:
-            raise InputError(*problems)
+                problems += error.problems
+        refuse(problems)
 
 
 def _is_there(path: Path) -> bool:

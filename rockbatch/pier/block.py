@@ -282,7 +282,7 @@ class Pier(InNotebook):
             text = "must be a whole number, 2 or above; a single one is a pier with a deck"
             wrong.append(Problem("columns", columns, text, kind=OutOfRange))
         if column.mass_t is None:
-            wrong.append(Problem("mass_t", None, "is missing, of one column [t]", kind=MissingKey))
+            wrong.append(Problem("mass_t", None, "mass_t is missing, of one column [t]", kind=MissingKey, named=False))
         if not math.isclose(column.mu, 3.0) or column.deck_over_columns is not None:
             wrong.append(
                 Problem("mu", column.mu, "the columns of a frame are solid rectangles, mu = 3", kind=OutOfRange)
