@@ -11,10 +11,9 @@ import numpy as np
 from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
+from rockbatch.motions import velocity_pulses
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet, row
-from rockbatch.motions.velocity_pulses import LEAST_PGV, pulse_of
 
 
 class Use(Enum):
@@ -160,12 +159,8 @@ def _second(motion: Motion, others: Iterable[Motion]) -> float | None:
 
 def pulse_period(motion: Motion) -> float | None:
     """Return the period of the pulse [s] by the list beside the record, else by Baker (2007); None without a pulse."""
-    if motion.listed.pulse_period_s is not None:
-        return motion.listed.pulse_period_s
-    if measures.pgv(motion.horizontal, motion.dt, motion.initial) < LEAST_PGV:  # weak, whatever its shape
-        return None
-    pulse = pulse_of(motion)
-    return pulse.period_s if pulse.kind == "yes" else None
+    listed = motion.listed.pulse_period_s
+    return velocity_pulses.pulse_period(motion) if listed is None else listed
 
 
 def rows(motions: MotionSet) -> list[dict[str, Any]]:

@@ -95,8 +95,8 @@ SHAPE = {
         | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
         | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
         | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
-        | {name: Maybe(_NUMBER) for name in ("pulse_indicator", "pulse_period_s")}
-        | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction", "pulse")}
+        | {name: Maybe(_NUMBER) for name in ("pulse_period_s",)}
+        | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction")}
         | {
             "factor": Maybe(float),
             "vertical_factor": Maybe(float),

@@ -12,7 +12,7 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.commands.motions import _GLANCE, overview
 from rockbatch.common.errors import Contradiction
-from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, pulse_of, small_figures
+from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, small_figures
 from rockbatch.motions.listed import Listed
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked
@@ -82,7 +82,6 @@ def test_the_period_of_the_pulse_is_the_lists_else_that_of_a_pulse_like_record()
     times = np.arange(0.0, 20.0, 0.01)
     velocity = 0.8 * np.exp(-(((times - 6.0) / 1.2) ** 2)) * np.cos(np.pi * (times - 6.0))  # of 2 s
     near = rb.Motion("near", 0.01, np.gradient(velocity, 0.01))
-    assert pulse_period(near) == pulse_of(near).period_s
     assert 1.8 < pulse_period(near) < 2.4
     assert pulse_period(replace(near, listed=Listed(pulse_period_s=3.1))) == 3.1
     shaken = replace(near, horizontal=20.0 * np.sin(5.0 * times) * np.sin(np.pi * times / 20.0))  # strong, and no pulse
