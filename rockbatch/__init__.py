@@ -10,7 +10,10 @@ _NAMES = {
     "batch.single": "simulate",
     "checks": "Rule",
     "results.checking": "check",
-    "common.errors": "InputError",
+    "common.errors": (
+        "BadSyntax Contradiction InputError MissingKey NoDirection NoRecord NoStep NoUnit NotFound "
+        "OutOfRange Problem Truncated UnknownFormat UnknownKey Unstated Unusual UnusableRecord WrongType"
+    ),
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",

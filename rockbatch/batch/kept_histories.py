@@ -44,7 +44,7 @@ def keep_histories(
             try:
                 yield _response(study, runs[number], table.iloc[number])
             except InputError as error:
-                too_long.extend(error.problems)
+                too_long.extend(error.messages)
             progress(1)
 
     write(path, responses(), saved.info)

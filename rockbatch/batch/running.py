@@ -183,7 +183,7 @@ def merge(
             except FileNotFoundError:
                 problems.append(f"{share / JOURNAL}: not there; give folders that `rockbatch run --shard` has written")
             except InputError as error:
-                problems += error.problems
+                problems += error.messages
         missing = [number for number in range(len(runs)) if number not in journal]
         if missing and not problems:
             problems.append(

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TypedDict, Unpack
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
 from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
@@ -142,7 +142,7 @@ def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) 
     """Raise ``InputError`` with everything impossible or implausible in a run and its settings."""
     pier, base, motion, substeps = run.pier, run.base, run.motion, numerics.substeps
     tolerance = numerics.tolerance or 0.0
-    wrong = problems(pier, base) or unlikely_devices(pier, base.restraints)
+    wrong: list[Problem | str] = [*(problems(pier, base) or unlikely_devices(pier, base.restraints))]
     wrong += unlikely_samples(motion, pier.gravity)
     if not tolerance >= LEAST_TOLERANCE:
         wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
@@ -154,5 +154,4 @@ def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) 
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
     if not 0.0 < least_normal_share < 1.0:
         wrong.append(f"least_normal_share = {least_normal_share:g}: must be above 0 and below 1, a share of the weight")
-    if wrong:
-        raise InputError(*wrong)
+    refuse(wrong)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.quantities.statistics import STATISTICS
@@ -62,7 +62,7 @@ class Checks(NamedTuple):
 
 def read_checks(
     file: TomlFile,
-    unmet: Callable[[Rule], Iterable[str]] | None = None,
+    unmet: Callable[[Rule], Iterable[Problem]] | None = None,
     opened: Callable[[Path], TomlFile] = _read,
 ) -> Checks:
     """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
@@ -81,7 +81,8 @@ def read_checks(
             rules_file = opened(file.path.parent / read["checks"])
         except InputError as error:
             for problem in error.problems:
-                suite.complain(f"checks = {shown(read['checks'])}: {problem}", "checks")
+                text = f"checks = {shown(read['checks'])}: {problem}"
+                suite.complain(Problem("checks", read["checks"], text, kind=problem.kind, named=False), "checks")
         else:
             Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
             its = rules_file.table("suite")
@@ -92,7 +93,7 @@ def read_checks(
 
 
 def _rules(
-    file: TomlFile, unmet: Callable[[Rule], Iterable[str]] | None, usual: Mapping[str, Any], names: set[str]
+    file: TomlFile, unmet: Callable[[Rule], Iterable[Problem]] | None, usual: Mapping[str, Any], names: set[str]
 ) -> list[Rule]:
     """Return the rules of usable [[check]] tables, with the ``usual`` keys that they do not give; their names join ``names``."""
     rules: list[Rule] = []
@@ -112,16 +113,10 @@ def _rules(
             try:
                 rule = Rule(**read)
             except InputError as error:
-                wrong: Iterable[str] = error.problems
+                wrong: Iterable[Problem] = error.problems
             else:
                 rules.append(rule)
                 wrong = unmet(rule) if unmet else ()
             for problem in wrong:
-                _complain(table, problem)
+                table.complain(problem, *([problem.key] if problem.key in table.data else []))
     return rules
-
-
-def _complain(table: Table, problem: str) -> None:
-    """Place a problem of a rule, which starts with the name of its key, at that key."""
-    name = problem.split(":")[0].split(" ")[0]
-    table.complain(problem, *([name] if name in table.data else []))

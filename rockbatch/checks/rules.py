@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.showing import shown
 from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
 from rockbatch.quantities.statistics import STATISTICS
@@ -98,7 +98,7 @@ class Rule:
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
 
-    Raises ``InputError`` with all that is wrong; each message starts with the name of its attribute.
+    Raises ``InputError`` with all that is wrong, each problem with the name of its attribute as ``key``.
 
     Examples
     --------
@@ -131,9 +131,7 @@ class Rule:
     per_event: int | None = None
 
     def __post_init__(self) -> None:
-        wrong = _unknown_words(self) or _misfits(self)
-        if wrong:
-            raise InputError(*wrong)
+        refuse(_unknown_words(self) or _misfits(self))
 
     @property
     def limit(self) -> float:
@@ -206,6 +204,7 @@ PER_EVENT = "Greatest number of stations of one event with which anything passes
 AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
 _CALLED = {
     "demand": names({
+        ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
         ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
         ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
         ("top_drift_m", "top_drift_mm"): "displacement topdisplacement", "friction_demand": "sliding slip",
@@ -270,7 +269,7 @@ CHECK = Section(("check",), (
 """A [[check]]; :class:`Rule` says what its keys mean."""
 
 
-def _unknown_words(rule: Rule) -> list[str]:
+def _unknown_words(rule: Rule) -> list[Problem]:
     wrong = []
     for name, key in CHECK.items():
         value = getattr(rule, name)
@@ -279,12 +278,13 @@ def _unknown_words(rule: Rule) -> list[str]:
         try:
             key.kind(value)
         except KindError as error:
-            wrong.append(f"{name} = {shown(value)}: {error.advice()}")
+            text = f"{name} = {shown(value)}: {error.advice()}"
+            wrong.append(Problem(name, value, text, kind=WrongType, named=False))
     return wrong
 
 
-def _misfits(rule: Rule) -> list[str]:
-    """Return what the attributes of a rule say about each other, each message at the first of them that is wrong."""
+def _misfits(rule: Rule) -> list[Problem]:
+    """Return what the attributes of a rule say about each other, each problem at the first of them that is wrong."""
     demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
     two_limits = rule.at_most is not None and rule.at_least is not None
     neither = rule.at_most is None and rule.at_least is None
@@ -294,53 +294,69 @@ def _misfits(rule: Rule) -> list[str]:
     counts = rule.statistic == "count"
     with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
     rules = [
-        (two_limits, "at_least: given beside at_most; keep one, and write the other as a check of its own"),
-        (neither, f"{example.split()[0]} is missing, the limit; write for example {example}"),
-        (wrong_way, f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}"),
+        (two_limits, "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"),
+        (neither, example.split()[0], f"{example.split()[0]} is missing, the limit; write for example {example}"),
+        (
+            wrong_way,
+            "at_least",
+            f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}",
+        ),
         (
             not (neither or wrong_way or math.isfinite(rule.limit)),
+            rule.sense.replace(" ", "_"),
             f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
         ),
-        (rule.above is not None and not counts, 'above: is for statistic = "count"; leave it out'),
+        (rule.above is not None and not counts, "above", 'above: is for statistic = "count"; leave it out'),
         (
             counts and rule.above is None and not (demand.event or demand.per_case),
+            "above",
             "above is missing, what a record has to exceed to count; write for example above = 0.5",
         ),
         (
             rule.least is not None and rule.least < statistic.least,
+            "least",
             f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
         ),
         (
             rule.count == "component" and statistic.code != "",
+            "count",
             f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
             'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
         ),
-        (rule.per_event is not None and not statistic.code, "per_event: is for a code's statistic; leave it out"),
+        (
+            rule.per_event is not None and not statistic.code,
+            "per_event",
+            "per_event: is for a code's statistic; leave it out",
+        ),
         (
             demand.event and statistic.code != "",
+            "statistic",
             f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
         ),
         (
             demand.needs == "sections" and rule.at_m is None,
+            "at_m",
             "at_m is missing, the height of the section [m]; write for example at_m = 7.5",
         ),
         (
             demand.needs != "sections" and rule.at_m is not None,
+            "at_m",
             "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
         ),
         (
             rule.both_axes not in (None, "greater") and rule.demand not in DIRECTED,
+            "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         ),
-        (rule.other_law and demand.other_law is None, f"other_law: is for {with_other_law}; leave it out"),
+        (rule.other_law and demand.other_law is None, "other_law", f"other_law: is for {with_other_law}; leave it out"),
     ]
     without_place = [  # attributes that say nothing about such a demand or statistic
         (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
         (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
         (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
     ]
-    return [message for applies, message in rules if applies] + [
-        f"{name}: {reason}; leave it out"
+    return [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies] + [
+        Problem(name, None, f"{reason}; leave it out", kind=Contradiction)
         for applies, names, reason in without_place
         for name in names
         if applies and getattr(rule, name) is not None

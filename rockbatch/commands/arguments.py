@@ -206,7 +206,7 @@ COMMANDS = {
             "--all": flag("unfold every section, so that all of them are printed"),
         },
     ),
-    **{name: _of_analysis(name, door) for name, door in doors().items()},
+    **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},
     "cache": Command(
         "show where compiled kernels are kept, or remove them", "rockbatch cache --clear", "commands.cache.main",
         {"--clear": flag("remove all of them: the next run of each kind of pier compiles its own again")},

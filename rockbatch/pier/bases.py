@@ -10,8 +10,8 @@ from dataclasses import InitVar, dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, Superseded
-from rockbatch.common.showing import InNotebook
+from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
+from rockbatch.common.showing import InNotebook, shown
 from rockbatch.common.units import LEAST, MOST, Bounds, Usual
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
@@ -19,7 +19,7 @@ from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yi
 from rockbatch.pier.laws import LAWS, Law, SpringLaw
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint, described_restraints
-from rockbatch.pier.sizes import refuse, unusual
+from rockbatch.pier.sizes import unusual
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 
 LEAST_ETA = 1.000001
@@ -46,7 +46,7 @@ ASKING_TENSION: tuple[Impact, ...] = ("housner",)
 """Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact by Housner's e)."""
 
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
-"""Message about a support with both."""
+"""What is wrong about a support with both."""
 
 
 def _strength(eta: float) -> str:
@@ -133,12 +133,12 @@ class _Traits(InNotebook):
         ]
         for name, words in WORDS.items():
             if name in values and values[name] not in words:
-                wrong.append(f'{name} = "{values[name]}": must be ' + " or ".join(f'"{word}"' for word in words))
+                wrong.append(Problem(name, values[name], f"must be {' or '.join(map(shown, words))}", kind=WrongType))
         wrong += self._wrong_together()
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 
-    def _wrong_together(self) -> list[str]:
-        """Return which fields cannot be together: one sentence each."""
+    def _wrong_together(self) -> list[Problem]:
+        """Return which fields cannot be together."""
         return []
 
     @property
@@ -222,7 +222,7 @@ class RigidBase(_Traits):
         if flexural_impact is None:
             return
         if problem := wrong_blow(flexural_impact):
-            raise InputError(f'flexural_impact = "{flexural_impact}": {problem}')
+            raise WrongType(Problem("flexural_impact", flexural_impact, problem))
         message = 'flexural_impact = "momentum" has no effect, since no other rule of a blow is left; leave it out'
         warnings.warn(message, Superseded, stacklevel=4)
 
@@ -301,14 +301,14 @@ class ElasticBase(_Traits):
     def __post_init__(self) -> None:
         self._check()
 
-    def _wrong_together(self) -> list[str]:
+    def _wrong_together(self) -> list[Problem]:
         wrong = BETA.problems("beta", self.beta)
+        given: dict[str, Any] = {"epsilon": self.epsilon} if self.epsilon != 0 else {}
+        text = f'has no effect with impact = "{self.impact}"; leave it out' if self.impact not in WITH_EPSILON else ""
         if self.zeta is not None:
-            wrong += [f"epsilon = {self.epsilon:g}: {EPSILON_AND_ZETA}"] * (self.epsilon != 0)
-            wrong += [f'impact = "{self.impact}": {EPSILON_AND_ZETA}'] * (self.impact != "landing")
-        elif self.impact not in WITH_EPSILON and self.epsilon != 0:
-            wrong.append(f'epsilon = {self.epsilon:g}: has no effect with impact = "{self.impact}"; leave it out')
-        return wrong
+            given |= {"impact": self.impact} if self.impact != "landing" else {}
+            text = EPSILON_AND_ZETA
+        return wrong + [Problem(name, value, text, kind=Contradiction) for name, value in given.items() if text]
 
     @property
     def reference_eta(self) -> float:

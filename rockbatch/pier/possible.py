@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem
 from rockbatch.common.units import rounded_up
 from rockbatch.pier.bases import LEAST_ETA, Base, ElasticBase, RigidBase, YieldingBase
 from rockbatch.pier.bending import problems as bending_problems
@@ -50,69 +51,74 @@ def enough_eta(pier: Pier, base: Base) -> float:
     return least
 
 
-def problems(pier: Pier, base: Base) -> list[str]:
-    """Return what is impossible about ``pier`` on ``base``, a sentence each, with the limit; empty if nothing is."""
+def problems(pier: Pier, base: Base) -> list[Problem]:
+    """Return what is impossible about ``pier`` on ``base``, with the limit; empty if nothing is."""
     if base.on_springs and pier.deck_over_columns is not None:
-        return [
-            f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
+        text = (
+            f"a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
             "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
             'write base = "rigid"; or, if the columns are fixed to their cap beam, leave columns out and write [[pier.part]] '
             "for them and the beam, with width_m between the outer feet"
-        ]
+        )
+        return [Problem("columns", None, text, kind=Contradiction)]
     wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
     wrong += wrong_restraints(pier, base.restraints)
     if base.bends:
         wrong += _wrong_bending(pier, base)
     if isinstance(base, RigidBase) and base.contact_stiffness_kN_m is not None:
-        wrong += _wrong_contact(pier, base, f"contact_stiffness_kN_m = {base.contact_stiffness_kN_m:g}")
+        wrong += _wrong_contact(pier, base)
     if base.on_springs and not wrong:
         wrong += wrong_on_springs(pier, base.restraints)
     if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
         prestress = prestress_over_weight(pier, base.restraints)
-        wrong.append(
-            f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
-            f"{prestress:g} of it; eta must be above 1 + psi, {rounded_up(least):g}"
+        text = (
+            f"the springs cannot carry the weight and the prestress of the tendons, psi = {prestress:g} of it; eta must be "
+            f"above 1 + psi, {rounded_up(least):g}"
         )
+        wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
     return wrong
 
 
-def _wrong_bending(pier: Pier, base: Base) -> list[str]:
+def _wrong_bending(pier: Pier, base: Base) -> list[Problem]:
     wrong = bending_problems(pier)
     if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
-        wrong.append(
-            'shaft = "elastic": devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
-        )
+        text = 'devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
+        wrong.append(Problem("shaft", "elastic", text, kind=Contradiction))
     if isinstance(base, RigidBase) and base.restitution is not None:
-        wrong.append(
-            f"restitution = {base.restitution:g}: what a blow takes of a shaft that bends follows from the momentum of its mode; "
-            "leave it out"
-        )
+        text = "what a blow takes of a shaft that bends follows from the momentum of its mode; leave it out"
+        wrong.append(Problem("restitution", base.restitution, text, kind=Contradiction))
     return wrong
 
 
-def _wrong_contact(pier: Pier, base: RigidBase, key: str) -> list[str]:
-    """Return why the force of a landing foot cannot be estimated, each message at the ``key``."""
+def _wrong_contact(pier: Pier, base: RigidBase) -> list[Problem]:
+    """Return why the force of a landing foot cannot be estimated."""
+    key, stiffness = "contact_stiffness_kN_m", base.contact_stiffness_kN_m
     wrong = []
     if pier.mass_t is None:
-        wrong.append(f"{key}: is of a pier whose mass is known; write mass_t in [pier], or leave it out")
+        text = "is of a pier whose mass is known; write mass_t in [pier], or leave it out"
+        wrong.append(Problem(key, stiffness, text, kind=MissingKey))
     if pier.deck_over_columns is not None:
-        wrong.append(f"{key}: how the columns of a frame share a landing is not known; leave it out")
+        text = "how the columns of a frame share a landing is not known; leave it out"
+        wrong.append(Problem(key, stiffness, text, kind=Contradiction))
     if base.bends:
-        wrong.append(f'{key}: is of a rigid shaft; leave it out, or write shaft = "rigid"')
+        text = 'is of a rigid shaft; leave it out, or write shaft = "rigid"'
+        wrong.append(Problem(key, stiffness, text, kind=Contradiction))
     return wrong
 
 
-def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[str]:
+def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[Problem]:
     least = least_beta(pier, base)
     if not base.beta > pier.least_beta:
-        return [
-            f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
+        text = (
+            "the pier topples on its springs under its own weight; beta must be above "
             f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
             + (f", for these springs above {least:.4g}" if least > pier.least_beta else "")
-        ]
-    if not base.beta > least and isinstance(base, YieldingBase):
-        return [
-            f"beta = {base.beta:g}: the least push topples the pier, because such springs near their yield force "
+        )
+    elif not base.beta > least and isinstance(base, YieldingBase):
+        text = (
+            "the least push topples the pier, because such springs near their yield force "
             f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
-        ]
-    return []
+        )
+    else:
+        return []
+    return [Problem("beta", base.beta, text, kind=OutOfRange)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import refuse
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.pier.bases import Base, ElasticBase
@@ -322,9 +322,7 @@ def statics(pier: Pier, foundation: Base) -> Statics:
       periods   0.1 α 4.92 s, 0.5 α 13.9 s, 0.9 α 31.5 s
       impacts   as viscous damping 0.1 α 1.71%, 0.5 α 2.33%, 0.9 α 4.59%
     """
-    wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
-    if wrong:
-        raise InputError(*wrong)
+    refuse(problems(pier, foundation) or unlikely_devices(pier, foundation.restraints))
     return sheet_of(pier, foundation)
 
 

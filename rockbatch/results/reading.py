@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import EditedTable, InputError, MissingColumns
+from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
@@ -71,14 +71,13 @@ def read_saved(directory: Path) -> Saved:
     if directory.exists() and not directory.is_dir():
         folder = directory.parent if (directory.parent / INFO).exists() else Path("reports") / directory.stem
         raise InputError(f"{directory}: a file, not a folder of results; write the folder, such as {folder}")
-    problems: list[str] = []
+    problems: list[Problem | str] = []
     info: dict[str, Any] = {}
     with _noting(problems):
         info = _read_info(directory / INFO)
     with _noting(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
-    if problems:
-        raise InputError(*problems, *_of_another_version(directory))
+    refuse([*problems, *_of_another_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
             f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, which varied does not list; start `rockbatch run` "
@@ -124,7 +123,7 @@ def edited(directory: Path, info: Mapping[str, Any]) -> str:
 
 
 @contextmanager
-def _noting(problems: list[str]) -> Iterator[None]:
+def _noting(problems: list[Problem | str]) -> Iterator[None]:
     """Add the problems of an ``InputError`` to those of the other file."""
     try:
         yield
@@ -138,7 +137,7 @@ def _naming_damage(path: Path, line: str, kind: str, *damages: type[Exception]) 
     try:
         yield
     except FileNotFoundError:
-        raise InputError(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+        raise NotFound(f"{path}: not there; give a folder that `rockbatch run` has written") from None
     except InputError:
         raise
     except damages as error:
@@ -154,8 +153,7 @@ def _read_info(path: Path) -> dict[str, Any]:
     problems = [f"{path}: {misfit}; start `rockbatch run` again" for misfit in misfits if misfit.place not in missing]
     if missing:
         problems.insert(0, f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    if problems:
-        raise InputError(*problems)
+    refuse(problems)
     return dict(info)
 
 

@@ -15,7 +15,7 @@ from rockbatch.checks.rule_files import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
@@ -344,7 +344,9 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule) -> Iterator[str]:
+def _unfit(
+    cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
+) -> Iterator[Problem]:
     """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
     yield from unmet(
         rule,
@@ -419,7 +421,7 @@ def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Outp
         try:
             section_heights(pier, output.requested_sections)
         except InputError as error:
-            wrong |= dict.fromkeys(error.problems)
+            wrong |= dict.fromkeys(error.messages)
     for problem in wrong:
         file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
 

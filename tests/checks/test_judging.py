@@ -109,7 +109,7 @@ def test_ratio_and_margin_are_the_distance_to_the_limit():
 def test_a_rule_that_makes_no_sense_is_refused_with_what_to_write(asked, problem):
     with pytest.raises(InputError) as caught:
         Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
-    assert any(problem in each for each in caught.value.problems)
+    assert any(problem in each for each in caught.value.messages)
 
 
 def test_a_rule_says_in_words_what_it_asks_and_how_it_counts():

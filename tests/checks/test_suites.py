@@ -118,7 +118,7 @@ def test_what_a_rule_chooses_and_the_results_do_not_have_is_reported_at_once():
     ]
     with pytest.raises(InputError) as caught:
         judge(rules, runs(), [case()])
-    case_, scale, law = caught.value.problems
+    case_, scale, law = caught.value.messages
     assert 'check "a": case = "pad"' in case_
     assert 'did you mean "pads"?' in case_
     assert "scale = 2: the motions are scaled by 1 only" in scale

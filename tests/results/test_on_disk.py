@@ -400,7 +400,7 @@ def test_a_history_too_long_for_memory_is_reported_and_the_others_are_there(tmp_
     monkeypatch.setattr("rockbatch.simulation.histories.MOST_ROWS", 100_000)
     with pytest.raises(rb.InputError, match=r"one-sine: a history of \d+ rows, more than 100000;") as error:
         keep_histories(saved, study, runs)
-    assert len(error.value.problems) == 1
+    assert len(error.value.messages) == 1
     assert len(rb.open_results(tmp_path).responses) == len(runs) - 1
 
 
@@ -491,7 +491,7 @@ def damaged(folder, change):
     change(folder / "histories.h5")
     with pytest.raises(rb.InputError) as error:
         Responses(folder / "histories.h5", INFO)[0]
-    (problem,) = error.value.problems
+    (problem,) = error.value.messages
     assert problem.startswith(f"{folder / 'histories.h5'}: ")
     return problem
 

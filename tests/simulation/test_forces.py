@@ -91,7 +91,7 @@ def test_friction_without_forces_says_what_to_write(tmp_path):
     path = study(tmp_path, forces=False, cases=(RIGID | {"friction": 0.5}, ON_PADS))
     with pytest.raises(InputError, match="friction: nothing to hold it against; write forces = true under") as error:
         rb.load_study(path)
-    assert f"{path}:{path.read_text().splitlines().index('friction = 0.5') + 1}" in error.value.problems[0]
+    assert f"{path}:{path.read_text().splitlines().index('friction = 0.5') + 1}" in error.value.messages[0]
 
 
 @pytest.mark.parametrize("share", [0, 1, -0.1])

@@ -111,10 +111,10 @@ def test_energy_starts_at_zero_and_is_kept_between_impacts_of_elastic_springs():
 def test_an_impossible_pier_is_refused_with_the_limit():
     with pytest.raises(rb.InputError, match="beta must be above") as error:
         rb.simulate(PIER, rb.YieldingBase(beta=3, eta=2.0), PULSE)
-    assert len(error.value.problems) == 1
+    assert len(error.value.messages) == 1
     with pytest.raises(rb.InputError) as error:
         rb.YieldingBase(beta=3, eta=0.9, epsilon=2)
-    assert len(error.value.problems) == 2
+    assert len(error.value.messages) == 2
 
 
 def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):

@@ -163,7 +163,7 @@ def motions(tables):
     try:
         found = ground_motions(of_study)
     except InputError as error:
-        return error.problems
+        return error.messages
     used = [(motion.name, motion.dt, motion.horizontal.tolist(), motion.vertical is None) for motion in found]
     vertical = [None if motion.vertical is None else motion.vertical.tolist() for motion in found]
     return [used, vertical, sorted(file.name for file in (*found.unusable, *found.left_out))]

@@ -105,7 +105,7 @@ def release(
     study, motions, jobs, fresh, progress
         As for :func:`rockbatch.run`; there is nothing to continue.
     out : path, optional
-        Folder for the files of ``rockbatch release``; without it nothing is kept on disk.
+        Folder for the tables, release.json and their section of report.html; without it nothing is kept on disk.
 
     Returns
     -------
