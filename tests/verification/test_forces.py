@@ -626,13 +626,16 @@ def test_a_run_says_where_it_would_slide():
     motion, friction = shaken(), 0.25
     least = sized(PIER, rb.RigidBase(), motion).friction_demand
     assert least > friction
-    note = outcome_of(PIER, rb.RigidBase(friction=friction), motion).note
+    slid = outcome_of(PIER, rb.RigidBase(friction=friction), motion)
+    note = slid.note
     response = rb.simulate(PIER, rb.RigidBase(), motion, forces=True)
     first = response.t[np.argmax(response.forces["friction"].to_numpy() > friction)]
     assert note.startswith("would slide at ")
     assert float(note.split()[3]) == pytest.approx(first, abs=0.011)
     assert f"the friction demand reaches {least:.3g}, the interface has 0.25; sliding is not followed" in note
-    assert outcome_of(PIER, rb.RigidBase(friction=2 * least), motion).note == ""
+    assert slid.forces.slides
+    held = outcome_of(PIER, rb.RigidBase(friction=2 * least), motion)
+    assert (held.forces.slides, held.note) == (False, "")
     hops = outcome_of(PIER, replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion)
     assert hops.forces.friction_demand < 5.0
     carried = f"keys have to carry a base shear of up to {hops.forces.key_shear / G:.3g} of the weight"
@@ -645,6 +648,7 @@ def test_a_run_says_where_it_would_slide():
         PIER, rb.RigidBase(restitution=0.1, friction=2.0, confirm=("restitution",)), replace(motion, vertical=None)
     )
     assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
+    assert hard.forces.slides
     assert "would slide at an impact" in hard.note
 
 
