@@ -81,7 +81,7 @@ def test_every_impossible_value_is_named_with_its_limit():
     assert [problem.split(" ")[0] for problem in caught.value.messages] == names
     (problem,) = problems(FIG5, ElasticBase(3.0))
     assert str(problem).startswith("beta = 3: ")
-    assert f"{FIG5.least_beta:.4g}" in problem
+    assert f"{FIG5.least_beta:.4g}" in str(problem)
 
 
 @pytest.mark.parametrize(
