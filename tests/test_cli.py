@@ -153,7 +153,7 @@ def test_a_run_that_is_refused_is_a_row_with_its_reason_and_has_no_history(study
     monkeypatch.setattr(
         rockbatch.batch.kept_histories,
         "histories",
-        lambda *given, **more: (written.append(given[3]), real(*given, **more))[1],
+        lambda *given, **more: (written.append(given[2]), real(*given, **more))[1],
     )
     assert main(["run", str(study), "--out", str(tmp_path / "out")]) == 1
     assert written == ["rigid"]

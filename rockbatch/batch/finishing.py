@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rockbatch.batch.beside import rows_beside
 from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep
 from rockbatch.batch.listening import Listener, announced_if_slow
 from rockbatch.batch.plan import Plan
-from rockbatch.batch.repeated import HALF_CYCLES, rows_beside
 from rockbatch.batch.threads import cores
 from rockbatch.checks import Verdict, write_verdicts
 from rockbatch.checks.checking import verdicts
@@ -22,6 +22,7 @@ from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, legible, read_text, remove
+from rockbatch.common.observers import tables
 from rockbatch.common.version import __version__
 from rockbatch.motions import MotionSet
 from rockbatch.reporting import REPORT, write_report
@@ -32,11 +33,10 @@ from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved, edited
 from rockbatch.results.run_json import INFO, describe, versions, write_info
-from rockbatch.results.sections import SECTIONS
-from rockbatch.results.shocks import SHOCKS
+from rockbatch.simulation.observing import Observer
 from rockbatch.study import Study
 
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS, CHECKS, REPORT, SEMICOLONS)
+OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, *tables(), CHECKS, REPORT, SEMICOLONS)
 """Files that a run may leave in its folder."""
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
@@ -107,7 +107,7 @@ def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | 
 
 
 def unchanged(
-    directory: Path, study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any]
+    directory: Path, observers: Sequence[Observer], study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any]
 ) -> FinishedBatch | None:
     """Return what is in ``directory`` if nothing would change by finishing its runs again, those of ``info``; else None."""
     saved = open_results(directory)
@@ -121,7 +121,7 @@ def unchanged(
             return None
     except (InputError, OSError):  # damaged, or those of an earlier run
         return None
-    beside = _beside_peaks(study, motions)
+    beside = _beside_peaks(study, observers)
     if not all(is_plain(directory / name) for name in beside):
         return None
     judged = _judged(saved, study)
@@ -162,7 +162,8 @@ def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
 
 
 def finish(
-    directory: Path,
+    journal: Journal,
+    observers: Sequence[Observer],
     study: Study,
     motions: MotionSet,
     runs: Plan,
@@ -170,22 +171,28 @@ def finish(
     listener: Listener,
     records: Collection[str] = (),
 ) -> FinishedBatch:
-    """Write run.json, histories, checks and the report beside peaks.csv; of ``records`` all histories, too.
+    """Write run.json, histories, checks and the report beside peaks.csv in the folder of its ``journal``.
+
+    ``observers`` are those of tables beside it. Of ``records`` all histories are written, too.
 
     ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
     """
+    directory = journal.path.parent
     remove(directory / REPORT)  # it comes last: where it is, the others are there
     with announced_if_slow(listener, f"writing {INFO}"):
         write_info(directory, info)
         saved = open_results(directory)
     histories, refusal = _keep_histories(saved, study, runs, listener, records)
-    tables = [write(directory / name, rows) for name, rows in _tables(saved, study, motions, runs, listener)]
+    beside = [
+        write(directory / name, rows)
+        for name, rows in _tables(saved, study, motions, runs, journal, observers, listener)
+    ]
     with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
         judged = _judged(saved, study)
         checks = write_verdicts(directory, judged) if judged else None
     with announced_if_slow(listener, f"writing {REPORT}"):
         report = write_report(directory, saved=saved)
-    written = (directory / PEAKS, directory / INFO, *tables, histories, checks, report)
+    written = (directory / PEAKS, directory / INFO, *beside, histories, checks, report)
     return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), refusal)
 
 
@@ -194,30 +201,27 @@ def _judged(saved: Saved, study: Study) -> list[Verdict]:
     return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
 
 
-def _beside_peaks(study: Study, motions: MotionSet) -> list[str]:
-    """Return the tables that stand beside peaks.csv: those that the study asks for, and that of the shocks of sequences."""
-    asked = {
-        INTENSITY: study.output.intensity,
-        SHOCKS: any(motion.shocks for motion in motions.motions),
-        HALF_CYCLES: study.output.half_cycles,
-        SECTIONS: study.output.requested_sections is not None,
-    }
-    return [name for name, is_asked in asked.items() if is_asked]
+def _beside_peaks(study: Study, observers: Iterable[Observer]) -> list[str]:
+    """Return the tables that stand beside peaks.csv, of intensity measures and of ``observers``."""
+    return [*([INTENSITY] if study.output.intensity else []), *(observer.table for observer in observers)]
 
 
 def _tables(
-    saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener
+    saved: Saved,
+    study: Study,
+    motions: MotionSet,
+    runs: Plan,
+    journal: Journal,
+    observers: Sequence[Observer],
+    listener: Listener,
 ) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
     """Yield name and rows of the tables beside the peaks, and take away those of another time."""
-    asked = _beside_peaks(study, motions)
-    for name in {INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS}.difference(asked):
+    for name in {INTENSITY, *tables()}.difference(_beside_peaks(study, observers)):
         remove(saved.directory / name)
+    if study.output.intensity:
+        yield INTENSITY, intensities(saved.peaks, study, motions.motions)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
-    for name in asked:
-        if name == INTENSITY:
-            yield name, intensities(saved.peaks, study, motions.motions)
-        else:
-            yield name, rows_beside(name, study, runs, saved.peaks, jobs, listener)
+    yield from rows_beside(observers, study, runs, saved.peaks, journal, jobs, listener).items()
 
 
 def _keep_histories(

@@ -22,6 +22,7 @@ from rockbatch.batch.finishing import (
 )
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, Progress, count, listener_of, once
+from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Engine, engine_of
 from rockbatch.common.arguments import checked
@@ -32,6 +33,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
 from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
 from rockbatch.results.run_json import FROM_PYTHON
+from rockbatch.simulation.observing import Observer
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
 
@@ -108,7 +110,7 @@ def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFram
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))
     with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-        execute_runs(runs, study.numerics, rows, engine, study.output, progress=progress)
+        execute_runs(runs, study.numerics, rows, engine, observers_of(study.output), progress=progress)
     return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(motions)], study)
 
 
@@ -138,14 +140,17 @@ def run_into(
     requested = share_of(len(runs), *share) if share else range(len(runs))
     digest = study_digests(study, motions)
     info = what_was_run(study, motions, runs, digest, command)
-    with Journal(directory / JOURNAL, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
+    beside = observers_beside(study.output, motions.motions)
+    with Journal(
+        directory / JOURNAL, columns(study), digest, fresh, runs=len(runs), tell=listener.say, beside=_tables(beside)
+    ) as journal:
         cost = None if fresh or len(journal) else cost_of_finished(directory, info)
         if cost is not None:
             state = f"{described(study, motions)} are finished in {directory}"
             listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
-            if not records and (finished := unchanged(directory, study, motions, runs, info)):
+            if not records and (finished := unchanged(directory, beside, study, motions, runs, info)):
                 return finished
-            return finish(directory, study, motions, runs, info | cost, listener, records)
+            return finish(journal, beside, study, motions, runs, info | cost, listener, records)
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:
             listener.say(f"{replaced}, will be replaced")
@@ -153,14 +158,14 @@ def run_into(
         with engine:
             every = count(len(to_simulate(runs, requested)), "run")
             listener.say(f"{described(study, motions)} on {engine}{of_share.format(every)}")
-            cost = _execute_remaining(study, runs, requested, journal, engine, listener)
+            cost = _execute_remaining(study, runs, requested, journal, beside, engine, listener)
         if share:
             listener.say(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
             )
             return None
         cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
-        return finish(directory, study, motions, runs, info | cost, listener, records)
+        return finish(journal, beside, study, motions, runs, info | cost, listener, records)
 
 
 def merge(
@@ -175,7 +180,10 @@ def merge(
     listener.motions(motions)
     runs = Plan(study, motions)
     digest = study_digests(study, motions)
-    with Journal(directory / JOURNAL, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
+    beside = observers_beside(study.output, motions.motions)
+    with Journal(
+        directory / JOURNAL, columns(study), digest, runs=len(runs), tell=listener.say, beside=_tables(beside)
+    ) as journal:
         problems = []
         for share in shares:
             try:
@@ -194,7 +202,11 @@ def merge(
             raise InputError(*problems)
         info = what_was_run(study, motions, runs, digest, command)
         info |= {"peaks": write_peaks(journal, motions), "jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
-        return finish(directory, study, motions, runs, info, listener)
+        return finish(journal, beside, study, motions, runs, info, listener)
+
+
+def _tables(observers: Iterable[Observer]) -> list[str]:
+    return [observer.table for observer in observers]
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:
@@ -230,7 +242,13 @@ def share_of(runs: int, share: int, shares: int) -> range:
 
 
 def _execute_remaining(
-    study: Study, runs: Plan, requested: range, journal: Journal, engine: Engine, listener: Listener
+    study: Study,
+    runs: Plan,
+    requested: range,
+    journal: Journal,
+    beside: Sequence[Observer],
+    engine: Engine,
+    listener: Listener,
 ) -> dict[str, Any]:
     """Carry out the runs that are missing in the journal; return their entry in run.json."""
     every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
@@ -239,8 +257,9 @@ def _execute_remaining(
         listener.say(f"{n_finished} of them are finished already, {remaining} are left (--fresh starts over)")
     try:
         with listener.progress(remaining) as progress:
-            make_ready(study, listener)
-            execute_runs(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
+            observers = (*observers_of(study.output), *beside)
+            make_ready(study, listener, observers)
+            execute_runs(runs, study.numerics, journal, engine, observers, among=requested, progress=progress)
     except KeyboardInterrupt:
         if n_done := every - len(to_simulate(runs, requested, journal)):
             listener.say(

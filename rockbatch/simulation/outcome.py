@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
@@ -192,6 +192,8 @@ class Outcome:
         Its demands on the design, if asked for.
     device_work : DeviceWork or None
         The work of its devices, if asked for.
+    tables : mapping
+        Rows of tables beside peaks.csv by their files, if asked for; none of a mirror image.
     """
 
     status: str
@@ -251,6 +253,7 @@ class Outcome:
     deflection_max_error: float | None = None
     top_drift_max: float | None = None
     top_drift_max_error: float | None = None
+    tables: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def was_run(self) -> bool:
@@ -277,6 +280,10 @@ class Outcome:
         """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
+    def with_table(self, file: str, rows: Any) -> "Outcome":
+        """Return the outcome with the rows of a table beside peaks.csv."""
+        return self.changed(tables={**self.tables, file: rows})
+
     def mirrored(self) -> "Outcome":
         """Return the outcome under the reversed horizontal motion, of a symmetric pier on a symmetric foundation."""
         return self.changed(
@@ -288,6 +295,7 @@ class Outcome:
             dissipated_left=self.dissipated_right,
             dissipated_right=self.dissipated_left,
             forces=self.forces and self.forces.mirrored(),
+            tables={},
         )
 
 

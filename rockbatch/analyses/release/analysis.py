@@ -21,8 +21,9 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Base
 from rockbatch.simulation.half_cycles import apparent_restitution
-from rockbatch.simulation.histories import cycles_of, written
+from rockbatch.simulation.histories import cycles_of
 from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.recording import recorded
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.study import Case, Motions, Study
 
@@ -182,7 +183,7 @@ class _Test:
         run = Run(self.case.pier, self.base(value), self.still)
         substeps = 2 * first_substeps(run.pier, run.base, run.motion.dt)
         outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.0, wait=False)
-        rows = written(run, outcome, 0.0, every_step=False, wait=False)
+        rows = recorded(run, outcome, 0.0, every_step=False, wait=False).rows
         cycles = cycles_of(run.base, rows)
         n, computed = len(self.measured.t), len(cycles.t) - 1
         t, amplitude = np.full(n, float(rows.t[-1])), np.zeros(n)
