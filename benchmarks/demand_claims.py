@@ -8,7 +8,7 @@ yield and a stop; with --tiny the motion hardly lifts a pivot, or none. Each run
 10⁻⁴, with forces, the work of devices and sections at three heights, and again with an eighth and a sixteenth of the step.
 
 A claim is broken if a quantity differs from that of the finest run by more than the claimed share of it, of a hundredth of its
-scale at least (`simulation.changes`), and by more than the two fine runs differ. Undecided are claims below what these differ by.
+scale at least (`outcome.changes`), and by more than the two fine runs differ. Undecided are claims below what these differ by.
 Claims of runs whose outcome or count of impacts the finest step changes are counted apart, as chaotic.
 Ctrl-C ends the pool, and prints what has been counted.
 """
@@ -27,9 +27,9 @@ from rockbatch.motions import Motion
 from rockbatch.observers.devices_work.observe import WorkOfDevices
 from rockbatch.observers.forces.observe import PeaksOfForces
 from rockbatch.observers.sections.observe import ForcesInSections
+from rockbatch.outcome.changes import FLOOR, OF_DEVICES, Sized, scales_of
+from rockbatch.outcome.device_work import OF_WORK
 from rockbatch.pier import Base, Pier, Restraint, problems
-from rockbatch.simulation.changes import FLOOR, OF_DEVICES, Sized, scales_of
-from rockbatch.simulation.device_work import OF_WORK
 from rockbatch.simulation.error_control import CHANCE, run_to_tolerance
 from rockbatch.simulation.forces import _SIZED as OF_FORCES
 from rockbatch.simulation.observing import observed

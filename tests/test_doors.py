@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from rockbatch.batch.analysis import AnalysisFolder
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
+from rockbatch.workflow.analysis import AnalysisFolder
 
 TOP = Path(__file__).parents[1] / "rockbatch"
 OF_FOLDERS = ("analyses", "batch", "checks", "reporting", "results")

@@ -14,9 +14,9 @@ from rockbatch.batch.groups import Group, groups, outcomes_of
 from rockbatch.batch.threads import cores, finished
 from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Numerics
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from rockbatch.batch.groups import least_steps, outcomes_of
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.batch.plan import Plan, some_of
-from rockbatch.batch.running import check_records, described, share_of
+from rockbatch.batch.preparing import check_records, described, share_of
 from rockbatch.common.errors import starting_threads
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun, columns, row
 from rockbatch.results.histories_file import history_bytes
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
@@ -71,7 +71,7 @@ def expected(
 ) -> Expected:
     """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples.
 
-    ``share`` and ``records`` as in :func:`rockbatch.batch.running.run_into`, of which a share keeps no histories.
+    ``share`` and ``records`` as in :func:`rockbatch.run`, of which a share keeps no histories.
     """
     motions = ground_motions(study)
     listener.motions(motions)

@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from rockbatch.batch.plan import simulations
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.error_control import run_all_to_tolerance
 from rockbatch.simulation.leaning import with_lean
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.observing import Observer, observed
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed, steps_of
 from rockbatch.study import Numerics
 

@@ -11,13 +11,13 @@ from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import simulations
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.response import Response
 from rockbatch.results.columns import StudyRun
 from rockbatch.results.histories_file import HISTORIES, has_value, history_bytes, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.recording import recorded
-from rockbatch.simulation.response import Response
 from rockbatch.study import Study
 
 

@@ -10,6 +10,8 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.response import Response
 from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
 from rockbatch.results import sections as of_sections
@@ -20,9 +22,7 @@ from rockbatch.simulation.histories import histories
 from rockbatch.simulation.leaning import with_lean
 from rockbatch.simulation.models import least_substeps
 from rockbatch.simulation.observing import Observer, observed
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.recording import Recording, recorded
-from rockbatch.simulation.response import Response
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.study import Case, Numerics
 from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Output

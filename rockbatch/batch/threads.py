@@ -9,9 +9,9 @@ from typing import Protocol, Self, runtime_checkable
 
 from rockbatch.batch.groups import Group, groups, outcomes_of
 from rockbatch.common.errors import InputError, starting_threads
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Numerics
 

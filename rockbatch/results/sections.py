@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Pier
 from rockbatch.results.beside_peaks import read_beside
-from rockbatch.simulation.outcome import Section
 
 SECTIONS = "sections.csv"
 

@@ -9,14 +9,14 @@ from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
+from rockbatch.outcome.response import EVENT_TYPES, Response
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import LANDINGS
-from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.simulation.models import acceleration_at, block, flexible_block, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
-from rockbatch.simulation.response import EVENT_TYPES, Response
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),

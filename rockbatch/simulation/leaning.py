@@ -7,8 +7,8 @@ import numpy as np
 
 from rockbatch.common.notes import LEANS
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import ElasticBase, Pier, YieldingBase, tilt_over_residual, vertical_frequency, yield_deflection
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.recording import recorded_side_by_side
 from rockbatch.simulation.runs import Run, Stop
 from rockbatch.simulation.starting import start_of

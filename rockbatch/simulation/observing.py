@@ -7,7 +7,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC
 from rockbatch.motions.motion import Motion
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.recording import Recording, recorded, recorded_side_by_side
 from rockbatch.simulation.runs import Run, Stop, steps_of
 

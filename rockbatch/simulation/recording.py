@@ -10,8 +10,8 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.core import types
 from rockbatch.core.types import Result
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.compilation import kernel_of
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
 
 MOST_ROWS = 10_000_000

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
+from rockbatch.outcome.outcome import Outcome, ShockOutcome
 from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
-from rockbatch.simulation.outcome import Outcome, ShockOutcome
 from rockbatch.simulation.runs import Run
 
 LAST_PART = 0.25

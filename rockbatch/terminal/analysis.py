@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rockbatch.batch.analysis import Analysis
-from rockbatch.commands.messages import Terminal
-from rockbatch.commands.options import engine, folder
-from rockbatch.commands.streams import in_width, say
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
+from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.options import engine, folder
+from rockbatch.terminal.streams import in_width, say
+from rockbatch.workflow.analysis import Analysis
 
 
 def analysis_arguments(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -42,3 +42,9 @@ def in_lines(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], names: i
 def cell(head: Head, item: Mapping[str, Any]) -> str:
     """Return a value of an item as the terminal shows it."""
     return number(head.value_in(item), head.form).replace("\u00a0", " ").replace("\u2060", "")
+
+
+def named(keys: Iterable[str], values: Iterable[Any]) -> str:
+    """Return ``beta=40 eta=2.5``, without keys that do not apply."""
+    pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
+    return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

@@ -9,8 +9,8 @@ import rockbatch.batch.threads
 from rockbatch.batch.beside import MOST_OF_A_CELL, packed, unpacked
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.commands.cli import main
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation.outcome import Outcome
 
 pytestmark = pytest.mark.usefixtures("no_report")
 

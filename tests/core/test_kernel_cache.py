@@ -18,7 +18,7 @@ from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.history import MOMENT
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.simulation.outcome import TERMS
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.simulation import Run
 from rockbatch.observers.energy_balance.observe import energies
 rows = np.zeros(2, [(name, "f8") for name in (*MOMENT, *Rocking._fields, *Stance._fields)]).view(np.recarray)

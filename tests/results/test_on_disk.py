@@ -20,6 +20,7 @@ from rockbatch.batch.kept_histories import keep_histories, to_keep, worst
 from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
 from rockbatch.results.histories_file import FORMAT, UNITS, Responses, history_bytes, seal, write
@@ -27,7 +28,6 @@ from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import histories
-from rockbatch.simulation.outcome import TERMS
 from rockbatch.simulation.recording import recorded
 from rockbatch.study.suite import ground_motions
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from rockbatch.analyses.release.fit import Fit, Passages, fitted
 from rockbatch.analyses.release.study import ReleaseSpec, read_release
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.listening import Progress
 from rockbatch.batch.single import simulate
 from rockbatch.batch.threads import Engine
@@ -19,13 +18,14 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.files import made_folder
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
+from rockbatch.outcome.half_cycles import apparent_restitution
 from rockbatch.pier import Base
-from rockbatch.simulation.half_cycles import apparent_restitution
 from rockbatch.simulation.histories import cycles_of
 from rockbatch.simulation.models import first_substeps
 from rockbatch.simulation.recording import recorded
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.study import Case, Motions, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +53,7 @@ NO_STRETCH = 0.005
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Release(Analysis):
-    """A fitted release test; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """A fitted release test; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------

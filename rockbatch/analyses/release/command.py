@@ -4,14 +4,13 @@ import argparse
 
 from rockbatch.analyses.release.analysis import release
 from rockbatch.analyses.release.quantities import IMPACTS, in_words
-from rockbatch.commands.analysis import in_lines, print_files
-from rockbatch.commands.messages import Terminal
-from rockbatch.commands.options import folder
-from rockbatch.commands.streams import show
-from rockbatch.commands.summary import named
 from rockbatch.common.lazy import pd
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
+from rockbatch.terminal.analysis import in_lines, named, print_files
+from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.options import folder
+from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.spectrum import overturning_map, rocking_spectrum
 from rockbatch.analyses.spectrum.study import AXES, SELF_SIMILAR, MapSpec, SpectrumSpec, read_spectrum
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
@@ -19,6 +18,7 @@ from rockbatch.common.files import is_plain, read_table
 from rockbatch.common.lazy import pd
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Output, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Spectrum(Analysis):
-    """Rocking spectra and overturning maps; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """Rocking spectra and overturning maps; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------

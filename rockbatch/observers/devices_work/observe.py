@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from rockbatch.outcome.device_work import with_work
+from rockbatch.outcome.outcome import DeviceWork, Outcome
 from rockbatch.simulation import restraints
-from rockbatch.simulation.device_work import with_work
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import DeviceWork, Outcome
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output

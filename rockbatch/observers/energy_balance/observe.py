@@ -9,10 +9,10 @@ from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.simulation import restraints
 from rockbatch.simulation.models import ground_of, model, springs
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output
@@ -52,7 +52,7 @@ class EnergyBalance(Observer):
 
 
 def energies(run: Run, rows: np.recarray) -> Samples:
-    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.simulation.outcome.TERMS`, shape (n, 10)."""
+    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.outcome.outcome.TERMS`, shape (n, 10)."""
     pier, base = run.pier, run.base
     ground, dt = ground_of(run.motion), float(run.motion.dt)
     terms = np.zeros((len(rows), len(TERMS)))

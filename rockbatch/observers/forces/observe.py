@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Outcome, PeakForces
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome, PeakForces
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output

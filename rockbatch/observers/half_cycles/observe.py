@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from rockbatch.observers.half_cycles import TABLE
-from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS, HalfCycles, apparent_restitution
+from rockbatch.outcome.half_cycles import HALF_CYCLE_COLUMNS, HalfCycles, apparent_restitution
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.histories import cycles_of
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output
 

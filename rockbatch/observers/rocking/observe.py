@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import YieldingBase
 from rockbatch.simulation.leaning import Apart, apart, with_error_of_rocking, with_rocking
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.study import Output

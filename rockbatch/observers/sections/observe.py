@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from rockbatch.outcome.outcome import Outcome, Section
 from rockbatch.pier.sections import section_heights
 from rockbatch.results.sections import SECTIONS, section_rows
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome, Section
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.sections import sections_of, with_errors

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome, ShockOutcome
 from rockbatch.results.shocks import SHOCKS, shock_rows
 from rockbatch.simulation.observing import Observer
-from rockbatch.simulation.outcome import Outcome, ShockOutcome
 from rockbatch.simulation.recording import Recording
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.shocks import OfShocks, of_shocks, with_error
