@@ -35,7 +35,7 @@ def test_commands_print_by_one_door():
     found = [
         place for place, line in lines_of("commands", "analyses") if re.search(r"\bprint\(|sys\.std\w+\.write", line)
     ]
-    assert {place.partition(":")[0] for place in found} <= {"commands/streams.py"}
+    assert {place.partition(":")[0] for place in found} <= {"terminal/streams.py"}
 
 
 def test_an_edited_table_of_an_analysis_is_reported_and_kept(tmp_path):

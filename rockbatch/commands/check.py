@@ -21,7 +21,7 @@ from rockbatch.reporting import write_report
 from rockbatch.results.labelled import labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
-from rockbatch.terminal.analysis import named
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import aligned, coloured, filled, say, show, shown, width
 
 WORST = 10

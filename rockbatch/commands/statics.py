@@ -14,7 +14,7 @@ from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study, load_study
-from rockbatch.terminal.analysis import named
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width, say, show
 
 MOST_CASES = 12

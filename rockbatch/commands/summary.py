@@ -12,7 +12,7 @@ from rockbatch.common.notes import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.results.rows import with_case
 from rockbatch.study import PIER_KEYS, Study
-from rockbatch.terminal.analysis import named
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width
 
 MOST_RUNS = 1000

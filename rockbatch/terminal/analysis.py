@@ -42,9 +42,3 @@ def in_lines(heads: Sequence[Head], items: Iterable[Mapping[str, Any]], names: i
 def cell(head: Head, item: Mapping[str, Any]) -> str:
     """Return a value of an item as the terminal shows it."""
     return number(head.value_in(item), head.form).replace("\u00a0", " ").replace("\u2060", "")
-
-
-def named(keys: Iterable[str], values: Iterable[Any]) -> str:
-    """Return ``beta=40 eta=2.5``, without keys that do not apply."""
-    pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
-    return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

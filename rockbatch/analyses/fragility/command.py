@@ -12,7 +12,8 @@ from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
 from rockbatch.reporting.table import Head
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, in_lines, named, print_files
+from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.options import folder
 from rockbatch.terminal.streams import say, show
 

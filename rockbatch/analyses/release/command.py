@@ -7,8 +7,9 @@ from rockbatch.analyses.release.quantities import IMPACTS, in_words
 from rockbatch.common.lazy import pd
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import in_lines, named, print_files
+from rockbatch.terminal.analysis import in_lines, print_files
 from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.options import folder
 from rockbatch.terminal.streams import show
 

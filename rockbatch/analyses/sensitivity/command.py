@@ -8,7 +8,8 @@ from rockbatch.common.lazy import pd
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, in_lines, named, print_files
+from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import say, show
 
 

@@ -11,7 +11,8 @@ from rockbatch.batch.listening import count
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
-from rockbatch.terminal.analysis import analysis_arguments, named, print_files
+from rockbatch.terminal.analysis import analysis_arguments, print_files
+from rockbatch.terminal.naming import named
 from rockbatch.terminal.streams import in_width, say, show
 
 MOST_LINES = 12
