@@ -40,11 +40,11 @@ from rockbatch.core.table import LANES, table
 from rockbatch.core.table import record as record_of
 from rockbatch.core.types import RIGHT, SURVIVED, Ground, Instant
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, springs
 from rockbatch.simulation.models import elements, line_of, system_of
 from rockbatch.simulation.models import model as model_of
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.starting import start_of
 
 BARE_STEPS = 200_000

@@ -6,7 +6,7 @@ from rockbatch.common.lazy import loading
 from rockbatch.common.version import __version__ as __version__
 
 _NAMES = {
-    "batch.running": "run",
+    "workflow.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
     "results.checking": "check",
@@ -20,7 +20,7 @@ _NAMES = {
     "pier.statics": "Statics statics",
     "reporting": "report",
     "results.opened": "open_results",
-    "simulation.response": "Response",
+    "outcome.response": "Response",
     "study": "Study load_study",
 }
 """Public names by their modules, beside those of the analyses; ``__init__.pyi`` has all of them for type checkers."""

@@ -5,7 +5,6 @@ from rockbatch.analyses.fragility.analysis import fragility as fragility
 from rockbatch.analyses.release.analysis import release as release
 from rockbatch.analyses.sensitivity.analysis import sensitivity as sensitivity
 from rockbatch.analyses.spectrum.analysis import spectrum as spectrum
-from rockbatch.batch.running import run as run
 from rockbatch.batch.single import simulate as simulate
 from rockbatch.checks import Rule as Rule
 from rockbatch.common.errors import BadSyntax as BadSyntax
@@ -35,6 +34,7 @@ from rockbatch.motions import pulse as pulse
 from rockbatch.motions import read_motions as read_motions
 from rockbatch.motions import sequence as sequence
 from rockbatch.motions.hazard import HazardCurve as HazardCurve
+from rockbatch.outcome.response import Response as Response
 from rockbatch.pier import Damper as Damper
 from rockbatch.pier import DeckSpring as DeckSpring
 from rockbatch.pier import ElasticBase as ElasticBase
@@ -49,6 +49,6 @@ from rockbatch.pier.statics import statics as statics
 from rockbatch.reporting import report as report
 from rockbatch.results.checking import check as check
 from rockbatch.results.opened import open_results as open_results
-from rockbatch.simulation.response import Response as Response
 from rockbatch.study import Study as Study
 from rockbatch.study import load_study as load_study
+from rockbatch.workflow.running import run as run

@@ -161,6 +161,8 @@ class Journal:
         The file, such as ``peaks.csv.part``; its folder is made.
     columns : sequence of str
         Columns of the table.
+    beside : sequence of str
+        Names of cells that stay with the row of a run until the table is written, and are not part of it: texts without commas.
     digest : mapping of str to str
         What the rows depend on, in plural words, each with its digest: ``{"cases": "5f1c…", "motions": "09ab…"}``.
     fresh : bool
@@ -179,14 +181,14 @@ class Journal:
 
     def __init__(
         self, path: Path, columns: Sequence[str], digest: Mapping[str, str], fresh: bool = False, *,
-        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None,
+        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None, beside: Sequence[str] = (),
     ) -> None:  # fmt: skip
         self.path = path
-        self.columns = list(columns)
+        self.columns, self.beside = [*columns, *beside], list(beside)
         self._fresh = fresh
         self._tell = tell or (lambda _: None)
         remedy = "undo that to continue, choose another folder with --out, or start over with --fresh"
-        self._rows = _Rows(path, columns, digest, runs, remedy)
+        self._rows = _Rows(path, self.columns, digest, runs, remedy)
         self._written = False
 
     def __enter__(self) -> Self:
@@ -236,6 +238,13 @@ class Journal:
         (cells,) = csv.reader(io.StringIO(self._rows.row(number).decode(), newline=""))
         return dict(zip(self.columns, map(csv_plain, cells), strict=True))
 
+    def cells_beside(self, number: int) -> dict[str, str]:
+        """Return the cells beside the row of a run by their names; none of a run that is not finished here."""
+        if not self.beside or number not in self:
+            return {}
+        cells = self._rows.row(number).rstrip(b"\n").decode().rsplit(",", len(self.beside))[1:]
+        return dict(zip(self.beside, cells, strict=True))
+
     def rows(self) -> Iterator[tuple[int, dict[str, str]]]:
         """Yield number and cells of every finished run, from the lowest number."""
         return ((number, self[number]) for number in self)
@@ -280,13 +289,16 @@ class Journal:
         return Written(rows, digest.hexdigest())
 
     def _lines_in_order(self, extra_rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
-        yield _encoded(csv_line(self.columns))
+        yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
         with os.fdopen(os.dup(self._rows.file.fileno()), "rb", BUFFER) as buffered:
             for number in self:
                 buffered.seek(self._rows.starts[number])
-                yield _unfolded(buffered.read(self._rows.sizes[number]))
+                yield self._without_beside(_unfolded(buffered.read(self._rows.sizes[number])))
         for row in extra_rows:
-            yield from self._lines(1, {name: [cell] for name, cell in row.items()})
+            yield from map(self._without_beside, self._lines(1, {name: [cell] for name, cell in row.items()}))
+
+    def _without_beside(self, line: bytes) -> bytes:
+        return line.rsplit(b",", len(self.beside))[0] + b"\n" if self.beside else line
 
     def _lines(self, rows: int, columns: Mapping[str, Sequence[Any]]) -> Iterator[bytes]:
         empty = [None] * rows

@@ -126,8 +126,8 @@ class _Demands(argparse.Action):
     """Lists what checks may ask for."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
-        from rockbatch.commands.streams import filled, show
         from rockbatch.quantities.catalogue import listed
+        from rockbatch.terminal.streams import filled, show
 
         for group, names in listed().items():
             show(filled(f"{group}: {', '.join(names)}"))

@@ -12,11 +12,11 @@ from typing import Any, NoReturn
 
 from rockbatch.commands.arguments import COMMANDS, DISCARDING
 from rockbatch.commands.interrupts import answered_interrupts
-from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import InputError, PlainRemark
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import full_version
+from rockbatch.terminal.streams import is_lost, open_missing, say
 
 _COMMANDS_MEANT = {word: name for name, words in {
     "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",

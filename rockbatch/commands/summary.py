@@ -1,6 +1,6 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,14 +8,15 @@ import numpy.typing as npt
 
 from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
-from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import LEANS, Failure
 from rockbatch.pier.laws import steady
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
 from rockbatch.quantities.rows import with_case
-from rockbatch.simulation.outcome import LEANS, Failure
 from rockbatch.study import PIER_KEYS, Study
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import in_width
 
 MOST_RUNS = 1000
 """Runs of a study beyond which its worst runs are printed instead of all."""
@@ -150,9 +151,3 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     return in_width(
         ["", *cases], [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
     )
-
-
-def named(keys: Iterable[str], values: Iterable[Any]) -> str:
-    """Return ``beta=40 eta=2.5``, without keys that do not apply."""
-    pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
-    return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

@@ -717,8 +717,8 @@ OPTIONAL = (
     ),
     Quantity(
         OTHER_LAW,
-        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; unless [output] "
-        "both_laws = false",
+        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; with [output] "
+        "both_laws = true, or with a check of a settlement",
         "settlement_other_law", "m", ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
         requested=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),

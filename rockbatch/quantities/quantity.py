@@ -39,7 +39,7 @@ class Run(Protocol):
 
     @property
     def outcome(self) -> Any:
-        """Its :class:`rockbatch.simulation.outcome.Outcome`."""
+        """Its :class:`rockbatch.outcome.outcome.Outcome`."""
 
     @property
     def pga(self) -> float:

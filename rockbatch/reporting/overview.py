@@ -6,6 +6,7 @@ from typing import Any
 from rockbatch.checks import wording
 from rockbatch.checks.responses import PEAKS
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import LEANS
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting import dots
@@ -15,7 +16,6 @@ from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.table import THETA
 from rockbatch.results.figures import said_of
 from rockbatch.results.labelled import ceiling
-from rockbatch.simulation.outcome import LEANS
 
 MOST_ROWS = 14
 """Rows that fit on the first screen."""

@@ -12,10 +12,10 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.motions import Motion, MotionSet
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Pier
 from rockbatch.quantities.arrays import texts_in
 from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FACTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
-from rockbatch.simulation.outcome import Failure, Outcome
 from rockbatch.study import Case, Study
 
 PEAKS = "peaks.csv"

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Pier
 from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.results.beside_peaks import read_beside
-from rockbatch.simulation.outcome import Section
 
 SECTIONS = "sections.csv"
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SAME_TIME = 0.01

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from rockbatch.outcome.changes import change_of_devices
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
 from rockbatch.simulation.agreement import far_below, same_counts, windows
-from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.models import fastest_rate
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, Trial, try_all
 
 CHANGES = {"stronger": 1e-8, "weaker": -1e-8}

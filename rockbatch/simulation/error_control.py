@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.changes import change_of_devices
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, flight_of, settled, windows
-from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
 from rockbatch.simulation.models import first_substeps, readings
-from rockbatch.simulation.outcome import Failure, Outcome
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8

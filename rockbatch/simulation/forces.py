@@ -13,11 +13,11 @@ from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.changes import Sized, greatest_change
+from rockbatch.outcome.outcome import PeakForces
+from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force, shape_at
-from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
-from rockbatch.simulation.outcome import PeakForces
-from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of

@@ -16,6 +16,7 @@ from rockbatch.core.run import NO_ROWS, march
 from rockbatch.core.system import System
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Motion, Samples
+from rockbatch.outcome.outcome import RELEASED, Failure, Outcome
 from rockbatch.pier import (
     MOST_NEGLECTED,
     Base,
@@ -42,7 +43,6 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import RELEASED, Failure, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 

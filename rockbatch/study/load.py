@@ -23,7 +23,7 @@ from rockbatch.motions.pairs import DIRECTIONS
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
-from rockbatch.quantities.catalogue import BROUGHT, COLUMNS
+from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
@@ -82,7 +82,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
         "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
     "both_laws": Key(boolean, "true",
         "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two more "
-        "runs or more; of others it is not a range."),
+        "runs or more; of others it is not a range. A check of a settlement, which takes the worse, has it found too."),
     "intensity": Key(boolean, "true",
         "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
@@ -318,6 +318,8 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         _complain_without_forces(file)
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
+    if any(DEMANDS[rule.demand].other_law for rule in checks.rules):
+        output = replace(output, both_laws=True)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -352,7 +354,7 @@ def _unfit(
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        other_law=output.both_laws or not any(case.base.ratchets for case in cases),
+        other_law=True,  # a check that takes it brings it
         output=[key for key in BROUGHT if getattr(output, key) or not _brings(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )

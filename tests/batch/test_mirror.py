@@ -11,8 +11,8 @@ from studies import COSINE, PADS, SINE, study_text
 
 import rockbatch as rb
 from rockbatch.batch.execution import execute_runs, to_simulate
-from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
@@ -61,9 +61,9 @@ class Watched(Threads):
         super().__init__(1)
         object.__setattr__(self, "simulated", [])
 
-    def outcomes(self, runs, numerics, output=NOTHING_MORE):
+    def outcomes(self, runs, numerics, observers=()):
         self.simulated.extend((run.record.name, run.polarity, run.scale, run.case.columns["beta"]) for run in runs)
-        return super().outcomes(runs, numerics, output)
+        return super().outcomes(runs, numerics, observers)
 
 
 def carried_out(path, folder, among=None):
@@ -71,7 +71,14 @@ def carried_out(path, folder, among=None):
     loaded = load_study(path)
     engine = Watched()
     with Journal(folder / "peaks.csv.part", columns(loaded), {}) as journal:
-        execute_runs(Plan(loaded, ground_motions(loaded)), loaded.numerics, journal, engine, loaded.output, among=among)
+        execute_runs(
+            Plan(loaded, ground_motions(loaded)),
+            loaded.numerics,
+            journal,
+            engine,
+            observers_of(loaded.output),
+            among=among,
+        )
         return engine.simulated, dict(journal.rows())
 
 
@@ -166,10 +173,10 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
     _, whole = carried_out(study(), tmp_path / "whole")
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
         for kept in (range(lost), range(lost + 1, len(runs))):
-            execute_runs(runs, loaded.numerics, journal, Threads(1), loaded.output, among=kept)
+            execute_runs(runs, loaded.numerics, journal, Threads(1), observers_of(loaded.output), among=kept)
         assert list(to_simulate(runs, range(len(runs)), journal)) == [0]
         engine = Watched()
-        execute_runs(runs, loaded.numerics, journal, engine, loaded.output)
+        execute_runs(runs, loaded.numerics, journal, engine, observers_of(loaded.output))
         assert len(engine.simulated) == 1
         assert journal[lost] == whole[lost]
 

@@ -16,10 +16,10 @@ from rockbatch.checks import Rule, judge
 from rockbatch.commands.check import answered
 from rockbatch.commands.summary import failed_later, warnings
 from rockbatch.common.errors import InputError
+from rockbatch.outcome.outcome import Failure
 from rockbatch.quantities.catalogue import COLUMNS, FACTS
 from rockbatch.reporting import write_report
 from rockbatch.results.reading import read_saved
-from rockbatch.simulation.outcome import Failure
 
 RULES = [
     Rule("rotation", "theta_max_over_alpha", 0.5),

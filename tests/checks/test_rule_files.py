@@ -154,13 +154,20 @@ def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
 def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_is_run(tmp_path):
     """There with its line; by ``rockbatch check`` it would come after hours of work."""
     text = (MARGIN + 'case = "pad"\nscale = 2\n').replace("theta_max_over_alpha", "settlement_m")
-    path = rules_file(tmp_path / "pier.toml", STUDY + text + "other_law = true\n[output]\nboth_laws = false\n")
+    path = rules_file(tmp_path / "pier.toml", STUDY + text)
     with pytest.raises(InputError) as caught:
         rb.load_study(path)
     told = [problem.removeprefix(f"{path}:") for problem in caught.value.messages]
-    assert [problem[:2] for problem in told] == ["26", "27", "28"]
-    parts = ('did you mean "pads"?', "scaled by 1 only", "both_laws = true")
+    assert [problem[:2] for problem in told] == ["26", "27"]
+    parts = ('did you mean "pads"?', "scaled by 1 only")
     assert all(part in problem for problem, part in zip(told, parts, strict=True))
+
+
+@pytest.mark.parametrize("demand", ["settlement_m", "toe_settlement_m", "theta_max_over_alpha"])
+def test_a_check_of_a_settlement_has_it_found_by_the_other_law_too(tmp_path, demand):
+    text = MARGIN.replace("theta_max_over_alpha", demand) + "[output]\nboth_laws = false\n"
+    study = rb.load_study(rules_file(tmp_path / "pier.toml", STUDY + text))
+    assert study.output.both_laws == (demand != "theta_max_over_alpha")
 
 
 def test_a_polarity_of_a_check_is_refused_with_the_reason(tmp_path):

@@ -18,6 +18,7 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.motions.scaling import Target
+from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
@@ -36,7 +37,6 @@ from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
-from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study.suite import ground_motions
 
 PAGE = Path(rb.__file__).parents[1] / "docs/columns.md"

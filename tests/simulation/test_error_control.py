@@ -14,6 +14,8 @@ from rockbatch import simulation
 from rockbatch.core.clock import WINDOWS
 from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.changes import Sized, greatest_change
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.pier.bending import mode_of
 from rockbatch.simulation import (
@@ -28,9 +30,7 @@ from rockbatch.simulation import (
     run_to_tolerance,
 )
 from rockbatch.simulation.agreement import windows
-from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import _vibration, elements, fastest_rate, readings
-from rockbatch.simulation.outcome import Failure, Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)

@@ -188,7 +188,7 @@ def test_finished_runs_without_forces_do_not_pass_for_those_with(tmp_path, capsy
 
 
 def test_a_run_that_is_too_long_to_be_written_down_has_no_forces(tmp_path, monkeypatch):
-    monkeypatch.setattr("rockbatch.batch.groups.MOST_STEPS_OF_FORCES", 100)
+    monkeypatch.setattr("rockbatch.simulation.observing.Observer.most_steps", 100)
     row = rb.run(study(tmp_path, cases=(RIGID,))).iloc[0]
     assert row["status"] == "ok"
     assert math.isnan(row["base_shear_m_s2"])

@@ -8,7 +8,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.figures.description import Look, Points, Polyline, Rule, Words, sign_of
-from rockbatch.simulation.figures import MOST_LANES, Drawn, History, of_one, reduced, together
+from rockbatch.outcome.figures import MOST_LANES, Drawn, History, of_one, reduced, together
 
 PIER = rb.Pier(0.2, 1.0)
 PULSE = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=6.0)

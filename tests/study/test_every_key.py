@@ -475,8 +475,7 @@ USES: dict[str, dict[str, Use]] = {
             whole_folder,
         ),
         **uses(
-            study(case=SOFT | {"base": "yielding", "eta": 2.5}, check=[SETTLES], output={}), ("output",), {"both_laws": False},
-            is_taken,
+            study(case=SOFT | {"base": "yielding", "eta": 2.5}, output={}), ("output",), {"both_laws": True}, whole_folder,
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,

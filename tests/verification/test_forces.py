@@ -11,6 +11,7 @@ from reference_forces import greatest_forces
 
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.observers import observers_of
 from rockbatch.pier import offsets
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.forces import with_error
@@ -57,7 +58,7 @@ EVERY_BASE = pytest.mark.parametrize(
 
 def outcome_of(pier, base, motion, *, forces=True, **numerics):
     run = StudyRun(motion, "+", 1.0, Case("case", pier, base, {}))
-    (outcome,) = outcomes_of([run], Numerics(**numerics), Output(both_laws=False, forces=forces))
+    (outcome,) = outcomes_of([run], Numerics(**numerics), observers_of(Output(forces=forces)))
     return outcome
 
 
@@ -579,8 +580,8 @@ def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
 def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     """The less has to press, the more is asked, and |V| there is the demand times that share of the weight at most."""
     run = StudyRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
-    output = Output(both_laws=False, forces=True, least_normal_share=share)
-    (outcome,) = outcomes_of([run], Numerics(), output)
+    observers = observers_of(Output(forces=True, least_normal_share=share))
+    (outcome,) = outcomes_of([run], Numerics(), observers)
     usual = outcome_of(PIER, BASES["elastic"], shaken()).forces
     less, more = (outcome.forces, usual) if share < 0.1 else (usual, outcome.forces)
     assert less.friction_demand > more.friction_demand

@@ -152,7 +152,7 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
-        both_laws=of_study.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
+        both_laws=any(DEMANDS[rule.demand].other_law for rule in spec.limits),
         forces="forces" in needs,
         rocking="rocking" in needs,
         least_normal_share=of_study.least_normal_share,

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.motions.figures import drawable, response_spectra
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import MOST_ROWS, Head, listed, table
 from rockbatch.results.labelled import as_dicts
+from rockbatch.results.spectra_figure import drawable, response_spectra
 
 Record = Mapping[str, Any]
 COLUMNS = (

@@ -102,7 +102,7 @@ def test_both_rates_that_undecided_runs_allow_are_in_the_table(tmp_path):
 def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
     spec = read_fragility(load_study(written(tmp_path, STRIPES)))
     rotation = Rule("half way", "theta_max_over_alpha", at_most=0.5)
-    of_study = Output(both_laws=True, least_normal_share=0.2, least_stroke_mm=7.0)
+    of_study = Output(least_normal_share=0.2, least_stroke_mm=7.0)
     of_runs = {name: demand for name, demand in DEMANDS.items() if not demand.per_case and demand.needs != "sections"}
     assert {demand.needs for demand in of_runs.values()} >= {"forces", "rocking", "devices_work"}
     for name, demand in of_runs.items():
@@ -111,9 +111,7 @@ def test_runs_put_out_what_their_limits_need_and_no_more(tmp_path):
         for need in ("forces", "rocking", "devices_work"):
             assert getattr(asked, need) == (demand.needs == need), name
         assert (asked.histories, asked.least_normal_share, asked.least_stroke_mm) == ("none", 0.2, 7.0)
-    assert not output(
-        replace(spec, limits=(Rule("settled", "settlement_m", at_most=0.01),)), Output(both_laws=False)
-    ).both_laws
+    assert output(replace(spec, limits=(Rule("settled", "settlement_m", at_most=0.01),)), Output()).both_laws
 
 
 def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
-from rockbatch.simulation.outcome import Outcome
 
 FLOOR = 0.01
 """Share of a quantity's scale below which it governs no design: an error is a share of no less than that."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
@@ -221,6 +221,8 @@ class Outcome:
         Its demands on the design, if asked for.
     device_work : DeviceWork or None
         The work of its devices, if asked for.
+    tables : mapping
+        Rows of tables beside peaks.csv by their files, if asked for; none of a mirror image.
     """
 
     status: str
@@ -284,6 +286,7 @@ class Outcome:
     chaotic: bool | None = None
     may_overturn: bool | None = None
     beyond_linearised: bool | None = None
+    tables: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def was_run(self) -> bool:
@@ -310,6 +313,10 @@ class Outcome:
         """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""
         return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
 
+    def with_table(self, file: str, rows: Any) -> "Outcome":
+        """Return the outcome with the rows of a table beside peaks.csv."""
+        return self.changed(tables={**self.tables, file: rows})
+
     def mirrored(self) -> "Outcome":
         """Return the outcome under the reversed horizontal motion, of a symmetric pier on a symmetric foundation."""
         return self.changed(
@@ -321,6 +328,7 @@ class Outcome:
             dissipated_left=self.dissipated_right,
             dissipated_right=self.dissipated_left,
             forces=self.forces and self.forces.mirrored(),
+            tables={},
         )
 
 

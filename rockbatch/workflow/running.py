@@ -1,39 +1,59 @@
-"""From a study to its table of peaks: in memory, in a folder that may hold a part of it, or joined from shares."""
+"""From a study to its results: in memory, or in a folder, judged and reported."""
 
-import math
 import os
 import time
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from rockbatch.batch.compiling import make_ready
-from rockbatch.batch.digests import study_digests
+from rockbatch.batch.carrying_out import execute
 from rockbatch.batch.execution import InMemory, execute_runs, to_simulate
-from rockbatch.batch.finishing import (
-    OUTPUTS,
-    FinishedBatch,
-    cost_of_finished,
-    finish,
-    to_be_replaced,
-    unchanged,
-    what_was_run,
-    write_peaks,
-)
-from rockbatch.batch.journal import Journal
-from rockbatch.batch.listening import Listener, Progress, count, listener_of, once
+from rockbatch.batch.finishing import Written, finish, unchanged, write_peaks
+from rockbatch.batch.listening import Listener, Progress, announced_if_slow, count, listener_of
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan
+from rockbatch.batch.preparing import Batch, cost_of_finished, prepare, share_of, to_be_replaced
 from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import refuse_irregular
-from rockbatch.common.grouping import closest
+from rockbatch.common.files import is_plain
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
+from rockbatch.reporting import REPORT, write_report
+from rockbatch.results.checking import verdicts
 from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
+from rockbatch.results.reading import Saved
 from rockbatch.results.run_json import FROM_PYTHON
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedBatch:
+    """Results that were written into a folder, judged and reported.
+
+    Attributes
+    ----------
+    saved : Saved
+        ``peaks.csv`` and ``run.json``.
+    motions : MotionSet
+        What the study was run under, and what of it could not be used.
+    verdicts : list of Verdict
+        Those of the study's checks, and of its target spectrum; empty where it has neither.
+    files : tuple of Path
+        Table, run.json, histories, checks and report, those that were written.
+    without : InputError or None
+        Why histories that the study asks for are not there.
+    """
+
+    saved: Saved
+    motions: MotionSet
+    verdicts: list[Verdict]
+    files: tuple[Path, ...]
+    without: InputError | None
 
 
 @checked
@@ -108,7 +128,7 @@ def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFram
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))
     with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
-        execute_runs(runs, study.numerics, rows, engine, study.output, progress=progress)
+        execute_runs(runs, study.numerics, rows, engine, observers_of(study.output), progress=progress)
     return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(motions)], study)
 
 
@@ -130,37 +150,31 @@ def run_into(
     Raises ``InputError`` as :func:`run`.
     """
     started = time.monotonic()
-    refuse_irregular(*(directory / name for name in OUTPUTS))
-    motions = ground_motions(study)
-    listener.motions(motions)
-    check_records(records, motions)
-    runs = Plan(study, motions)
-    requested = share_of(len(runs), *share) if share else range(len(runs))
-    digest = study_digests(study, motions)
-    info = what_was_run(study, motions, runs, digest, command)
-    with Journal(directory / JOURNAL, columns(study), digest, fresh, runs=len(runs), tell=listener.say) as journal:
-        cost = None if fresh or len(journal) else cost_of_finished(directory, info)
+    batch = prepare(directory, study, listener, command, records=records, later=(CHECKS, REPORT))
+    requested = share_of(len(batch.runs), *share) if share else range(len(batch.runs))
+    with batch.journal(fresh) as journal:
+        cost = None if fresh or len(journal) else cost_of_finished(directory, batch.info)
         if cost is not None:
-            state = f"{described(study, motions)} are finished in {directory}"
+            state = f"{batch.described} are finished in {directory}"
             listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
-            if not records and (finished := unchanged(directory, study, motions, runs, info)):
+            if not records and (finished := _as_it_is(batch)):
                 return finished
-            return finish(directory, study, motions, runs, info | cost, listener, records)
+            return _judged_and_reported(batch, finish(batch, journal, cost, records))
         replaced = None if fresh or share else to_be_replaced(directory, study)
         if replaced:
             listener.say(f"{replaced}, will be replaced")
         of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
         with engine:
-            every = count(len(to_simulate(runs, requested)), "run")
-            listener.say(f"{described(study, motions)} on {engine}{of_share.format(every)}")
-            cost = _execute_remaining(study, runs, requested, journal, engine, listener)
+            every = count(len(to_simulate(batch.runs, requested)), "run")
+            listener.say(f"{batch.described} on {engine}{of_share.format(every)}")
+            cost = execute(batch, requested, journal, engine)
         if share:
             listener.say(
                 f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
             )
             return None
-        cost |= {"peaks": write_peaks(journal, motions), "wall_s": round(time.monotonic() - started, 3)}
-        return finish(directory, study, motions, runs, info | cost, listener, records)
+        cost |= {"peaks": write_peaks(batch, journal), "wall_s": round(time.monotonic() - started, 3)}
+        return _judged_and_reported(batch, finish(batch, journal, cost, records))
 
 
 def merge(
@@ -171,11 +185,8 @@ def merge(
     ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong or missing in the
     shares; joined rows stay, so that the rest can be carried out there.
     """
-    motions = ground_motions(study)
-    listener.motions(motions)
-    runs = Plan(study, motions)
-    digest = study_digests(study, motions)
-    with Journal(directory / JOURNAL, columns(study), digest, runs=len(runs), tell=listener.say) as journal:
+    batch = prepare(directory, study, listener, command, later=(CHECKS, REPORT))
+    with batch.journal() as journal:
         problems = []
         for share in shares:
             try:
@@ -184,17 +195,45 @@ def merge(
                 problems.append(f"{share / JOURNAL}: not there; give folders that `rockbatch run --shard` has written")
             except InputError as error:
                 problems += error.messages
-        missing = [number for number in range(len(runs)) if number not in journal]
+        missing = [number for number in range(len(batch.runs)) if number not in journal]
         if missing and not problems:
             problems.append(
-                f"{len(missing)} of {len(runs)} rows are missing in these folders: {_ranges(missing)}; finish their shares "
-                f"and merge again, or carry them out here: rockbatch run {study.path} --out {directory}"
+                f"{len(missing)} of {len(batch.runs)} rows are missing in these folders: {_ranges(missing)}; finish their "
+                f"shares and merge again, or carry them out here: rockbatch run {study.path} --out {directory}"
             )
         if problems:
             raise InputError(*problems)
-        info = what_was_run(study, motions, runs, digest, command)
-        info |= {"peaks": write_peaks(journal, motions), "jobs": 0, "wall_s": 0.0, "kept": info["runs"]}
-        return finish(directory, study, motions, runs, info, listener)
+        cost = {"peaks": write_peaks(batch, journal), "jobs": 0, "wall_s": 0.0, "kept": batch.info["runs"]}
+        return _judged_and_reported(batch, finish(batch, journal, cost))
+
+
+def _judged_and_reported(batch: Batch, written: Written) -> FinishedBatch:
+    """Write the verdicts of a batch, if it has any, and its report."""
+    study, directory, saved = batch.study, batch.directory, written.saved
+    with announced_if_slow(batch.listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
+        judged = _judged(saved, study)
+        checks = [write_verdicts(directory, judged)] if judged else []
+    with announced_if_slow(batch.listener, f"writing {REPORT}"):
+        report = write_report(directory, saved=saved)
+    return FinishedBatch(saved, batch.motions, judged, (*written.files, *checks, report), written.without)
+
+
+def _as_it_is(batch: Batch) -> FinishedBatch | None:
+    """Return what is in the folder of a finished ``batch`` if nothing would change by finishing it again; else None."""
+    if not (written := unchanged(batch)):
+        return None
+    judged = _judged(written.saved, batch.study)
+    more = [batch.directory / name for name in (*([CHECKS] if judged else []), REPORT)]
+    return (
+        FinishedBatch(written.saved, batch.motions, judged, (*written.files, *more), None)
+        if all(map(is_plain, more))
+        else None
+    )
+
+
+def _judged(saved: Saved, study: Study) -> list[Verdict]:
+    """Return the verdicts of the study's checks and of its target spectrum, if it has them."""
+    return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
 
 
 def _ranges(numbers: Sequence[int], most: int = 5) -> str:
@@ -206,60 +245,3 @@ def _ranges(numbers: Sequence[int], most: int = 5) -> str:
         for a, b in zip(starts, ends, strict=True)
     ]
     return ", ".join(ranges[:most]) + (", …" if len(ranges) > most else "")
-
-
-def check_records(records: Collection[str], motions: MotionSet) -> None:
-    """Raise ``InputError`` for names of records that do not exist."""
-    names = [motion.name for motion in motions.motions]
-    wrong = []
-    for name in (name for name in records if name not in names):
-        near = closest(name, names)
-        wrong.append(
-            f"--history {name}: no such record; "
-            + (f"did you mean {near}?" if near else f"there is {', '.join(names)}")
-        )
-    if wrong:
-        raise InputError(*wrong)
-
-
-def share_of(runs: int, share: int, shares: int) -> range:
-    """Return the indices of a share of so many runs; ``InputError`` for more shares than runs."""
-    if shares > runs:
-        raise InputError(f"--shard {share}/{shares}: the study has {count(runs, 'run')}; make as many shares or fewer")
-    return range(runs * (share - 1) // shares, runs * share // shares)
-
-
-def _execute_remaining(
-    study: Study, runs: Plan, requested: range, journal: Journal, engine: Engine, listener: Listener
-) -> dict[str, Any]:
-    """Carry out the runs that are missing in the journal; return their entry in run.json."""
-    every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
-    n_finished = every - remaining
-    if n_finished:
-        listener.say(f"{n_finished} of them are finished already, {remaining} are left (--fresh starts over)")
-    try:
-        with listener.progress(remaining) as progress:
-            make_ready(study, listener)
-            execute_runs(runs, study.numerics, journal, engine, study.output, among=requested, progress=progress)
-    except KeyboardInterrupt:
-        if n_done := every - len(to_simulate(runs, requested, journal)):
-            listener.say(
-                f"interrupted: {n_done} of {count(every, 'run')} are finished and kept in {journal.path}; "
-                "the same command continues from there"
-            )
-        raise
-    return {"jobs": engine.jobs, "kept": n_finished}
-
-
-def described(study: Study, motions: MotionSet) -> str:
-    """Return how many runs there are, and why: "2 records × 5 cases = 10 runs"."""
-    factors = {
-        "record": len(motions.motions),
-        "scale": len(study.motions.scale),
-        "case": len(study.cases),
-    }
-    counted = [count(n, noun) for noun, n in factors.items() if n > 1 or noun in ("record", "case")]
-    stations = len({motion.of_station for motion in motions.motions})
-    if stations < factors["record"]:
-        counted[0] += f" of {count(stations, 'station')}"
-    return f"{' × '.join(counted)} = {count(math.prod(factors.values()), 'run')}{once(study)}"

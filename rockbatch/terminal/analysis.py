@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from rockbatch.batch.analysis import Analysis
-from rockbatch.commands.messages import Terminal
-from rockbatch.commands.options import engine, folder
-from rockbatch.commands.streams import in_width, say
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
+from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.options import engine, folder
+from rockbatch.terminal.streams import in_width, say
+from rockbatch.workflow.analysis import Analysis
 
 
 def analysis_arguments(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -216,7 +216,7 @@ class Response(Shown):
         1  0.3242     0.0764                   0.9
         2  0.8589     0.0595                   0.9
         """
-        from rockbatch.simulation.half_cycles import COLUMNS, Path, apparent_restitution, half_cycles
+        from rockbatch.outcome.half_cycles import COLUMNS, Path, apparent_restitution, half_cycles
 
         landed = self.events.loc[self.events["kind"].isin(["impact", "rest"]), "after"].to_numpy()
         cycles = half_cycles(Path(self.t, self.theta, self.omega), None if self.base.on_springs else landed)
@@ -240,7 +240,7 @@ class Response(Shown):
         >>> f"{work.travel_m:.3f} m, {work.half_cycles:.0f} half cycles"
         '0.300 m, 4 half cycles'
         """
-        from rockbatch.simulation.device_work import Courses, work_of
+        from rockbatch.outcome.device_work import Courses, work_of
 
         if self.restraints is None:
             raise InputError(f"{self._title}: there is no damper and no tendon")
@@ -258,7 +258,7 @@ class Response(Shown):
         dampers and tendons: a matplotlib Figure, ``width_mm`` wide or in the place of ``ax``,
         ``response.plot().savefig("pier.pdf")``."""
         from rockbatch.common.figures.paper import drawn
-        from rockbatch.simulation.figures import of_one
+        from rockbatch.outcome.figures import of_one
 
         return drawn(of_one(self, self._title), width_mm, ax)
 

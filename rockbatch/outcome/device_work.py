@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.changes import LEAST, Sized, greatest_change
+from rockbatch.outcome.outcome import DeviceWork, Outcome
 from rockbatch.pier import Base, Damper, Pier, Tendon, places
-from rockbatch.simulation.changes import LEAST, Sized, greatest_change
-from rockbatch.simulation.outcome import DeviceWork, Outcome
 
 
 class Courses(NamedTuple):

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from typing import TextIO
 
 from rockbatch.batch.listening import Advance, Bars, Listener, count
-from rockbatch.commands.streams import give_up, say, tell
 from rockbatch.motions import MotionSet
+from rockbatch.terminal.streams import give_up, say, tell
 
 SECONDS_BETWEEN_LINES = 2.0
 
