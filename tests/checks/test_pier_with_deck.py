@@ -10,9 +10,9 @@ from report_page import Page
 from studies import write_study
 
 import rockbatch as rb
+from rockbatch.batch.preparing import described
 from rockbatch.commands.cli import main
 from rockbatch.study.suite import ground_motions
-from rockbatch.workflow.running import described
 
 STUDY = Path(rb.__file__).parents[1] / "configs" / "pier_with_deck.toml"
 STATIONS = {"NBLC", "PRPC", "1336", "HSES", "WTMC"}

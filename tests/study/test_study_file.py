@@ -65,7 +65,7 @@ def test_a_study_without_options_has_the_documented_defaults(tmp_path):
     assert study.notes == ""
     periods = (0.5, 1.0, 2.0, 4.0)
     assert astuple(study.output) == (
-        *("worst", 20.0, False, False, False, 0.1, True, False, periods, (), False, None, (), False, 10.0),
+        *("worst", 20.0, False, False, False, 0.1, False, False, periods, (), False, None, (), False, 10.0),
     )
     assert study.numerics == Numerics(tolerance=1e-4, substeps=None, quiet_s=2.0)
     motions = study.motions
