@@ -131,7 +131,7 @@ def simulate(
         response,
         row=as_series(row(finished)),
         sections=of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
-        shocks=of_shocks.as_table(outcome.tables[of_shocks.SHOCKS]) if motion.shocks else None,
+        shocks=of_shocks.as_table(outcome.tables.get(of_shocks.SHOCKS, ())) if motion.shocks else None,
     )
 
 
