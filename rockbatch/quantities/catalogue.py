@@ -609,7 +609,7 @@ _FORCES = (
     ),
     _force(
         "forces_error", "largest relative error among the force columns", "error", "1", "±", ".1g", sometimes=True,
-        more=": the change when the step was halved; empty with a fixed step",
+        more=": four times the change when the step was halved; empty with a fixed step",
     ),
     *_over_mass(
         "base_moment", "greatest moment about the middle of the base", "base_moment", "m^2/s^2", "base moment", ".2f",

@@ -17,7 +17,7 @@ class Courses(NamedTuple):
     """Elongation [m], force [N/kg] and energy taken [J/kg] of all devices at every row; shape (rows, devices) each.
 
     Without the energy it is that of the force along the way, by the trapezoidal rule. With the times ``t`` [s] of the rows and
-    the ``speed`` [m/s] of the elongation a device turns between rows, where its elongation is cubic; else at rows.
+    the ``speed`` [m/s] of each device, without its brace, a device turns between rows, where its way is cubic; else at rows.
     """
 
     elongation: Samples
@@ -88,17 +88,14 @@ def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Wo
     per_lambda = pier.gravity * pier.size / pier.half_width**2  # stiffness over the mass [1/s²] of λ = 1
     braces = [per_lambda * device.brace if isinstance(device, Damper) else math.inf for device in devices]
     way = elongation - pull / np.array(braces)
-    halves, travels = [], []
-    for j, course in enumerate(way.T):
-        if t is not None and speed is not None and braces[j] == math.inf:
-            course = with_turns(t, course, speed[:, j])
+    halves, travels, strain = [], [], np.full(len(devices), math.nan)
+    for j, device in enumerate(devices):
+        course = way[:, j] if t is None or speed is None else with_turns(t, way[:, j], speed[:, j])
         travels.append(np.abs(np.diff(course)).sum())
         ranges, counts = rainflow(course)
         halves.append(counts[ranges >= least_stroke].sum())
-    strain = np.full(len(devices), math.nan)
-    for j, device in enumerate(devices):
         if isinstance(device, Tendon) and device.strength < math.inf:
-            most = device.psi * pier.gravity + device.lam * per_lambda * elongation[:, j].max()
+            most = device.psi * pier.gravity + device.lam * per_lambda * course.max()
             strain[j] = max(most, 0.0) / (device.strength * pier.gravity)
     taken = (0.5 * (pull[1:] + pull[:-1]) * np.diff(way, axis=0)).sum(axis=0) if lost is None else lost[-1] - lost[0]
     return Work(np.array(travels), taken, np.array(halves), strain)

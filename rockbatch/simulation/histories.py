@@ -222,7 +222,7 @@ def with_observed(
         del rows  # a history of every step may be large
         rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
         if peaks and least_normal is not None:
-            peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
+            peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier, CHANCE)
             outcome = outcome.noted(note)
         if least_stroke is not None:
             coarse_work = restraints.device_work(run.pier, run.base, rows, least_stroke)

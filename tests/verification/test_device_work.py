@@ -17,12 +17,13 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, PASS
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
-from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
+from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase, places
 from rockbatch.simulation.device_work import Courses, rainflow, with_turns, work_of
-from rockbatch.simulation.restraints import device_work
+from rockbatch.simulation.restraints import _followed, device_work
 from rockbatch.simulation.runs import Run, written_run
 
 PADS = YieldingBase(50.0, 0.3, eta=3.0, flight="guided")
+PER_LAMBDA = GRAVITY * FIG5.size / FIG5.half_width**2
 SHAKEN = pulse("sine", 0.5, 1.0, dt=0.01, end=2.0)
 
 
@@ -32,17 +33,51 @@ def test_rainflow_counts_the_example_of_the_standard():
     assert {width: counts[ranges == width].sum() for width in set(ranges)} == {3.0: 1, 4.0: 3, 6.0: 1, 8.0: 2, 9.0: 1}
 
 
-def test_a_damper_turns_between_rows_where_its_speed_changes_sign():
+@pytest.mark.parametrize("brace", [math.inf, 2.0])
+def test_a_damper_turns_between_rows_where_its_speed_changes_sign(brace):
     """Travel of a sine over two periods, by 15 rows: 8 amplitudes within 10⁻³, where the rows alone lose 2 %."""
     t = np.linspace(0.3, 0.3 + 4.0 * math.pi, 15)
     way, speed = np.sin(t), np.cos(t)
     assert np.abs(np.diff(way)).sum() < 0.98 * 8.0
     assert np.abs(np.diff(with_turns(t, way, speed))).sum() == pytest.approx(8.0, rel=1e-3)
-    stroke, moves = way[:, None], speed[:, None]
-    base = RigidBase(restraints=(Damper("viscous", nu=1.0, at=0.0),))
-    work = work_of(FIG5, base, Courses(stroke, moves, None, t, moves), 1.99)
+    pull = speed[:, None]
+    base = RigidBase(restraints=(Damper("viscous", nu=1.0, at=0.0, brace=brace),))
+    work = work_of(FIG5, base, Courses(way[:, None] + pull / (brace * PER_LAMBDA), pull, None, t, pull), 1.99)
     assert work.travel[0] == pytest.approx(8.0, rel=1e-3)
     assert work.half_cycles[0] == 3.0  # from end to end; by rows no swing is as long
+
+
+def test_a_tendon_is_strained_most_between_rows_where_it_turns():
+    """A cubic errs by h⁴/384 of it; the rows alone miss 4 %."""
+    t = np.linspace(0.3, 0.3 + 4.0 * math.pi, 17)
+    base, way, speed = RigidBase(restraints=(Tendon(psi=0.1, lam=0.5, strength=2.0),)), np.sin(t), np.cos(t)
+    courses = Courses(way[:, None], way[:, None], None, t, speed[:, None])
+    exact = (0.1 * GRAVITY + 0.5 * PER_LAMBDA) / (2.0 * GRAVITY)
+    assert work_of(FIG5, base, courses, 0.01).strain[0] == pytest.approx(exact, rel=(math.pi / 4.0) ** 4 / 384.0)
+    assert way.max() < 0.96
+
+
+def test_the_speed_of_a_braced_damper_is_the_rate_of_its_own_way():
+    dampers = Damper("viscous", nu=0.3, brace=2.0), Damper("hysteretic", f=0.1, yield_m=0.005, brace=50.0, at="left")
+    base = RigidBase(restraints=dampers)
+    result, rows = written_run(Run(FIG5, base, SHAKEN), 20, 0.0, 100_000, every_step=True, wait=False)
+    rows = rows[: result.rows].view(np.recarray)
+    found = _followed(FIG5, base, rows)
+    braces = PER_LAMBDA * np.array([device.brace for device in dampers for _ in places(FIG5, device)])
+    way, step = found.elongation - found.pull / braces, np.diff(rows.t)
+    even = np.flatnonzero((np.abs(step[1:] - step[:-1]) < 1e-12) & (step[1:] > 1e-5) & (rows.kind[1:-1] <= 0.0)) + 1
+    rate = _rates(way, rows.t, even)
+    assert len(even) > 1000
+    for own, all_of_it, expected in zip(
+        found.speed[even].T, _rates(found.elongation, rows.t, even).T, rate.T, strict=True
+    ):
+        most = np.abs(expected).max()
+        assert np.abs(own - expected).max() < 2e-3 * most
+        assert np.abs(all_of_it - expected).max() > 2e-2 * most  # with the brace it is another
+
+
+def _rates(values, t, places_):
+    return (values[places_ + 1] - values[places_ - 1]) / (t[places_ + 1] - t[places_ - 1])[:, None]
 
 
 def test_a_jump_of_the_speed_at_an_event_is_no_turn():
