@@ -14,6 +14,7 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.pier import MOST_ETA, Pier
+from rockbatch.pier.restraints import YIELDING_TENDON
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import (
     ONE,
@@ -526,9 +527,12 @@ _WORK = (
         "half_cycles", "most half cycles of a damper", "damper_half_cycles", "1", "half cycles", ".0f", device="damper",
         more=", by rainflow counting, from [output] least_stroke_mm from end to end up, 10 mm unless given", kind="count",
     ),
-    _work(
-        "strain_over_yield", "greatest strain of a tendon over its yield strain", "tendon_strain", "1", "tendon ε/ε_y", ".3f",
-        device="tendon", more=", prestress and plastic strain included; of tendons that yield",
+    replace(
+        _work(
+            "strain_over_yield", "greatest strain of a tendon over its yield strain", "tendon_strain", "1", "tendon ε/ε_y",
+            ".3f", device="tendon", more=", prestress and plastic strain included; of tendons that yield",
+        ),
+        device=YIELDING_TENDON,
     ),
 )  # fmt: skip
 """Quantities of the work of devices."""

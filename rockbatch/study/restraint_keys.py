@@ -208,7 +208,7 @@ class Device:
                 except InputError:
                     return False
 
-            other = in_another_unit(key, value, fits)
+            other = in_another_unit(key, value, fits, exponent=getattr(device, "exponent", 1.0))
             message = f"{key} = {value:g}: {doubts.meaning}{other}; {remedy(key)} in [[case.{self.what}]]"
             self.table.complain_about(values[key], message)
 

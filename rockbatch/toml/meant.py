@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from rockbatch.common.grouping import closest
-from rockbatch.common.units import GRAVITY
+from rockbatch.common.units import GRAVITY, unit_with_exponent
 from rockbatch.toml.numerals import ascii_marks, numeral
 
 _FOOT, _POUND = 0.3048, 4.4482216e-3  # m, kN
@@ -38,7 +38,7 @@ _UNITS: dict[str, tuple[str, float]] = {
 
 _OTHER_UNITS = {
     "length": {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "km": 1e3}, "time": {"ms": 1e-3}, "mass": {"kg": 1e-3, "kt": 1e3},
-    "force": {"MN": 1e3, "N": 1e-3}, "stiffness": {"MN/m": 1e3, "N/m": 1e-3}, "damping": {"MN s/m": 1e3, "N s/m": 1e-3},
+    "force": {"MN": 1e3, "N": 1e-3}, "stiffness": {"MN/m": 1e3, "N/m": 1e-3}, "damping": {"MN (s/m)^a": 1e3, "N (s/m)^a": 1e-3},
     "speed": {"cm/s": 1e-2, "mm/s": 1e-3}, "acceleration": {"% of g": 1e-2, "m/s²": 1.0 / GRAVITY, "cm/s²": 0.01 / GRAVITY},
     "area": {"mm²": 1e-6, "cm²": 1e-4}, "inertia": {"kg m²": 1e-3, "kt m²": 1e3},
 }  # fmt: skip
@@ -109,12 +109,17 @@ def quantity_of(name: str) -> tuple[str, str, float]:
     return name, "", 1.0
 
 
-def in_another_unit(name: str, value: float, fits: Callable[[float], bool], key: str = "") -> str:
-    """Return in which other unit a value of ``name`` would fit, and what to write at the ``key`` then; empty if in none."""
+def in_another_unit(
+    name: str, value: float, fits: Callable[[float], bool], key: str = "", exponent: float = 1.0
+) -> str:
+    """Return in which other unit a value of ``name`` would fit, and what to write at the ``key`` then; empty if in none.
+
+    ``exponent`` is that of the speed, of which a damping coefficient is a multiple.
+    """
     _, quantity, its_size = quantity_of(name)
     for unit, size in _OTHER_UNITS.get(quantity, {}).items():
         if size != its_size and fits(converted := value * size / its_size):
-            return f"; {value:g} {unit} are {key or name} = {converted:.6g}"
+            return f"; {value:g} {unit_with_exponent(unit, exponent)} are {key or name} = {converted:.6g}"
     return ""
 
 

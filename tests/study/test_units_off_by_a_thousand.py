@@ -21,7 +21,8 @@ TABLES = {  # by the table that is varied: all that is usual
     "deck": DECK, "held": {"alpha": 0.2, "p": 1.0, "initial_rotation_rad": 0.05},
     "size": {"alpha": 0.2, "size_m": 20.0}, "p": {"alpha": 0.2, "p": 0.4},
     "springs": SPRINGS | {"area_m2": 6.0, "flight_limit_mm": 20.0}, "ratios": RATIOS,
-    "friction": {"kind": "friction", "force_kN": 450.0}, "hysteretic": STEEL, "viscous": OIL, "tendon": TENDON, "stop": STOP,
+    "friction": {"kind": "friction", "force_kN": 450.0}, "hysteretic": STEEL, "viscous": OIL,
+    "root": OIL | {"exponent": 0.5}, "tendon": TENDON, "stop": STOP,
     "deck_spring": DECK_SPRING, "damper nu": {"kind": "viscous", "nu": 0.5}, "tendon psi": {"psi": 0.2},
     "stop lambda": {"gap_mm": 100.0, "lambda": 20.0}, "deck_spring lambda": {"lambda": 1.0},
 }  # fmt: skip
@@ -43,6 +44,7 @@ SMALL = [  # table, key, value as written, what is said of it, and what to write
     ("hysteretic", "force_kN", 0.45, NOTHING, "0.45 MN are force_kN = 450"),
     ("hysteretic", "yield_mm", 0.005, "the damper yields at 0.005 mm", "0.005 m are yield_mm = 5"),
     ("viscous", "coefficient_kN_s_m", 0.9, NOTHING, "0.9 MN s/m are coefficient_kN_s_m = 900"),
+    ("root", "coefficient_kN_s_m", 0.9, NOTHING, "0.9 MN (s/m)^0.5 are coefficient_kN_s_m = 900"),
     ("viscous", "brace_kN_m", 200.0, "1.4 % of the pier's weight at a rotation of α", "200 MN/m are brace_kN_m = 200000"),
     ("tendon", "prestress_kN", 5.0, NOTHING, "5 MN are prestress_kN = 5000"),
     ("tendon", "stiffness_kN_m", 40.0, NOTHING, "40 MN/m are stiffness_kN_m = 40000"),
