@@ -68,12 +68,12 @@ def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
     rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
     h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]
     first, last = h * speed[rows], h * speed[rows + 1]
-    # the rate is first + 2 linear s + square s², and has one zero between its ends, whose signs differ
+    # the rate is first + 2 linear s + square s²; its signs at the ends differ, so one zero is between them but for rounding
     square, linear = 3.0 * (first + last - 2.0 * travel), 3.0 * travel - 2.0 * first - last
     larger = -(linear + np.copysign(np.sqrt(np.maximum(linear**2 - square * first, 0.0)), linear))
-    s = first / larger
-    outside = ~((s >= 0.0) & (s <= 1.0))
-    s[outside] = larger[outside] / square[outside]
+    with np.errstate(divide="ignore"):
+        one, other = first / larger, larger / square
+    s = np.clip(np.where(np.abs(one - 0.5) <= np.abs(other - 0.5), one, other), 0.0, 1.0)
     turns = start + s * travel + s * (1.0 - s) * ((1.0 - s) * (first - travel) + s * (travel - last))
     return np.insert(way, rows + 1, turns)
 

@@ -47,6 +47,28 @@ def test_a_damper_turns_between_rows_where_its_speed_changes_sign(brace):
     assert work.half_cycles[0] == 3.0  # from end to end; by rows no swing is as long
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_turn_at_an_end_but_for_rounding_is_at_that_end(seed):
+    """As a block leaves or comes to rest: the zero of the rate is at an end, where its speed has the other sign by rounding."""
+    rng = np.random.default_rng(seed)
+    for _ in range(2000):
+        h, speed, rounding = (
+            10.0 ** rng.uniform(-6.0, -2.0),
+            10.0 ** rng.uniform(-6.0, -1.0),
+            10.0 ** rng.uniform(-22.0, -12.0),
+        )
+        travel = h * speed * rng.uniform(0.35, 0.7)  # below a third it turns on its way, too
+        way, rates = np.array([0.0, travel]), np.array([speed, -rounding * speed])
+        if rng.random() < 0.5:
+            way, rates = way[::-1], -rates[::-1]
+        turned = with_turns(np.array([0.0, h]), way, rates)
+        assert len(turned) == 3
+        assert turned[1] == pytest.approx(travel, rel=1e-9)
+    t, rest = np.array([0.0, 1.1128475e-4]), 2.303389988472216e-08
+    ends = np.array([4.139516324019473e-4, -7.25060202849681e-20])
+    np.testing.assert_allclose(with_turns(t, np.array([0.0, rest]), ends), [0.0, rest, rest], rtol=1e-9)
+
+
 def test_a_tendon_is_strained_most_between_rows_where_it_turns():
     """A cubic errs by h⁴/384 of it; the rows alone miss 4 %."""
     t = np.linspace(0.3, 0.3 + 4.0 * math.pi, 17)
