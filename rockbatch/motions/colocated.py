@@ -28,7 +28,8 @@ def with_gains_compared(components: Sequence[Component]) -> list[Component]:
         for place, other, times in ((i, j, factor), (j, i, 1.0 / factor)) if factor else ():
             text = (
                 f"{components[other].source}, of another sensor of the station, has the same motion times {times:.3g}: "
-                "one of their gains is wrong; leave that one out"
+                "one of their gains is wrong, and the files do not say which; ask their network, and leave out the wrong one by "
+                "use = false in motions.toml"
             )
             findings.setdefault(place, []).append(Finding("gain", text, gross=True))
     return [

@@ -76,7 +76,7 @@ class PeakForces:
     flight_longest : float or None
         The longest flight that was followed [s].
     error : float or None
-        By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
+        Four times the share of itself by which halving the step still changed one of them at most; ``None`` with a fixed step.
     landing_force : float or None
         Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
     slides : bool or None

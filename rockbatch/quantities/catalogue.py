@@ -14,6 +14,7 @@ import numpy as np
 
 from rockbatch.common.grouping import grouped
 from rockbatch.pier import MOST_ETA, Pier
+from rockbatch.pier.restraints import YIELDING_TENDON
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import (
     ONE,
@@ -547,9 +548,12 @@ _WORK = (
         "half_cycles", "most half cycles of a damper", "damper_half_cycles", "1", "half cycles", ".0f", device="damper",
         more=", by rainflow counting, from [output] least_stroke_mm from end to end up, 10 mm unless given", kind="count",
     ),
-    _work(
-        "strain_over_yield", "greatest strain of a tendon over its yield strain", "tendon_strain", "1", "tendon ε/ε_y", ".3f",
-        device="tendon", more=", prestress and plastic strain included; of tendons that yield",
+    replace(
+        _work(
+            "strain_over_yield", "greatest strain of a tendon over its yield strain", "tendon_strain", "1", "tendon ε/ε_y",
+            ".3f", device="tendon", more=", prestress and plastic strain included; of tendons that yield",
+        ),
+        device=YIELDING_TENDON,
     ),
 )  # fmt: skip
 """Quantities of the work of devices."""
@@ -630,7 +634,7 @@ _FORCES = (
     ),
     _force(
         "forces_error", "largest relative error among the force columns", "error", "1", "±", ".1g", sometimes=True,
-        more=": the change when the step was halved; empty with a fixed step",
+        more=": four times the change when the step was halved; empty with a fixed step",
     ),
     *_over_mass(
         "base_moment", "greatest moment about the middle of the base", "base_moment", "m^2/s^2", "base moment", ".2f",
@@ -660,7 +664,8 @@ _LANDING_FORCE = replace(
         per=lambda pier: pier.mass_t,
         sometimes=True,
         weighed=True,
-        more=": an orientation within some 30 %, of which no check is made",
+        more=": an orientation, which was within 30 % of the force on springs in 84 % of random runs with less than 0.6 g of "
+        "vertical motion and in 42 % of those with more; no check is made of it",
     ),
     requested=_estimates_landings,
 )

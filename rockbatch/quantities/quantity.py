@@ -128,7 +128,7 @@ class Quantity:
     needs : str
         Key of [output] that brings it; empty if none does.
     device : str
-        Kind of device that brings it; empty if none does.
+        Kind of device that brings it, one of :attr:`Device.kinds`; empty if none does.
     weighed : bool
         True if it takes the mass of the pier.
     requested : function or None
@@ -180,7 +180,7 @@ class Quantity:
         if self.needs and not getattr(study.output, self.needs):
             return False
         return not self.device or any(
-            device.what == self.device for case in study.cases for device in case.base.restraints
+            self.device in device.kinds for case in study.cases for device in case.base.restraints
         )
 
     def demands(self) -> list[Demand]:

@@ -17,6 +17,7 @@ from rockbatch.core.devices.laws import (
     STICKS,
     TENDON,
     Element,
+    own_speed,
     stop_force,
 )
 from rockbatch.core.devices.laws import stored as stored_in
@@ -67,7 +68,8 @@ def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
 
 @entry
 def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: ignore[no-untyped-def]
-    """Write elongation [m], its rate, force [N/kg] and stored energy [J/kg] of each device at each row, shape (rows, devices).
+    """Write elongation [m], speed without a brace, force [N/kg] and stored energy [J/kg] of each device at each row, shape
+    (rows, devices).
 
     A force is positive in tension; that of friction is 0 below the speed ``moves`` [m/s].
     """
@@ -79,7 +81,7 @@ def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: 
             gap = gap_of(m, law, pose, y)
             direction = math.copysign(1.0, gap.speed) if abs(gap.speed) > moves else STICKS
             pull[i, j] = recorded_force(law, gap, state, direction)
-            elongation[i, j], speed[i, j] = gap.elongation, gap.speed
+            elongation[i, j], speed[i, j] = gap.elongation, own_speed(law, gap.speed, state)
             energy[i, j] = stored_in(law, gap.elongation, state)
 
 
@@ -108,15 +110,6 @@ def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     for j, name in enumerate(names(pier, base)):
         table |= {f"{name} elongation": found.elongation[:, j], f"{name} force": found.pull[:, j]}
     return pd.DataFrame(table)
-
-
-def deck_pulls(pier: Pier, base: Base, rows: np.recarray) -> list[tuple[float, Samples]]:
-    """Return the height [m] and the force to the left on the deck [m/s²], at every row, of each device there."""
-    laws = elements(pier, base)
-    if all(law.height == 0.0 for law in laws):
-        return []
-    pull = _followed(pier, base, rows).pull
-    return [(law.height, law.way * pull[:, j]) for j, law in enumerate(laws) if law.height != 0.0]
 
 
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:

@@ -149,7 +149,7 @@ CASE = Section(("case",), (
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
-_ANY_PIER = Pier(alpha=1.0, p=1.0)
+_ANY_PIER = Pier(alpha=1.0, p=1.0, flexural_period_s=1.0)
 """Pier used if none can be read, so that everything independent of it is still checked."""
 
 

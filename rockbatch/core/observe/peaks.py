@@ -126,16 +126,21 @@ def recorded_force(of, here, state, goes):
 
 
 @kernel
+def _pull_within(m, devices, j, at, place, y):
+    """Return the Gap of device ``j`` in state ``y`` at a Place, whose Attitude is ``at``, and its force [m/s²]; 0 of friction."""
+    of = devices.elements[j]
+    here = gap_of(m, of, at, y)
+    return here, recorded_force(of, here, _state_within(m, devices, j, place), 0.0)
+
+
+@kernel
 def _by_laws(m, devices, place, y):
     """Return the Pull, in state ``y`` at a Place, of all that has a law: not of friction."""
     total, moment, at = 0.0, 0.0, attitude(m, y, place.step.contact, devices.level)
     for j in range(len(devices.elements)):
-        of = devices.elements[j]
-        if of.kind == FRICTION:
+        if devices.elements[j].kind == FRICTION:
             continue
-        here = gap_of(m, of, at, y)
-        x = _state_within(m, devices, j, place)
-        pull = recorded_force(of, here, x, 0.0)
+        here, pull = _pull_within(m, devices, j, at, place, y)
         total += pull * here.by_v
         moment += pull * here.arm
     return Pull(total, moment)
@@ -214,11 +219,47 @@ def _less_deck_within(devices, m, forces, place, y):
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0:
-            here, some = gap_of(m, of, at, y), True
-            x = _state_within(m, devices, j, place)
-            pull = recorded_force(of, here, x, 0.0)
+            (here, pull), some = _pull_within(m, devices, j, at, place, y), True
             shear, moment = shear + of.way * pull, moment + pull * here.by_theta
     return _with_across(forces, m.gravity, shear, moment) if some else forces
+
+
+@hook
+def push_deck(devices, m, i, y, contact, out):
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at row ``i``."""
+
+
+@push_deck.of(type(None))
+def _no_push(devices, m, i, y, contact, out):
+    pass
+
+
+@push_deck.of(RecordedDevices)
+def _push_at_row(devices, m, i, y, contact, out):
+    at = attitude(m, y, contact, devices.level)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            out[j] = of.way * recorded_force(of, gap_of(m, of, at, y), devices.states[i, j], 0.0)
+
+
+@hook
+def push_deck_within(devices, m, place, y, out):
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at a Place."""
+
+
+@push_deck_within.of(type(None))
+def _no_push_within(devices, m, place, y, out):
+    pass
+
+
+@push_deck_within.of(RecordedDevices)
+def _push_within(devices, m, place, y, out):
+    at = attitude(m, y, place.step.contact, devices.level)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            out[j] = of.way * _pull_within(m, devices, j, at, place, y)[1]
 
 
 class Stretch(NamedTuple):

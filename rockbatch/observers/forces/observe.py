@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import Outcome, PeakForces
+from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -34,7 +35,7 @@ class PeaksOfForces(Observer):
         peaks, note = fine
         outcome = outcome.noted(note)
         if coarse is not None:
-            peaks, note = with_error(peaks, coarse[0], run.pier)
+            peaks, note = with_error(peaks, coarse[0], run.pier, CHANCE)
             outcome = outcome.noted(note)
         return outcome.changed(forces=peaks)
 
