@@ -16,7 +16,7 @@ from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, small_figu
 from rockbatch.motions.listed import Listed
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked
-from rockbatch.reporting import records as on_page
+from rockbatch.workflow import records as on_page
 
 ODD = (Finding("no PGD", "its displacement runs away"),)
 
