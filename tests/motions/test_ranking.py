@@ -126,8 +126,8 @@ def test_the_scorecard_with_every_column_fits_into_80_letters(monkeypatch):
     listed = Listed(pulse_period_s=11.25, vs30_m_s=1428.14)
     parts = {"vertical": np.full(400, 9.8), "across": np.full(400, 4.9)}
     one = motion("R" * 60, 1.234, magnitude=7.62, distance_km=123.41, listed=listed, **parts)
-    for module in ("motions", "streams"):
-        monkeypatch.setattr(f"rockbatch.commands.{module}.width", lambda: 80)
+    for module in ("commands.motions", "terminal.streams"):
+        monkeypatch.setattr(f"rockbatch.{module}.width", lambda: 80)
     card = overview(MotionSet([one, motion("S", 0.4, findings=ODD)])).splitlines()[:10]
     assert max(map(len, card)) <= 80
     (line,) = (line for line in card if line.startswith("R"))

@@ -96,7 +96,7 @@ def _on_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, .
         return from_pairs(values.reshape(-1, 2), "no sampling rate, so digitised from film")
     except InputError as error:
         raise NoRecord(
-            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', number
+            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', station=number
         ) from None
 
 
