@@ -48,7 +48,9 @@ class Footing(NamedTuple):
     guided: float  # 1: flight goes on, as always on a bed
     rest: float  # velocity that counts as none [m/s]
     finite: bool | None  # True: finite kinematics; None: first-order
-    shifting: bool | None  # True: the lever follows the pressed part, as on two springs, for tests; None: one for all contacts
+    shifting: (
+        bool | None
+    )  # True: the lever follows the pressed part, as on two springs, for tests; None: one for all contacts
     bed: np.ndarray  # shape BEDS
     pull: Pull | None = None  # of dampers and tendons; None: there are none
 

@@ -108,7 +108,12 @@ def _in_part(m, d, j):
 
     The pressure is linear in that part, between 0 and the strength, dashpots included.
     """
-    left, right, e_left, e_right = m.bed[POSITIONS, j], m.bed[POSITIONS, j + 1], deflection(m, d, j), deflection(m, d, j + 1)
+    left, right, e_left, e_right = (
+        m.bed[POSITIONS, j],
+        m.bed[POSITIONS, j + 1],
+        deflection(m, d, j),
+        deflection(m, d, j + 1),
+    )
     weight = m.bed[AREA, j]
     if (e_left > 0.0) == (e_right > 0.0) or weight == 0.0:
         return Push(0.0, 0.0, 0.0)
@@ -196,7 +201,10 @@ def _beyond(m, d, d_end, h):
 def _deepest(m, d, h):
     """Return a bound on the depth under the foot [m], of a Sinking and its rate for ``h`` [s] from it."""
     along = d.slope + h * d.slope_rate
-    return max(d.level + abs(d.slope) * m.bed[POSITIONS, int(m.strips)], d.level + h * d.level_rate + abs(along) * m.bed[POSITIONS, int(m.strips)])
+    return max(
+        d.level + abs(d.slope) * m.bed[POSITIONS, int(m.strips)],
+        d.level + h * d.level_rate + abs(along) * m.bed[POSITIONS, int(m.strips)],
+    )
 
 
 @kernel
@@ -233,7 +241,12 @@ def lay(m):
         m.bed[POSITIONS, 2], m.bed[POSITIONS, 3] = b * (1.0 - m.gap), b * (1.0 + m.gap)
         m.bed[AREA, 0], m.bed[AREA, 1], m.bed[AREA, 2] = 0.5, 0.0, 0.5
     for j in range(n):
-        half, third, left, right = 0.5 * m.bed[AREA, j], m.bed[AREA, j] * (1.0 / 6.0), m.bed[POSITIONS, j], m.bed[POSITIONS, j + 1]
+        half, third, left, right = (
+            0.5 * m.bed[AREA, j],
+            m.bed[AREA, j] * (1.0 / 6.0),
+            m.bed[POSITIONS, j],
+            m.bed[POSITIONS, j + 1],
+        )
         m.bed[WEIGHTS, j] += half
         m.bed[WEIGHTS, j + 1] += half
         m.bed[ARMS, j] += third * (2.0 * left + right)
