@@ -22,6 +22,7 @@ from rockbatch.motions.hazard import HazardCurve as HazardCurve
 from rockbatch.pier import Damper as Damper
 from rockbatch.pier import DeckSpring as DeckSpring
 from rockbatch.pier import ElasticBase as ElasticBase
+from rockbatch.pier import FootingBase as FootingBase
 from rockbatch.pier import Part as Part
 from rockbatch.pier import Pier as Pier
 from rockbatch.pier import RigidBase as RigidBase

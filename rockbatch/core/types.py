@@ -139,8 +139,9 @@ class Result(NamedTuple):
     theta_end: float  # [rad]
     deflection_max: float  # greatest deflection of the top of a shaft that bends [m]
     drift_max: float  # and greatest horizontal way of that top
-    base_middle: float  # plastic set of the ground under the middle of a footing, and under its edges, at the end [m]
-    lean: float  # rotation at which the pier rests on its footing [rad]
+    bed_tilt: float  # tilt of the plastic set of a footing's bed at the end [rad]
+    lean: float  # rotation at which the pier rests on it [rad]
+    settled: float  # by which the middle of the foot is then deeper than at the start [m]
     contact_least: float  # least share of a footing that was pressed
     bed_pressure: float  # greatest pressure at an edge of a footing, as of its whole area over the mass [m/s²]
     t_pressure: float

@@ -7,6 +7,7 @@ from rockbatch.pier.bases import WITH_EXPONENT as WITH_EXPONENT
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase
 from rockbatch.pier.bases import Flight as Flight
+from rockbatch.pier.bases import FootingBase as FootingBase
 from rockbatch.pier.bases import Kinematics as Kinematics
 from rockbatch.pier.bases import RigidBase as RigidBase
 from rockbatch.pier.bases import SpringLaw as SpringLaw

@@ -15,6 +15,7 @@ import numpy as np
 from rockbatch.common.grouping import grouped
 from rockbatch.pier import MOST_ETA, Pier
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.bed import OF_FOOTING
 from rockbatch.quantities.cases import (
     ONE,
     THOUSAND,
@@ -47,8 +48,11 @@ from rockbatch.quantities.demands import (
 from rockbatch.quantities.quantity import (
     BENDING,
     ENDINGS,
+    FOOTING,
+    SETTLING,
     SPRINGS,
     TILTS,
+    TWO_SPRINGS,
     YIELDING,
     Limit,
     OfSuite,
@@ -395,7 +399,7 @@ TRAILING = (
         "settlement_error_m",
         "estimated error of the settlement, including its drift between readings; empty if it is chaotic, and with a "
         "fixed step",
-        "settlement_error", "m", bases=YIELDING, stood=True, sometimes=True,
+        "settlement_error", "m", bases=SETTLING, stood=True, sometimes=True,
     ),
     Quantity(
         "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
@@ -731,6 +735,7 @@ OPTIONAL = (
     *_WORK,
     *_OF_BENDING,
     _LANDING_FORCE,
+    *OF_FOOTING,
 )  # fmt: skip
 """Quantities at the end of a table, on request of the study."""
 
@@ -753,7 +758,8 @@ _OTHERS = (
         Ceiling(always(MOST_ETA), "is more than any foundation has"),
     ),
     parameter("yield_kN", "yield force of a support", "kN", YIELDING),
-    parameter("stiffness_kN_m", "stiffness of a support", "kN/m", SPRINGS),
+    parameter("stiffness_kN_m", "stiffness of a support", "kN/m", TWO_SPRINGS),
+    parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING),
     parameter(
         "static_deflection_m", "deflection of the supports under the weight at rest, while elastic", "m", SPRINGS, _WIDER,
         "delta_s_m",

@@ -11,9 +11,10 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.observe.beds import BED_STATE, follow_bed
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, YieldingBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.device_work import with_work
@@ -125,7 +126,9 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     terms = np.zeros((len(rows), len(TERMS)))
     balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     plain, pulls = restraints.apart(base, rows)
-    if base.on_springs:
+    if isinstance(base, FootingBase):
+        follow_bed(model(pier, base), plain, pulls, ground, dt, balance, np.recarray(len(rows), BED_STATE))
+    elif base.on_springs:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
     else:
         ledger_on_rigid_base(model(pier, base), plain, pulls, ground, dt, balance)
@@ -267,20 +270,26 @@ def histories(
     The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
     """
     pier, base, motion = run.pier, run.base, run.motion
-    rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
+    on_bed = isinstance(base, FootingBase)  # whose plastic set follows from every step
+    rows = written(run, outcome, quiet_s, every_step=ledger or on_bed, wait=wait)
     shown = rows.kind != types.STEP
     shown[-1] = True  # an overturned pier may fall between samples
     table = None
     if ledger:
         table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
         table.insert(0, "t", rows.t[shown])
+    moments = at_rows(run, rows)[shown] if forces and on_bed else None
+    bed_state = _footing_state(run, rows)[shown] if on_bed else None
     rows = rows[shown]
     demands = impacts = None
     if forces:
-        moments = at_rows(run, rows)
+        moments = at_rows(run, rows) if moments is None else moments
         demands, impacts = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
     devices = restraints.loops(pier, base, rows) if base.restraints else None
-    state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
+    if bed_state is not None:
+        state = {name: bed_state[name].copy() for name in bed_state.dtype.names or ()}
+    else:
+        state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
@@ -338,6 +347,27 @@ def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Sam
     )
     kinetic += rise * (slope * rows.omega - m.first * sine * rows.u_rate)
     return kinetic + m.gravity * (rows.v - m.first * u * sine) + 0.5 * m.second * (m.frequency * u) ** 2
+
+
+def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
+    """Return state, edges of the foot, forces at them that are equal to the push, and stored energy, at every step."""
+    pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
+    plain, pulls = restraints.apart(base, rows)
+    bed = np.recarray(len(rows), BED_STATE)
+    balance = np.zeros(len(rows), LEDGER).view(np.recarray)
+    follow_bed(model(pier, base), plain, pulls, ground_of(run.motion), float(run.motion.dt), balance, bed)
+    finite = base.kinematics == "finite"
+    rise = pier.half_width * (np.sin(rows.theta) if finite else rows.theta)
+    middle = rows.v + (pier.height * (1.0 - np.cos(rows.theta)) if finite else 0.0)
+    energy, of_edges = bed.stored, bed.moment / pier.half_width
+    if base.restraints:
+        energy = energy + restraints.stored(pier, base, rows)
+    columns = {
+        "theta": rows.theta, "omega": rows.omega, "v": rows.v, "z_left": nothing, "z_right": nothing, "v_left": middle + rise,
+        "v_right": middle - rise, "force_left": -0.5 * (bed.force - of_edges), "force_right": -0.5 * (bed.force + of_edges),
+        "energy": energy,
+    }  # fmt: skip
+    return np.rec.fromarrays(list(columns.values()), names=list(columns))
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:

@@ -21,6 +21,7 @@ from rockbatch.pier import (
     MOST_NEGLECTED,
     Base,
     ElasticBase,
+    FootingBase,
     Pier,
     neglected,
     places,
@@ -28,6 +29,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
     Line,
@@ -324,7 +326,9 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     pier, base = run.pier, run.base
     status, reason = _STATUS[result.status]
     more: dict[str, Any] = {}
-    if base.on_springs:
+    if isinstance(base, FootingBase):
+        more = of_bed(pier, base, result, survived=status == "ok")
+    elif base.on_springs:
         more = _of_springs(pier, base, result, survived=status == "ok")
     elif base.bends:
         more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}

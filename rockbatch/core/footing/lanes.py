@@ -20,17 +20,17 @@ from rockbatch.core.footing import equations  # noqa: F401  hooks of the footing
 from rockbatch.core.footing.ending import Ending, set_deadline
 from rockbatch.core.footing.model import (
     BED_OF_LANES,
+    NUMBERS,
     POSITIONS,
     SET,
-    NUMBERS,
     FootingTraits,
-    Place,
     Numbers,
+    Place,
     State,
     Touch,
     model_in,
 )
-from rockbatch.core.footing.statics import lean, level_at
+from rockbatch.core.footing.statics import lean, level_at, tilt
 from rockbatch.core.footing.strips import deflection, lay, plastic_work, pressure, push, settle, sinking
 from rockbatch.core.ground import later
 from rockbatch.core.kernel import inlined, kernel
@@ -95,6 +95,14 @@ def touch(m, d, bed):
     return Touch(1.0 if left > 0.0 else 0.0, 1.0 if right > 0.0 else 0.0, 1.0 if bed.touched == 0.0 else 0.0)
 
 
+@kernel
+def start_on_bed(m, y):
+    """Lay the bed as it is after the foot was pressed into it once, to state ``y``."""
+    lay(m)
+    d = sinking(m, y)
+    settle(m, d, d, 1.0)
+
+
 @system.begin.of(FootingTraits)
 def begin(traits, lanes, i, run):
     """Put the model of ``run`` into lane ``i``, at rest, or as it was pushed to a rotation from there."""
@@ -104,7 +112,7 @@ def begin(traits, lanes, i, run):
     lay(m)
     y = State(level_at(m, run.theta, load), run.theta, 0.0, 0.0)
     d = sinking(m, y)
-    settle(m, d, d, 1.0)
+    start_on_bed(m, y)
     put(lanes.now, i, y)
     put(lanes.contact, i, touch(m, d, push(m, d)))
     put(lanes.rates, i, State(math.nan, math.nan, math.nan, math.nan))
@@ -209,10 +217,10 @@ def one_pass(traits, lanes, count, substep, settings):
 def finish(traits, lanes, i, t, result):
     """Write the residuals, and what the bed has borne, of the run in lane ``i``."""
     m, _ = pier_in(traits, lanes, i)
-    demands, n = lanes.demands, int(m.strips)
-    result.base_left, result.base_right = m.bed[SET, 0], m.bed[SET, n]
-    result.base_middle = 0.5 * (m.bed[SET, n // 2] + m.bed[SET, (n + 1) // 2])
-    result.lean = lean(m, lanes.ending.load[i])
+    demands, load = lanes.demands, lanes.ending.load[i]
+    result.base_left, result.base_right = m.bed[SET, 0], m.bed[SET, int(m.strips)]
+    result.bed_tilt, result.lean = tilt(m), lean(m, load)
+    result.settled = sinking(m, State(level_at(m, result.lean, load), result.lean, 0.0, 0.0)).level - load / m.stiffness
     result.contact_least, result.bed_pressure, result.t_pressure = (
         demands.contact_least[i], demands.pressure[i], demands.pressure_time[i],
     )  # fmt: skip

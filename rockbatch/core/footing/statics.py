@@ -53,13 +53,19 @@ def summit(m, load):
 
 
 @kernel
-def lean(m, load):
-    """Return the rotation [rad] at which the pier rests on its bed, NaN if there is none: from the bed's tilt to where it leans."""
+def tilt(m):
+    """Return the tilt [rad] of the line that is next to the plastic set."""
     across, square = 0.0, 0.0
     for j in range(int(m.strips) + 1):
         across += m.bed[SET, j] * m.bed[POSITIONS, j]
         square += m.bed[POSITIONS, j] * m.bed[POSITIONS, j]
-    theta = across / square
+    return across / square
+
+
+@kernel
+def lean(m, load):
+    """Return the rotation [rad] at which the pier rests on its bed, NaN if there is none: from the bed's tilt to where it leans."""
+    theta = tilt(m)
     back = righting(m, theta, load)
     if back == 0.0:
         return theta
