@@ -595,6 +595,9 @@ def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -
 
 Base = RigidBase | ElasticBase | YieldingBase | FootingBase
 
+BASES: dict[str, type[Base]] = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase, FootingBase)}
+"""Bases by the names that users write."""
+
 IMPULSIVE = (RigidBase.name,)
 """Bases that do not give, on which every landing is an impulse."""
 

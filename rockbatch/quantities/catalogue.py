@@ -839,6 +839,7 @@ def listed() -> dict[str, list[str]]:
             else f"with [output] {demand.needs} = true" if demand.needs
             else f"of a {demand.device}" if demand.device
             else "of a shaft that bends" if demand.bases == BENDING
+            else "of a footing" if demand.bases == FOOTING and not demand.per_case
             else "of every run"
         )  # fmt: skip
 

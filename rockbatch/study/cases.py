@@ -22,7 +22,7 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
+from rockbatch.pier.bases import BASES, BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
@@ -37,9 +37,6 @@ from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, name
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-_BASES: dict[str, type[Base]] = {
-    "rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase, "footing": FootingBase,
-}  # fmt: skip
 _CALLED = {
     "base": names({
         "rigid": "fixed rigidbase rigidground housner rock", "elastic": "spring springs winkler flexible linear compliant",
@@ -55,11 +52,11 @@ _CALLED = {
         "finite": "large largerotations nonlinear exact full",
     }),
 }  # fmt: skip
-_ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.two_springs)}
-_ON_GROUND_THAT_GIVES = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
+_ON_SPRINGS = {"base": tuple(name for name, base in BASES.items() if base.two_springs)}
+_ON_GROUND_THAT_GIVES = {"base": tuple(name for name, base in BASES.items() if base.on_springs)}
 _NOT_ON_A_BED = {"base": (*_ON_SPRINGS["base"], "rigid")}
-_ON_ROCK = {"base": tuple(name for name, base in _BASES.items() if not base.on_springs)}
-_YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.two_springs and base.yields)}
+_ON_ROCK = {"base": tuple(name for name, base in BASES.items() if not base.on_springs)}
+_YIELDS = {"base": tuple(name for name, base in BASES.items() if base.two_springs and base.yields)}
 
 
 def _blow(value: Any) -> str:
@@ -137,7 +134,7 @@ CASE = Section(("case",), (
     "and `confirm` may be lists: every combination is a case."
 ), {
     "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
-    "base": Key(choice(*_BASES, called=_CALLED["base"]), '"yielding"',
+    "base": Key(choice(*BASES, called=_CALLED["base"]), '"yielding"',
         '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
         '"yielding": the same, and the springs yield; "footing": a foot on a bed of strips.', required=True),
     **BASE_KEYS,
@@ -253,7 +250,7 @@ def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[
     """
     arguments, wrong = dict(values), []
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
-    kind = _BASES[name]
+    kind = BASES[name]
     if stiffness and pier.mass_t:
         arguments["beta"] = beta_of(pier, stiffness)
     if strength and pier.mass_t:

@@ -102,7 +102,7 @@ def _padded(strips):
     return (int(strips) // CHUNK + 1) * CHUNK
 
 
-@kernel
+@inlined
 def _in_part(m, d, j):
     """Return by how much the Push of strip ``j``, of which a part is pressed, exceeds what its nodes say in the Sums.
 
@@ -133,23 +133,20 @@ def _in_part(m, d, j):
     )
 
 
-@kernel
+@inlined
 def push(m, d):
     """Return the Push of the bed under the Sinking ``d``."""
     sums, strips = _sums(m, d), int(m.strips)
-    if sums.nodes == 0.0 or sums.nodes == strips + 1.0:
-        return Push(sums.force, sums.moment, sums.touched)
-    middle, half = sums.numbers / sums.nodes, 0.5 * (sums.nodes - 1.0)
-    first, last = int(middle - half + 0.5), int(middle + half + 0.5)
-    before, behind = Push(0.0, 0.0, 0.0), Push(0.0, 0.0, 0.0)
-    if first > 0:
-        before = _in_part(m, d, first - 1)
-    if last < strips:
-        behind = _in_part(m, d, last)
-    return Push(
-        sums.force + before.force + behind.force, sums.moment + before.moment + behind.moment,
-        sums.touched + before.touched + behind.touched,
-    )  # fmt: skip
+    force, moment, touched = sums.force, sums.moment, sums.touched
+    if sums.nodes > 0.0 and sums.nodes < strips + 1.0:
+        middle, half = sums.numbers / sums.nodes, 0.5 * (sums.nodes - 1.0)
+        for side in (-1.0, 1.0):
+            end = int(middle + side * half + 0.5)
+            j = end - 1 if side < 0.0 else end
+            if j >= 0 and j < strips:
+                more = _in_part(m, d, j)
+                force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    return Push(force, moment, touched)
 
 
 @kernel
