@@ -42,7 +42,8 @@ def with_beds(lanes: np.dtype, beds: np.dtype) -> np.dtype:
 def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
     """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane, but for beds."""
     memory = np.zeros(1, lanes)
-    movable = (lanes.fields or {})["beds"][1] if "beds" in (lanes.names or ()) else lanes.itemsize
+    fields = lanes.fields
+    movable = fields["beds"][1] if fields is not None and "beds" in fields else lanes.itemsize
     return memory.view(np.recarray), memory.view("f8")[: movable // 8].reshape(-1, LANES)
 
 

@@ -141,7 +141,7 @@ CASE = Section(("case",), (
     "other_width_m": Key(within(OF_PIER["width_m"]), "8.0",
         "Width between the pivots across the axis, at right angles to `width_m` of `[pier]`. The case is then run on both axes, "
         "each a planar model under its component of every record, and checks combine them by `both_axes`.",
-        usual=PIER["width_m"].usual),
+        usual=PIER["width_m"].usual, only=_NOT_ON_A_BED),
     **CONFIRM,
 }, many=True, required=True, homes=(YieldingBase, ElasticBase, RigidBase, FootingBase), also=names({
     "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",

@@ -118,7 +118,10 @@ def solve(foot, horizontal, vertical, dt, rtol=1e-10):
             most = max(most, abs(y[1]))
             d, rate = sunk(foot, y)
             plastic = np.where(yields, d - foot.most, plastic)
-            force_max = max(force_max, bed(foot, d - plastic, rate)[0])
+            for z in part.y.T:
+                d_z, rate_z = sunk(foot, z)
+                set_z = np.where(yields, d_z - foot.most, plastic)
+                force_max = max(force_max, bed(foot, d_z - set_z, rate_z)[0])
             fired = [j for j, times in enumerate(part.t_events) if len(times)]
             for j in fired:
                 yields[j] = not yields[j]
