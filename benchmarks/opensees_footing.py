@@ -3,8 +3,8 @@
     pip install openseespy
     python benchmarks/opensees_footing.py > benchmarks/opensees_footing.csv
 
-As in benchmarks/opensees.py, but with 80 springs under the foot, at the middles of as many strips, drawn apart until they have the
-rocking stiffness of the bed. Rows: case, peak rotation over α in the motion, the same by rockbatch with as many strips.
+As in benchmarks/opensees.py, but with 80 springs under the foot, at the middles of as many strips, drawn apart until they have
+the rocking stiffness of the bed. Rows: case, peak rotation over α in the motion, the same by rockbatch with as many strips.
 tests/verification/test_against_opensees.py holds rockbatch against them.
 """
 

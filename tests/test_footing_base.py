@@ -11,6 +11,7 @@ from rockbatch.pier.soil import Soil, bed_stiffness, gazetas, pais_kausel
 
 TALL = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
 WEIGHT = 3000.0 * TALL.gravity
+PULSE = 'name = "one-sine"\nshape = "sine"\namplitude_g = 0.3\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2.0'
 
 
 @pytest.fixture
@@ -21,9 +22,7 @@ def study(tmp_path):
         lines = "\n".join(f"{key} = {value}" for key, value in {"base": '"footing"', **keys}.items())
         pier = "[pier]\nwidth_m = 8.0\nheight_m = 30.0\nmass_t = 2000.0\ndeck_mass_t = 1000.0\n"
         path = tmp_path / "study.toml"
-        path.write_text(
-            f'{pier}[[motions.pulse]]\nname = "one-sine"\nshape = "sine"\namplitude_g = 0.3\nperiod_s = 1.0\ndt_s = 0.01\nduration_s = 2.0\n[[case]]\n{lines}\n'
-        )
+        path.write_text(f"{pier}[[motions.pulse]]\n{PULSE}\n[[case]]\n{lines}\n")
         return rb.load_study(path)
 
     return load

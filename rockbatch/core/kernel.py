@@ -142,7 +142,7 @@ def inlined_once(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def summing(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a building block that sums over an array in any order, which vector instructions need: the last digits depend on it."""
+    """Compile a building block that sums over an array in any order, as vector instructions do: the last digits depend on it."""
     return _guarded(numba.njit(fastmath={"reassoc", "nsz", "contract"}, **_OPTIONS | _PART)(function))
 
 

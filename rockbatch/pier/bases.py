@@ -122,7 +122,7 @@ class _Traits(InNotebook):
     """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
 
     on_springs: ClassVar[bool]
-    """True if the ground gives: springs or a bed carry the pier; a literal of each class, by which type checkers know the class."""
+    """True if the ground gives: springs or a bed; a literal of each class, by which type checkers know the class."""
 
     two_springs: ClassVar[bool] = False
     """True if these are two springs under the pivots."""
@@ -490,7 +490,7 @@ class FootingBase(_Traits):
         wrong = BETA.problems("beta", self.beta)
         if self.strips < 2 or self.strips > MOST_STRIPS or self.strips % 2:
             wrong.append(
-                f"strips = {self.strips}: must be an even number from 2 to {MOST_STRIPS}, of which a run with half gives the error"
+                f"strips = {self.strips}: must be an even number from 2 to {MOST_STRIPS}; half as many give the error"
             )
         return wrong
 
@@ -569,8 +569,8 @@ class FootingBase(_Traits):
         wrong = []
         if not self.beta > least:
             wrong.append(
-                f"beta = {self.beta:g}: the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h; beta must "
-                f"be above {least:.4g}, the bed {(least / self.beta) ** 2:.3g} times as stiff"
+                f"beta = {self.beta:g}: the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h; "
+                f"beta must be above {least:.4g}, the bed {(least / self.beta) ** 2:.3g} times as stiff"
             )
         if self.safety_factor is not None and not self.safety_factor > 1.0 + psi:
             wrong.append(

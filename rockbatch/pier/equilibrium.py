@@ -368,7 +368,7 @@ class SlowTurn:
         return self.search_unstable()
 
     def search_unstable(self) -> float | None:
-        """Return the rotation from which on the righting moment is negative [rad], by ever finer grids; None for none up to π/2."""
+        """Return the rotation from which on the righting moment is negative [rad], by finer and finer grids."""
         low, high, parts = 0.0, 0.5 * math.pi, 96
         for _ in range(5):
             grid = np.linspace(low, high, parts + 1)[1:]

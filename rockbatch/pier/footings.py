@@ -19,8 +19,8 @@ HALVINGS = 60
 class SlowFooting(SlowTurn):
     """A pier on a footing that is turned slowly from rest; the ground has been loaded once.
 
-    The toe and the heel are the edges of the foot. In its Equilibria ``toe`` is the pressure under the edge over that of the weight
-    at rest, and ``heel`` the share of the foot that is pressed.
+    The toe and the heel are the edges of the foot. In its Equilibria ``toe`` is the pressure under the edge over that of the
+    weight at rest, and ``heel`` the share of the foot that is pressed.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class SlowFooting(SlowTurn):
         self.settled = self.at_rest * self.deflection
 
     def bed(self, theta: Array, depth: Array) -> tuple[Array, Array, Array]:
-        """Return force over the weight, moment about the middle [m], and the share that is pressed, of a toe at a ``depth`` [m]."""
+        """Return force over the weight, moment about the middle [m], and the pressed share, of a toe at a ``depth`` [m]."""
         b, slope = self.b, np.sin(theta) if self.finite else theta
         middle, most = depth - b * slope, self.strength * self.deflection
         with np.errstate(divide="ignore", invalid="ignore"):

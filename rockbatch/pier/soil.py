@@ -1,7 +1,6 @@
 """Stiffness of a rigid rectangular footing on soil, and how its bed of springs follows from it (THEORY.md, A footing).
 
-Stiffnesses in MN/m and MN m/rad from a shear modulus in MPa and lengths in m. The footing rocks in the plane of its ``width``, about
-an axis along its ``length``.
+Stiffnesses in MN/m and MN m/rad from a shear modulus in MPa and lengths in m. The footing rocks in the plane of its ``width``.
 """
 
 import math

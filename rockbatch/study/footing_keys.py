@@ -19,8 +19,8 @@ _FIELDS = ("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "lengt
 
 FOOTING_KEYS = {
     "width_m": Key(positive, "9.0",
-        "Width of the foot in the plane of rocking; default: that of the pier. α of the case is then atan(width_m/2h); devices stay "
-        "at the pivots of `[pier]`.", many=True, only=ON_FOOTING),
+        "Width of the foot in the plane of rocking; default: that of the pier. α of the case is then atan(width_m/2h); devices "
+        "stay at the pivots of `[pier]`.", many=True, only=ON_FOOTING),
     "length_m": Key(positive, "12.0", "Length of the foot across the plane of rocking.", many=True, only=ON_FOOTING),
     "stiffness_MN_m3": Key(positive, "60.0", "Stiffness of the bed; or give soil, or `young_GPa` with `depth_m`.", many=True,
         only=ON_FOOTING),
@@ -103,7 +103,8 @@ def _lacking(values: Mapping[str, Any]) -> list[str]:
     """Return which keys miss another one."""
     pairs = (
         ("young_GPa", "depth_m"), ("depth_m", "young_GPa"), ("shear_modulus_MPa", "poisson"), ("poisson", "shear_modulus_MPa"),
-        ("bearing_MPa", "length_m"), ("stiffness_MN_m3", "length_m"), ("young_GPa", "length_m"), ("shear_modulus_MPa", "length_m"),
+        ("bearing_MPa", "length_m"), ("stiffness_MN_m3", "length_m"), ("young_GPa", "length_m"),
+        ("shear_modulus_MPa", "length_m"),
         ("embedment_m", "shear_modulus_MPa"), ("formula", "shear_modulus_MPa"), ("radiation", "shear_modulus_MPa"),
         ("density_t_m3", "radiation"), ("radiation", "density_t_m3"),
     )  # fmt: skip

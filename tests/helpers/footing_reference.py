@@ -116,7 +116,7 @@ def solve(foot, horizontal, vertical, dt, rtol=1e-10):
                     most = max(most, abs(part.sol(turn)[1]))
             y, t = part.y[:, -1], part.t[-1]
             most = max(most, abs(y[1]))
-            d, rate = sunk(foot, y)
+            d, _ = sunk(foot, y)
             plastic = np.where(yields, d - foot.most, plastic)
             for z in part.y.T:
                 d_z, rate_z = sunk(foot, z)

@@ -12,11 +12,12 @@ from rockbatch.core.run import march
 
 
 def model_of(foot: Foot, shifting=None, gap=0.0) -> Footing:
-    """The core's numbers of a Foot; with a ``gap`` two strips at its edges, of that share of the width, and a lever as springs have."""
+    """The core's numbers of a Foot; with a ``gap`` two strips at its edges, of that share of the width."""
     k, columns = foot.stiffness, max(BEDS[1], (foot.strips // CHUNK + 1) * CHUNK)
     return Footing(
         0.5 * foot.width, foot.height, foot.inertia, GRAVITY, k, foot.safety * GRAVITY, 2.0 * foot.zeta * math.sqrt(k),
-        3.0 if gap else float(foot.strips), gap, 1.0, 1e-12, True if foot.finite else None, shifting, np.zeros((BEDS[0], columns)),
+        3.0 if gap else float(foot.strips), gap, 1.0, 1e-12, True if foot.finite else None, shifting,
+        np.zeros((BEDS[0], columns)),
     )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from footing_reference import Foot, solve
 from footing_runs import model_of, run
 
 import rockbatch as rb
-from rockbatch.core.footing.model import BEDS, Footing
 from rockbatch.simulation import Run, run_fixed
 from rockbatch.simulation.histories import energies, written
 
@@ -43,11 +42,11 @@ def test_two_strips_at_the_pivots_do_what_two_springs_do(kinematics, law):
     }
     motion, omega_v = one_sine(3.0, 0.5, 1.2), beta * pier.p
     springs = run_fixed(pier, bases[law], motion, 64, quiet_s=0.0, wait=False)
-    strips = Footing(
-        pier.half_width, pier.height, pier.inertia, pier.gravity, omega_v**2, 2.5 * pier.gravity if law == "yielding" else math.inf,
-        0.2 * omega_v if law == "damped" else 0.0, 3.0, 1e-6, 1.0, 1e-12, True if kinematics == "finite" else None, True,
-        np.zeros(BEDS),
+    foot = Foot(
+        2.0 * pier.half_width, pier.height, pier.inertia, pier.gravity / omega_v**2, 2.5 if law == "yielding" else math.inf,
+        0.1 if law == "damped" else 0.0, finite=kinematics == "finite",
     )  # fmt: skip
+    strips = model_of(foot, shifting=True, gap=1e-6)
     result = run(strips, motion.horizontal, DT, 256)[0]
     assert abs(result.theta_max - springs.theta_max) < 1e-9 * pier.alpha
     assert result.t_max == pytest.approx(springs.t_max, abs=1e-6)

@@ -39,8 +39,8 @@ def _kept(m, devices, y, contact):
 def cannot_turn_further(m, devices, now, load, peak):
     """Return whether the energy of this moment does not suffice to turn beyond ``peak`` [rad] to either side.
 
-    To pass a rotation takes at least the energy of the pier at rest there, on the bed as it is: yielding only costs more. Past its
-    summit nothing holds the pier, so that it is the lesser rotation that counts.
+    To pass a rotation takes at least the energy of the pier at rest there, on the bed as it is: yielding only costs more. Past
+    its summit nothing holds the pier, so that it is the lesser rotation that counts.
     """
     y, limit = now.y, min(peak, summit(m, load))
     if not abs(y.theta) < limit:

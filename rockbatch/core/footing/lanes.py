@@ -16,7 +16,7 @@ from rockbatch.core.clock import (
     include_peak,
     note_flight,
 )
-from rockbatch.core.footing import equations  # noqa: F401  hooks of the footing
+from rockbatch.core.footing import equations
 from rockbatch.core.footing.ending import Ending, set_deadline
 from rockbatch.core.footing.model import (
     BED_OF_LANES,
@@ -219,15 +219,18 @@ def finish(traits, lanes, i, t, result):
     m, _ = pier_in(traits, lanes, i)
     demands, load = lanes.demands, lanes.ending.load[i]
     result.base_left, result.base_right = m.bed[SET, 0], m.bed[SET, int(m.strips)]
-    result.bed_tilt, result.lean = tilt(m), lean(m, load)
-    result.settled = sinking(m, State(level_at(m, result.lean, load), result.lean, 0.0, 0.0)).level - load / m.stiffness
+    result.dissipated_left = plastic_work(m)
+    result.bed_tilt = result.lean = result.settled = 0.0
+    if result.dissipated_left > 0.0:
+        result.bed_tilt, result.lean = tilt(m), lean(m, load)
+        at_rest = sinking(m, State(level_at(m, result.lean, load), result.lean, 0.0, 0.0))
+        result.settled = at_rest.level - load / m.stiffness
     result.contact_least, result.bed_pressure, result.t_pressure = (
         demands.contact_least[i], demands.pressure[i], demands.pressure_time[i],
     )  # fmt: skip
     result.pressure_side = demands.pressure_side[i]
     result.bed_force, result.t_force = demands.force[i], demands.force_time[i]
     result.yielding_rocks, result.t_yield = demands.yielding[i], demands.yield_time[i]
-    result.dissipated_left = plastic_work(m)
 
 
 def system_of(m):

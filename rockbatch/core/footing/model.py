@@ -33,7 +33,7 @@ BED_OF_LANES = np.dtype(("f8", (LANES, *BEDS)))
 class Footing(NamedTuple):
     """A pier on a footing, per unit mass.
 
-    Of those without a default lanes hold the numbers; the last ones are told apart by their types, hence when kernels are compiled.
+    Lanes hold the numbers; what follows them is told apart by its type, hence when kernels are compiled.
     """
 
     half_width: float  # b = B/2 [m]

@@ -10,7 +10,7 @@ HALVINGS = 60
 """Of an interval that holds an equilibrium: to rounding."""
 
 FIRST_STEP, LONGER = 0.02, 1.25
-"""First step of the search for a stable equilibrium, over the rotation of uplift 2 δ_s/B, and the factor from each to the next."""
+"""First step of the search for a stable equilibrium, over the rotation of uplift, and the factor from each to the next."""
 
 
 @kernel
@@ -64,7 +64,7 @@ def tilt(m):
 
 @kernel
 def lean(m, load):
-    """Return the rotation [rad] at which the pier rests on its bed, NaN if there is none: from the bed's tilt to where it leans."""
+    """Return the rotation [rad] at which the pier rests on its bed, from the bed's tilt to where it leans; NaN for none."""
     theta = tilt(m)
     back = righting(m, theta, load)
     if back == 0.0:

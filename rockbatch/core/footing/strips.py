@@ -1,9 +1,9 @@
 """The bed under the foot: its push, what it stores, and its plastic set (THEORY.md, A footing).
 
-The ground sinks under the foot by d(x) = level + slope x. Nodes lie between the strips, and the plastic set is linear between them,
-so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form. The set is the
-greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at most are pressed
-in part.
+The ground sinks under the foot by d(x) = level + slope x. Nodes lie between the strips, and the plastic set is linear between
+them, so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form. The set is
+the greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at most are
+pressed in part.
 """
 
 from typing import NamedTuple
@@ -70,7 +70,7 @@ def deflection(m, d, j):
 
 @inlined
 def pressure(m, d, j):
-    """Return the pressure at node ``j``, spring and dashpot, as if it were pressed; over that of the whole area per mass [m/s²]."""
+    """Return the pressure at node ``j``, spring and dashpot, as if it were pressed, times the area over the mass [m/s²]."""
     rate = d.level_rate + d.slope_rate * m.bed[POSITIONS, j]
     return m.stiffness * deflection(m, d, j) + m.damping * rate
 
@@ -161,7 +161,7 @@ def pressed_middle(m, d):
 
 @kernel
 def stored(m, d):
-    """Return the elastic energy of the bed [J/kg]: beyond the strength, with the work of the least set at which it bears no more."""
+    """Return the elastic energy of the bed [J/kg]: beyond the strength, with the work of the set that takes it there."""
     energy, most = 0.0, m.strength / m.stiffness
     for j in range(int(m.strips)):
         left, right = deflection(m, d, j), deflection(m, d, j + 1)
