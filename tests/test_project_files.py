@@ -34,14 +34,23 @@ def test_the_workflow_tests_every_python_that_is_promised_on_every_system():
         assert f"{system}-latest" in WORKFLOW
 
 
-def test_the_workflow_runs_the_tests_of_make_test_and_its_linters():
+def test_the_workflow_runs_the_tests_of_make_test_and_all_that_a_checkout_does():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     (command,) = re.findall(r'pytest (-n auto .*"not slow")', makefile)
     assert f"pytest {command}" in WORKFLOW
-    assert "make lint docs" in WORKFLOW
+    assert "run: bash .ci/run\n" in WORKFLOW
+    steps = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert {"run", "lint", "docs", "test", "slow"} <= set(re.findall(r"^make (\w+)", steps, re.MULTILINE))
     hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     for linter in re.findall(r"\$\(BIN\)/(ruff \w+|mypy|lint-imports)", makefile.split("lint:")[1].split("docs:")[0]):
         assert f".venv/bin/{linter}" in hooks
+
+
+def test_the_workflow_keeps_kernels_by_the_sources_that_they_are_compiled_from():
+    assert "ROCKBATCH_CACHE: ${{ github.workspace }}/build/kernels\n" in WORKFLOW
+    jobs = WORKFLOW.split("\njobs:\n")[1]
+    assert jobs.count("    steps:\n") == jobs.count("path: build/kernels\n") == jobs.count("key: kernels-")
+    assert jobs.count("hashFiles('rockbatch/core/**/*.py', 'pyproject.toml')") == jobs.count("key: kernels-")
 
 
 def test_one_command_writes_a_version_wherever_it_stands(tmp_path):

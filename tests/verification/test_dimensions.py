@@ -38,7 +38,7 @@ from rockbatch.core.springs.model import (
 )
 from rockbatch.core.types import IMPACT_BOTH, IMPACT_LEFT, IMPACT_RIGHT, Ground, Instant, Moment, Pull
 
-U = pint.UnitRegistry()
+U = pint.get_application_registry()  # which two test files share, since it takes a second to make
 M, S, RAD, ONE = U.metre, U.second, U.radian, U.dimensionless
 SPEED, ACCELERATION, JERK = M / S, M / S**2, M / S**3
 
