@@ -30,7 +30,7 @@ from rockbatch.quantities.catalogue import (
     names,
     report_columns,
 )
-from rockbatch.quantities.quantity import BENDING, Limit, Quantity
+from rockbatch.quantities.quantity import BENDING, FOOTING, Limit, Quantity
 from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
@@ -118,7 +118,7 @@ def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
     endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g", "m^2/s^2": "m2_s2"}
-    endings |= {"kN*m": "kNm", "kJ": "kJ"}
+    endings |= {"kN*m": "kNm", "kJ": "kJ", "MPa": "MPa"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
@@ -141,7 +141,7 @@ def test_the_page_shows_a_column_in_the_unit_of_its_heading():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
-    of_functions = {"energies", "forces", "device_work"}  # each of theirs has a column of its own
+    of_functions = {"energies", "forces", "device_work", "bed"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     of_functions |= {"top_drift_max"}  # top_drift_m where the shaft bends
     of_functions |= {"change_in_motion"}  # the error of the peak in motion where that is not theta_max
@@ -203,7 +203,7 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
     of_devices = (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"])  # it has no device
     unasked = (*of_devices, COLUMNS["landing_force_kN"])
-    asked = [column for column in OPTIONAL if column not in unasked and column.bases != BENDING]
+    asked = [column for column in OPTIONAL if column not in unasked and column.bases not in (BENDING, FOOTING)]
     assert list(table) == [*names(FIXED), *study.varied, *names(TRAILING), *names(asked)]
 
 

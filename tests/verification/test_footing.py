@@ -64,8 +64,8 @@ def random_case(number):
         random.choice([0.0, 0.05, 0.2]), 8, bool(random.integers(2)),
     )  # fmt: skip
     t, period = np.arange(0.0, 1.5, DT), random.uniform(0.3, 1.0)
-    horizontal = 9.81 * width / height * random.uniform(0.5, 2.5) * np.sin(2.0 * np.pi * t / period) * (t < period)
-    vertical = random.choice([0.0, 4.0]) * np.sin(2.0 * np.pi * t / (0.3 * period)) * (t < period)
+    horizontal = 9.81 * width / height * random.uniform(0.5, 5.0) * np.sin(2.0 * np.pi * t / period) * (t < period)
+    vertical = random.choice([0.0, 4.0, 12.0]) * np.sin(2.0 * np.pi * t / (0.3 * period)) * (t < period)
     return foot, horizontal, vertical
 
 
