@@ -460,7 +460,7 @@ class FootingBase(_Traits):
     >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
     >>> clay = rb.FootingBase.from_soil(tall, shear_modulus_MPa=60, poisson=0.45, length_m=10, bearing_MPa=1.1)
     >>> f"FS = {clay.safety_factor:.2f}, {clay.vertical_over_formula:.2f} of the vertical stiffness"
-    'FS = 2.99, 2.15 of the vertical stiffness'
+    'FS = 2.99, 2.56 of the vertical stiffness'
     """
 
     beta: float

@@ -110,7 +110,7 @@ def test_pier_at_rest_on_a_yielded_bed_leans_further_than_the_bed():
 def test_runs_come_to_what_an_independent_solver_does(finite, safety, zeta):
     foot = Foot(strips=8, safety=safety, zeta=zeta, finite=finite)
     reference = solve(foot, pulse(), 0.0 * pulse(), DT)
-    result = run(model_of(foot), pulse(), DT, 16)[0]
+    result = run(model_of(foot), pulse(), DT, 32)[0]
     assert result.theta_max == pytest.approx(reference.theta_max, rel=1e-6)
     assert result.theta_end == pytest.approx(reference.y[1], abs=1e-6 * reference.theta_max)
     assert result.base_left == pytest.approx(reference.plastic[0], rel=1e-6, abs=1e-6 * foot.settlement)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rockbatch.core.footing.model import AREA, ARMS, CHUNK, ORDER, POSITIONS, SET, WEIGHTS
 from rockbatch.core.kernel import inlined, kernel, summing
-from rockbatch.core.roots import highest_within
+from rockbatch.core.roots import summit_within
 from rockbatch.core.trigonometry import sine_and_cosine
 
 SMALLEST = 1e-300
@@ -214,7 +214,7 @@ def settle(m, d, d_end, h):
         return False
     for j in range(int(m.strips) + 1):
         x = m.bed[POSITIONS, j]
-        deepest = highest_within(
+        deepest = summit_within(
             d.level + d.slope * x, d.level_rate + d.slope_rate * x,
             d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
         )  # fmt: skip
