@@ -28,7 +28,7 @@ SHARED = [
     ElasticBase(50.0),
     ElasticBase(50.0, zeta=0.05),
 ]
-"""Bases whose kernels fast tests compile (CONTRIBUTING.md)."""
+"""Bases whose kernels fast tests compile (docs/pages/extending.md)."""
 
 
 LIBRARIES = [

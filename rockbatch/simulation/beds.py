@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from rockbatch.core.types import Result
+from rockbatch.outcome.outcome import BedDemands, Outcome
 from rockbatch.pier import FootingBase, Pier
-from rockbatch.simulation.outcome import BedDemands, Outcome
 
 ORDER = 3.0
 """By how much more halving the number of strips changes than they are wrong: an error of order 2 is a third of the change."""

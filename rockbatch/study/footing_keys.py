@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, get_args
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
 from rockbatch.pier import FootingBase, Pier
 from rockbatch.pier.bases import POISSON, STRIPS
 from rockbatch.pier.restraints import Restraint
@@ -71,7 +71,9 @@ def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ..
     return tuple(placed)
 
 
-def footing_of(values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]) -> tuple[FootingBase, list[str]]:
+def footing_of(
+    values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]
+) -> tuple[FootingBase, list[Problem]]:
     """Return the base of a case on a footing, and what is impossible about it; then a possible one lets the rest be checked.
 
     ``pier`` is that on the foot.
@@ -90,7 +92,7 @@ def footing_of(values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, 
         many = f"{' and '.join(ways)} are given, which fix the same; keep one" if ways else (
             "the stiffness of the bed is missing; write shear_modulus_MPa and poisson of the soil, or stiffness_MN_m3"
         )  # fmt: skip
-        return fallback, [f"base: {many}"]
+        return fallback, [Problem("base", None, many, kind=Contradiction if ways else MissingKey)]
     if wrong := _lacking(values):
         return fallback, wrong
     try:
@@ -99,7 +101,7 @@ def footing_of(values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, 
         return fallback, list(error.problems)
 
 
-def _lacking(values: Mapping[str, Any]) -> list[str]:
+def _lacking(values: Mapping[str, Any]) -> list[Problem]:
     """Return which keys miss another one."""
     pairs = (
         ("young_GPa", "depth_m"), ("depth_m", "young_GPa"), ("shear_modulus_MPa", "poisson"), ("poisson", "shear_modulus_MPa"),
@@ -109,12 +111,13 @@ def _lacking(values: Mapping[str, Any]) -> list[str]:
         ("density_t_m3", "radiation"), ("radiation", "density_t_m3"),
     )  # fmt: skip
     wrong = [
-        f"{key} = {values[key]}: {other} is missing beside it"
+        Problem(key, values[key], f"{other} is missing beside it", kind=MissingKey)
         for key, other in pairs
         if key in values and other not in values
     ]
     if "bearing_MPa" in values and "safety_factor" in values:
-        wrong.append(f"bearing_MPa = {values['bearing_MPa']:g}: safety_factor is given, which fixes the same; keep one")
+        text = "safety_factor is given, which fixes the same; keep one"
+        wrong.append(Problem("bearing_MPa", values["bearing_MPa"], text, kind=Contradiction))
     return wrong
 
 

@@ -13,7 +13,7 @@ from rockbatch.commands.cli import main
 from rockbatch.motions import LeftOut, MotionSet, Unusable
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.origin import Origin
-from rockbatch.reporting.records import page, write_records
+from rockbatch.workflow.records import page, write_records
 
 
 def motion(name, pga_g, **values):

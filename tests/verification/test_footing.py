@@ -11,8 +11,9 @@ from footing_reference import Foot, solve
 from footing_runs import model_of, run
 
 import rockbatch as rb
+from rockbatch.observers.energy_balance.observe import energies
 from rockbatch.simulation import Run, run_fixed
-from rockbatch.simulation.histories import energies, written
+from rockbatch.simulation.recording import recorded
 
 DT = 0.01
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -104,7 +105,7 @@ def test_energy_balance_closes_with_the_square_of_the_step():
     case, left = Run(pier, base, one_sine(4.0, 0.7, 2.0)), []
     for substeps in (4, 16, 64):
         outcome = run_fixed(*case_of(case), substeps, quiet_s=0.5)
-        terms = energies(case, written(case, outcome, 0.5, True))
+        terms = energies(case, recorded(case, outcome, 0.5, True).rows)
         left.append(np.abs(terms[:, -1]).max() / terms[:, 0].max())
     assert left[2] < 1e-6
     assert left[0] > 10.0 * left[1] > 100.0 * left[2]

@@ -1,9 +1,9 @@
 """The bed under the foot: its push, what it stores, and its plastic set (THEORY.md, A footing).
 
 The ground sinks under the foot by d(x) = level + slope x. Nodes lie between the strips, and the plastic set is linear between
-them, so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form. The set is
-the greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at most are
-pressed in part.
+them, so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form.
+The set is the greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at
+most are pressed in part.
 """
 
 from typing import NamedTuple

@@ -15,6 +15,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.quantity import SETTLING
+from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
@@ -22,7 +23,6 @@ from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.rows import NOT_RUN
 from rockbatch.results.suite_statistics import reasons_of_failure
 
 LEAST_ERROR = 1e-6
