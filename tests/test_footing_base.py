@@ -8,6 +8,7 @@ from footing_runs import closed_form
 
 import rockbatch as rb
 from rockbatch.pier.soil import Soil, bed_stiffness, gazetas, pais_kausel
+from rockbatch.study.footing_keys import at_pivots
 
 TALL = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
 WEIGHT = 3000.0 * TALL.gravity
@@ -81,7 +82,9 @@ def test_slenderness_of_a_case_is_that_of_its_foot_and_devices_stay_at_the_pivot
     assert case.pier.alpha == pytest.approx(math.atan(5.5 / TALL.height))
     assert case.pier.height == pytest.approx(TALL.height)
     assert case.pier.inertia == pytest.approx(TALL.inertia)
-    assert case.columns["alpha"] == case.pier.alpha
+    damper, tendon = rb.Damper("viscous", nu=1.0), rb.Tendon(psi=0.1, lam=0.5)
+    placed = at_pivots((damper, tendon), TALL)
+    assert [device.at for device in placed] == [-4.0, 4.0, 0.0]
 
 
 @pytest.mark.parametrize(("keys", "words"), [

@@ -24,6 +24,10 @@ def _push(run: Run) -> float | None:
     return None if run.outcome.bed is None else run.outcome.bed.force / run.pier.gravity
 
 
+def _alpha(run: Run) -> float | None:
+    return None if run.outcome.bed is None else run.pier.alpha
+
+
 def _strips_error(run: Run) -> float | None:
     error = _of_bed("strips_error")(run)
     return None if error is None else error / run.pier.alpha
@@ -40,6 +44,7 @@ _IN_MM = Limit(unit="mm", times=THOUSAND, ceiling=Ceiling(lambda case: 1000.0 * 
 _EDGE = "settlement of the {} edge of the foot, at rest on its bed"
 
 OF_FOOTING = (
+    _quantity("foot_alpha_rad", "slenderness α of the foot, atan(B/2h), by which θ/α of the case is divided", _alpha, "rad"),
     _quantity("contact_least", "least share of the foot that was pressed", _of_bed("contact_least"), "1",
         ReportFormat("least contact", ".3f", behind="settlement_m")),
     _quantity("bed_force_over_weight", "greatest push of the bed over the pier's weight, dashpots included", _push, "1",

@@ -205,10 +205,9 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
         pier = replace(pier, mass_t=values["mass_t"], confirm=(*pier.confirm, "mass_t"))
-    pivots, columns = pier, dict[str, Any]()
+    pivots = pier
     if "width_m" in values:
         pier = on_foot(pier, values["width_m"])
-        columns = {"alpha": pier.alpha}
     made = (written.made(pier, chosen, judged=not any_pier) for written in case.devices)
     devices = tuple(device for device in made if device is not None)
     devices = at_pivots(devices, pivots) if pier is not pivots else devices
@@ -239,7 +238,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     if not base.bends:
         for key in ("shaft", "flexural_damping"):
             applying.pop(key, None)
-    return Case(case.name, pier, base, pier_values | applying | columns)
+    return Case(case.name, pier, base, pier_values | applying)
 
 
 def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[Problem]]:
