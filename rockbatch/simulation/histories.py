@@ -154,7 +154,10 @@ def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
         "v_right": middle - rise, "force_left": -0.5 * (bed.force - of_edges), "force_right": -0.5 * (bed.force + of_edges),
         "energy": energy,
     }  # fmt: skip
-    return np.rec.fromarrays(list(columns.values()), names=list(columns))
+    state = np.recarray(len(rows), np.dtype([(name, "f8") for name in columns]))
+    for name, values in columns.items():
+        state[name] = values
+    return state
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:

@@ -8,7 +8,7 @@ from typing import Any, get_args
 from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
 from rockbatch.pier import FootingBase, Pier
 from rockbatch.pier.bases import POISSON, STRIPS
-from rockbatch.pier.restraints import Restraint
+from rockbatch.pier.restraints import DeckSpring, Restraint
 from rockbatch.pier.soil import Formula
 from rockbatch.toml.kinds import Whole, boolean, choice, positive, within
 from rockbatch.toml.section import Key
@@ -59,15 +59,13 @@ def on_foot(pier: Pier, width_m: float) -> Pier:
 
 def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ...]:
     """Return ``devices`` with those at both pivots of ``pier`` at their places: a wider foot leaves them there."""
+    ways: dict[float | str | None, tuple[float, ...]] = {None: (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
     placed: list[Restraint] = []
     for device in devices:
-        at = getattr(device, "at", "deck")
-        sides = (
-            {None: (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}.get(at, ())
-            if at is None or isinstance(at, str)
-            else ()
-        )
-        placed += [replace(device, at=side * pier.half_width) for side in sides] or [device]  # type: ignore[call-arg]
+        if isinstance(device, DeckSpring) or device.at not in ways:
+            placed.append(device)
+        else:
+            placed += [replace(device, at=side * pier.half_width) for side in ways[device.at]]
     return tuple(placed)
 
 
