@@ -84,7 +84,7 @@ def test_slenderness_of_a_case_is_that_of_its_foot_and_devices_stay_at_the_pivot
     assert case.pier.inertia == pytest.approx(TALL.inertia)
     damper, tendon = rb.Damper("viscous", nu=1.0), rb.Tendon(psi=0.1, lam=0.5)
     placed = at_pivots((damper, tendon), TALL)
-    assert [device.at for device in placed] == [-4.0, 4.0, 0.0]
+    assert [device.at for device in placed] == pytest.approx([-4.0, 4.0, 0.0])
 
 
 @pytest.mark.parametrize(("keys", "words"), [
