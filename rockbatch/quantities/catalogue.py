@@ -16,6 +16,7 @@ from rockbatch.common.grouping import grouped
 from rockbatch.pier import MOST_ETA, Pier
 from rockbatch.pier.restraints import YIELDING_TENDON
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.bed import OF_FOOTING
 from rockbatch.quantities.cases import (
     ONE,
     THOUSAND,
@@ -48,8 +49,11 @@ from rockbatch.quantities.demands import (
 from rockbatch.quantities.quantity import (
     BENDING,
     ENDINGS,
+    FOOTING,
+    SETTLING,
     SPRINGS,
     TILTS,
+    TWO_SPRINGS,
     YIELDING,
     Limit,
     OfSuite,
@@ -405,7 +409,7 @@ TRAILING = (
         "settlement_error_m",
         "estimated error of the settlement, including its drift between readings; empty if it is chaotic, and with a "
         "fixed step",
-        "settlement_error", "m", bases=YIELDING, stood=True, sometimes=True,
+        "settlement_error", "m", bases=SETTLING, stood=True, sometimes=True,
     ),
     Quantity(
         "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
@@ -765,6 +769,7 @@ OPTIONAL = (
     *_OF_BENDING,
     _LANDING_FORCE,
     _SLIDES_FACT,
+    *OF_FOOTING,
 )  # fmt: skip
 """Quantities at the end of a table, on request of the study."""
 
@@ -789,7 +794,8 @@ _OTHERS = (
         Ceiling(always(MOST_ETA), "is more than any foundation has"),
     ),
     parameter("yield_kN", "yield force of a support", "kN", YIELDING),
-    parameter("stiffness_kN_m", "stiffness of a support", "kN/m", SPRINGS),
+    parameter("stiffness_kN_m", "stiffness of a support", "kN/m", TWO_SPRINGS),
+    parameter("safety_factor", "strength of a footing's bed over the pier's weight", "", FOOTING),
     parameter(
         "static_deflection_m", "deflection of the supports under the weight at rest, while elastic", "m", SPRINGS, _WIDER,
         "delta_s_m",
@@ -869,6 +875,7 @@ def listed() -> dict[str, list[str]]:
             else f"with [output] {demand.needs} = true" if demand.needs
             else f"of a {demand.device}" if demand.device
             else "of a shaft that bends" if demand.bases == BENDING
+            else "of a footing" if demand.bases == FOOTING and not demand.per_case
             else "of every run"
         )  # fmt: skip
 

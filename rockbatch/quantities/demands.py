@@ -80,7 +80,7 @@ class Demand:
     meaning: str
     evaluate: Evaluate
     unit: str = ""
-    bases: tuple[str, ...] = ("rigid", "elastic", "yielding")
+    bases: tuple[str, ...] = ("rigid", "elastic", "yielding", "footing")
     event: bool = False
     per_case: bool = False
     residual: bool = False

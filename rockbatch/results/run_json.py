@@ -19,7 +19,7 @@ from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
-from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.bases import BASES, BOUNDS, WORDS
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
 from rockbatch.results.columns import PEAKS, units
@@ -83,7 +83,7 @@ SHAPE = {
                     "shaft_share",
                 )
             },
-            "base": ("rigid", "elastic", "yielding"),
+            "base": tuple(BASES),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},

@@ -8,7 +8,16 @@ import numpy.typing as npt
 
 from rockbatch.core.kernel import entry
 from rockbatch.core.observe.peaks import Place, RecordedRun, push_deck, push_deck_within, under_devices_within
-from rockbatch.core.observe.rows import contact_of, ground_at, ground_within, state_of, step_between, within
+from rockbatch.core.observe.rows import (
+    begin_at,
+    contact_of,
+    ground_at,
+    ground_within,
+    remember,
+    state_of,
+    step_between,
+    within,
+)
 from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
 from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
@@ -77,8 +86,17 @@ def _follow(m, run, numbers, shares, out, pushes):  # type: ignore[no-untyped-de
     At share 1 they are those of the row itself.
     """
     rows, pulls, devices, ground, dt = run
+    walked = 0
+    begin_at(m, state_of(m, rows[0]))
     for j in range(len(numbers)):
         i, s = numbers[j], shares[j]
+        if i - 1 < walked:
+            begin_at(m, state_of(m, rows[0]))
+            walked = 0
+        while walked < i - 1:
+            length = rows[walked + 1].t - rows[walked].t
+            remember(m, state_of(m, rows[walked]), state_of(m, rows[walked + 1]), length)
+            walked += 1
         pull, line = Pull(pulls[i, 0], pulls[i, 1]), out[j]
         under = with_pull(m, pull)
         t = rows[i].t
@@ -113,7 +131,11 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
     motion, pushes = np.recarray(len(numbers), MOTION), np.zeros((len(numbers), len(of.heights)))
     _follow(model(pier, base), of.plain, numbers, shares, motion, pushes)
     # In flight the shear key of a block holds the pivot that bore last
-    side = motion.side if base.on_springs else np.where(motion.side != 0.0, motion.side, of.rows.bore[numbers])
+    side = (
+        motion.side * base.two_springs
+        if base.on_springs
+        else np.where(motion.side != 0.0, motion.side, of.rows.bore[numbers])
+    )
     sine, cosine, squared = np.sin(motion.theta), np.cos(motion.theta), motion.omega**2
     b, h = side * pier.half_width, pier.height
     sideways = (h * cosine + b * sine) * motion.turning + (b * cosine - h * sine) * squared

@@ -26,10 +26,12 @@ from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
     Step,
+    begin_at,
     contact_of,
     cubic,
     ground_at,
     ground_within,
+    remember,
     state_of,
     step_between,
     within,
@@ -381,6 +383,7 @@ def forces_of_run(m, body, run, extremes, out):
     limits, greatest, noted = extremes
     supports, aloft = Supports(limits.unstressed, limits.unstressed, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
+    begin_at(m, state_of(m, rows[0]))
     under, first = with_pull(m, Pull(pulls[0, 0], pulls[0, 1])), state_of(m, rows[0])
     shaking = Ground(ground[0, 0], ground[0, 1], ground[0, 2], ground[0, 3])
     before = forces_at(under, body, Moment(first, was, supports), shaking)
@@ -396,12 +399,15 @@ def forces_of_run(m, body, run, extremes, out):
         if len(out) > 0:
             _put(out, i, now)
         if len(greatest) == 0:
+            if i > 0:
+                remember(m, state_of(m, rows[i - 1]), y, t - t_start)
             continue
         _include(extremes, now, t, m.gravity)
         if t > t_start and rows[i].kind <= 0.0:
             step = step_between(under_start, under, rows[i - 1], rows[i], ground, dt)
             of = Stretch(m, body, pulls, devices, i, step, supports)
             _look_within(of, t, before, now, extremes)
+            remember(m, step.start, y, step.length)
         aloft = aloft + (t - t_start) if airborne(m, contact) else 0.0
         noted[0].longest_flight = max(noted[0].longest_flight, aloft)
         before = now

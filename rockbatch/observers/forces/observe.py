@@ -42,7 +42,7 @@ class PeaksOfForces(Observer):
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
         """See :class:`Observer`."""
         run, rows = recording.run, recording.at_samples.rows
-        moments = at_rows(run, rows)
+        moments = at_rows(run, recording.rows)[recording.shown] if run.base.remembers else at_rows(run, rows)
         return {"forces": forces_table(rows.t, moments, run.pier.gravity), "impacts": impacts_table(rows, moments)}
 
 
