@@ -11,7 +11,7 @@ from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.motions.velocity_pulses import pulse_of
+from rockbatch.motions.velocity_pulses import pulse_period
 
 MOST_SPECTRA = 200
 """Motions whose spectra go into run.json; each takes about 10 ms."""
@@ -51,10 +51,9 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
 
 
 def _pulse(motion: Motion) -> dict[str, Any]:
-    """Return the pulse of a motion, by the criterion of Baker (2007)."""
-    pulse = pulse_of(motion)
-    period = None if math.isnan(pulse.period_s) else float(f"{pulse.period_s:.4g}")
-    return {"pulse": pulse.kind, "pulse_indicator": float(f"{pulse.indicator:.4g}"), "pulse_period_s": period}
+    """Return the period of the pulse of a motion that is pulse-like by the criterion of Baker (2007)."""
+    period = pulse_period(motion)
+    return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
 
 
 def spectra(

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
@@ -16,7 +17,7 @@ from rockbatch.motions.azimuths import rotated_to
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Finding, Motion, Problem, Unusable
+from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import directed
@@ -51,11 +52,11 @@ def to_motions(
     for their PGA), come back as unusable with the reason.
     """
     unusable = [
-        Unusable(c.name, c.source, _question(c), c.orientation.label, station=station_of(c), problem=problem)
+        Unusable(c.name, c.source, _question(c), c.orientation.label, station=station_of(c), kind=kind)
         for c in components
-        if (problem := _problem(c)) is not None
+        if (kind := _why_held(c)) is not None
     ]
-    components = _with_packaged([c for c in components if _problem(c) is None], packaged)
+    components = _with_packaged([c for c in components if _why_held(c) is None], packaged)
     stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
     known_as = station_names(stations)
@@ -121,11 +122,11 @@ def _believed(judged: Iterable[Judged], patterns: Mapping[str, Sequence[str]], r
     return MotionSet(motions, unusable)
 
 
-def _problem(component: Component) -> Problem | None:
-    """Return why a component has to wait until somebody says what it is; ``None`` if it does not."""
+def _why_held(component: Component) -> type[InputError] | None:
+    """Return the kind of what somebody has to say about a component before it is used; ``None`` if nothing."""
     if component.contradiction:
-        return Problem.CONTRADICTION
-    return None if component.orientation.known else Problem.DIRECTION
+        return Contradiction
+    return None if component.orientation.known else NoDirection
 
 
 def _question(component: Component) -> str:

@@ -103,7 +103,7 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
             try:
                 aligned(first, second)
             except InputError as error:
-                problems = problems or error.problems
+                problems = problems or error.messages
             else:
                 return first, second
     raise InputError(*problems)
@@ -114,7 +114,7 @@ def unpaired(motions: Sequence[Motion]) -> str:
     try:
         pair_of(motions)
     except InputError as error:
-        return "; ".join(error.problems)
+        return "; ".join(error.messages)
     return ""
 
 

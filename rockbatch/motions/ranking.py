@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
-from rockbatch.motions.motion import LeftOut, Motion, Problem, Unusable
+from rockbatch.motions import velocity_pulses
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet, row
-from rockbatch.motions.velocity_pulses import LEAST_PGV, pulse_of
 
 
 class Use(Enum):
@@ -28,7 +28,7 @@ class Use(Enum):
     LEFT_OUT = "left out"
 
 
-_DOUBTS = {Problem.DIRECTION: "direction", Problem.CONTRADICTION: "contradiction"}
+_DOUBTS: dict[type[InputError], str] = {NoDirection: "direction", Contradiction: "contradiction"}
 
 COLUMNS = (
     "record", "event", "station_name", "use", "check", "pga_h_g", "pga_h2_g", "pga_v_g", "pgv_h_m_s", "dt_s", "duration_s",
@@ -134,14 +134,14 @@ def use_of(file: Unusable | LeftOut) -> Use:
     """Return what becomes of a file without a motion in the set."""
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
-    return Use.HELD_BACK if file.motion or file.problem or file.lacks else Use.NOT_READ
+    return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ
 
 
 def doubts(file: Unusable | LeftOut) -> list[str]:
     """Return what has to be said of a file before it is used, in a word or two each."""
     if isinstance(file, LeftOut):
         return []
-    words = [_DOUBTS[file.problem]] if file.problem else []
+    words = [_DOUBTS[file.kind]] if file.kind in _DOUBTS else []
     return [*words, *(f"no {key}" for key in file.lacks), *_whats([file.motion] if file.motion else [])]
 
 
@@ -159,12 +159,8 @@ def _second(motion: Motion, others: Iterable[Motion]) -> float | None:
 
 def pulse_period(motion: Motion) -> float | None:
     """Return the period of the pulse [s] by the list beside the record, else by Baker (2007); None without a pulse."""
-    if motion.listed.pulse_period_s is not None:
-        return motion.listed.pulse_period_s
-    if measures.pgv(motion.horizontal, motion.dt, motion.initial) < LEAST_PGV:  # weak, whatever its shape
-        return None
-    pulse = pulse_of(motion)
-    return pulse.period_s if pulse.kind == "yes" else None
+    listed = motion.listed.pulse_period_s
+    return velocity_pulses.pulse_period(motion) if listed is None else listed
 
 
 def rows(motions: MotionSet) -> list[dict[str, Any]]:

@@ -101,8 +101,8 @@ SPECTRUM = Section(("spectrum",), (
 }, clashes=(
     Clash((SELF_SIMILAR,), f"{INTENSITY} is missing beside {SELF_SIMILAR}; write for example {INTENSITY} = [2, 4]",
         lacking=(INTENSITY,)),
-    Clash((INTENSITY,), f"{INTENSITY} = {{value}}: goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
-        lacking=(SELF_SIMILAR,)),
+    Clash((INTENSITY,), f"goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
+        lacking=(SELF_SIMILAR,), shown=True),
 ))  # fmt: skip
 MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write one for each.", {
     "name": Key(text, '"one-sine"', "Its name in the report.", required=True),

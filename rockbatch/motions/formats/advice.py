@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component
@@ -40,18 +40,18 @@ class _Trial:
     refusal: str
 
 
-def advised(error: UnstatedError, read: Read, options: ReadOptions, gravity: float) -> UnstatedError:
+def advised(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
     """Return the refusal of a file with what to state, where that was tried and leads to a record, or why nothing does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
     trials = [_tried(choice, read, options) for choice in choices]
     advice = [_words(choice, trial, gravity) for choice, trial in zip(choices, trials, strict=True) if trial.components]
-    problem = "; ".join(error.problems)
+    problem = "; ".join(error.messages)
     if advice:
         message = f"{problem}; write {', or '.join(advice)} {_WHERE}"
     else:
         message = f"{problem}; what could be stated makes no record of it: {trials[0].refusal}"
     stated = dict.fromkeys(key for trial in trials for key in (*trial.stated, *error.keys) if trial.components)
-    return UnstatedError(message, *(stated or error.keys))
+    return type(error)(message, keys=tuple(stated or error.keys))
 
 
 def _tried(statement: Mapping[str, Any], read: Read, options: ReadOptions) -> _Trial:
@@ -60,13 +60,13 @@ def _tried(statement: Mapping[str, Any], read: Read, options: ReadOptions) -> _T
     for _ in range(_MOST_LACKS):
         try:
             readings = read(replace(options, **values, instead=frozenset({*options.instead, *values})))
-        except UnstatedError as again:
+        except Unstated as again:
             more = {key: _TRIED[key] for key in again.keys if key in _TRIED and key not in values}
             if not more:
-                return _Trial(values, (), "; ".join(again.problems))
+                return _Trial(values, (), "; ".join(again.messages))
             values |= more
         except InputError as refusal:
-            return _Trial(values, (), "; ".join(refusal.problems))
+            return _Trial(values, (), "; ".join(refusal.messages))
         else:
             reasons = [*_contradictions(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
@@ -235,11 +235,11 @@ def speaks_of_spectra(header: Sequence[str]) -> str:
 def stated_unit(header: Sequence[str]) -> str | None:
     """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``; ``None`` without one.
 
-    Raises ``NoRecordError`` where a record file of MIDAS says that it holds no accelerations.
+    Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
     """
     if midas := next((match for line in header if (match := _MIDAS.match(line))), None):
         if not midas["kind"].upper().startswith("ACC"):
-            raise NoRecordError(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
+            raise NoRecord(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
         return _MIDAS_UNITS.get(midas["unit"].upper(), midas["unit"])
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
     units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))

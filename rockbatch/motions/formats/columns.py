@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
 from rockbatch.motions.component import Component
 from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.clock_times import in_seconds
@@ -101,10 +101,11 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     lacking = [_lack(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
-        raise UnstatedError("; ".join(lacking), *(("unit", "dt") if untimed else ("unit",)))
+        message = "; ".join(lacking)
+        raise Unstated(message, keys=("unit", "dt")) if untimed else NoUnit(message)
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
-        raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
+        raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
     omitted = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _sampled(columns, table, header, options)
     return [
@@ -155,7 +156,7 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
         return _guessed(header, table)
     columns = _with_time(columns, table)
     if spectrum := spectrum_in(columns):
-        raise NoRecordError(f"{spectrum} is no time history; take the record of accelerations instead")
+        raise NoRecord(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
 
 
@@ -232,9 +233,9 @@ def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str
     timed = grows_evenly(table[:, 0])
     names = ("time", *_COMPONENTS) if timed else _COMPONENTS
     columns = {"columns": (*names, *["-"] * width)[:width]}
-    raise UnstatedError(
+    raise Unstated(
         f'found {width} columns and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "-" leaves one out',
-        "columns",
+        keys=("columns",),
         choices=(columns,) if timed else ({"layout": "wrapped"}, columns),
     )
 
@@ -250,7 +251,7 @@ def _sampled(
     if not times:
         dt = stated.dt if stated else options.dt
         if dt is None:
-            raise UnstatedError("no column of time and no sampling interval", "dt")
+            raise NoStep("no column of time and no sampling interval")
         return dt, table, ()
     column = columns[times[0]]
     seconds = seconds_in(column.unit or "s")
@@ -266,7 +267,7 @@ def _sampled(
 def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
     """Raise ``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
     if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
-        raise InputError(
+        raise Contradiction(
             f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '
             "wrong, or write dt = … for this file in motions.toml"
         )
