@@ -15,11 +15,6 @@ LEAST, MOST = 1e-15, 1e15
 """Bounds of any number that a user states, but for 0, whatever its unit: products and powers of some stay finite."""
 
 
-def unit_with_exponent(unit: str, exponent: float) -> str:
-    """Return a unit with the number that its exponent a stands for: "kN (s/m)^0.3", and "kN s/m" for 1."""
-    return unit.replace("(s/m)^a", "s/m" if exponent == 1.0 else f"(s/m)^{exponent:g}")
-
-
 def of_percent(value: float, low: float, high: float) -> float | None:
     """Return the share that a value above it probably is in percent, if the bounds are those of a share."""
     return value / 100.0 if low == 0.0 and high == 1.0 and 2.0 <= value <= 100.0 else None

@@ -5,7 +5,6 @@ from dataclasses import fields, replace
 from typing import Any
 
 from rockbatch.common.errors import InputError
-from rockbatch.common.units import unit_with_exponent
 from rockbatch.pier import (
     Base,
     Damper,
@@ -21,7 +20,7 @@ from rockbatch.pier.bases import BASES
 from rockbatch.pier.bases import USUAL as OF_BASE
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
-from rockbatch.results.labels import DEVICE_SYMBOLS, plain
+from rockbatch.results.labels import DEVICE_SYMBOLS, plain, unit_with_exponent
 from rockbatch.study.restraint_keys import KEYS_OF
 
 _PIER = (

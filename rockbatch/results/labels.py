@@ -5,7 +5,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rockbatch.common.units import unit_with_exponent
 from rockbatch.pier.restraints import what_of
 from rockbatch.quantities.cases import devices
 from rockbatch.study import PIER_KEYS
@@ -95,6 +94,11 @@ def symbol_of(key: str) -> tuple[str, str]:
     kind, number, of_device = device.groups()
     symbol, unit = DEVICE_SYMBOLS.get(of_device, (of_device, ""))
     return (symbol if number == "1" else f"{kind.replace('_', ' ')} {number}: {symbol}"), unit
+
+
+def unit_with_exponent(unit: str, exponent: float) -> str:
+    """Return a unit with the number that its exponent a stands for: "kN (s/m)^0.3", and "kN s/m" for 1."""
+    return unit.replace("(s/m)^a", "s/m" if exponent == 1.0 else f"(s/m)^{exponent:g}")
 
 
 def _exponent(case: Mapping[str, Any], kind: str, number: int) -> float:

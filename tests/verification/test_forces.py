@@ -12,9 +12,9 @@ from reference_forces import greatest_forces
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.observers import observers_of
+from rockbatch.outcome import changes
 from rockbatch.pier import offsets
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation import changes
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import with_error
 from rockbatch.study import Case, Numerics, Output
@@ -472,7 +472,7 @@ def test_peaks_are_those_of_a_history_that_is_many_times_finer(name, responses):
     for column, of_history in names.items():
         assert found[column] == pytest.approx(fine[of_history], rel=2e-5), column
     assert found["friction_demand"] == pytest.approx(friction_while_pressed(response.forces), rel=1e-4)
-    assert found["error"] < 1e-4
+    assert found["error"] < CHANCE * 1e-4  # of which the change is below 10⁻⁴
     hardest = response.impacts.loc[response.impacts["landing_velocity"].idxmax()]
     assert found["landing_velocity"] == pytest.approx(hardest["landing_velocity"], rel=2e-5)
     assert found["impulse"] == pytest.approx(hardest["impulse_vertical"], rel=2e-5)
