@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -23,11 +23,21 @@ from rockbatch.common.figures.description import (
 from rockbatch.common.units import GRAVITY
 
 LABELLED = COLOURS
-"""Most records whose spectra are labelled one by one; larger suites show their spread."""
+"""Greatest number of records whose spectra are labelled one by one; larger suites show their percentiles."""
+
+
+class Spectra(TypedDict):
+    """Response spectra of a suite, as in run.json: ``sa_g`` in the order of the motions; ``None`` where undefined."""
+
+    damping: float
+    period_s: list[float]
+    sa_g: list[list[float]]
+    mean_sa_g: NotRequired[list[float | None]]
+    target_sa_g: NotRequired[list[float | None]]
 
 
 def record(components: Mapping[str, npt.NDArray[np.float64]], dt: float, title: str) -> Figure:
-    """Return the accelerations [g] of a motion's components against time, on one scale."""
+    """Return a figure of the accelerations [g] of a motion's components against time, on one scale."""
     y = spanning("", *(samples / GRAVITY for samples in components.values()))
     panels = []
     for place, (name, samples) in enumerate(components.items(), 1):
@@ -38,29 +48,26 @@ def record(components: Mapping[str, npt.NDArray[np.float64]], dt: float, title: 
     return Figure(panels, "Ground acceleration against time", title, stacked=True)
 
 
-def drawable(spectra: Mapping[str, Any]) -> bool:
-    """Return whether periods rise, and every spectrum has a value for each; run.json may come from anybody."""
-    periods, more = spectra["period_s"], [spectra[name] for name in ("mean_sa_g", "target_sa_g") if name in spectra]
-    shown = [*spectra["sa_g"], *more]
+def drawable(spectra: Spectra) -> bool:
+    """Return whether periods rise and every spectrum has a value ≥ 0, or None, for each; run.json may come from anybody."""
+    periods = spectra["period_s"]
+    fits = [fit for fit in (spectra.get("mean_sa_g"), spectra.get("target_sa_g")) if fit is not None]
+    shown: list[Sequence[float | None]] = [*spectra["sa_g"], *fits]
     rising = len(periods) > 1 and all(a < b for a, b in pairwise([0.0, *periods]))
-    values = (value for spectrum in shown for value in spectrum)
-    fitting = len(more) != 1 and all(len(spectrum) == len(periods) for spectrum in shown)
-    return rising and fitting and all(value is None or value >= 0 for value in values)
+    complete = len(fits) != 1 and all(len(spectrum) == len(periods) for spectrum in shown)
+    return rising and complete and all(value is None or value >= 0 for spectrum in shown for value in spectrum)
 
 
-def response_spectra(
-    spectra: Mapping[str, Any], names: Sequence[str], fitted: tuple[float, float] | None = None
-) -> Figure:
-    """Return pseudo-spectral acceleration [g] over the period [s], both logarithmic.
+def response_spectra(spectra: Spectra, names: Sequence[str], fitted: tuple[float, float] | None = None) -> Figure:
+    """Return a figure of pseudo-spectral acceleration [g] over period [s], both logarithmic, of records by ``names``.
 
-    ``spectra`` is that of run.json: ``damping``, ``period_s``, ``sa_g`` in the order of ``names``, and optionally
-    ``target_sa_g``, to which the suite's ``mean_sa_g`` is ``fitted`` between two periods [s].
+    The suite's mean is ``fitted`` to the target, if there is one, between two periods [s].
     """
     periods, values = np.array(spectra["period_s"], dtype=float), np.array(spectra["sa_g"], dtype=float)
     target = np.array(spectra.get("target_sa_g", ()), dtype=float)
     shown = np.concatenate((values[values > 0], target[target > 0]))
     top = float(shown.max(initial=1e-3))
-    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record of nearly zeros must not flatten the rest
+    low = max(float(shown.min(initial=top)), 1e-4 * top)  # a record of nearly zeros would flatten all others
     y = log_spanning("SA [g]", np.array([low, top]), margin=0.2)
     few = len(names) <= LABELLED
     marks: list[Mark] = [] if fitted is None else [Span("x", *fitted, look=Look("band"))]

@@ -14,7 +14,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
+from rockbatch.motions.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
@@ -68,10 +68,10 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
         )
-    return of_traces(file, stream, _broken_off(file.data, stream))
+    return components_of_traces(file, stream, _channels_broken_off(file.data, stream))
 
 
-def of_traces(
+def components_of_traces(
     file: RecordFile, traces: "Iterable[obspy.Trace]", broken: Container[str] = ()
 ) -> list[Component | Unusable]:
     """Return one component per channel and event of traces in counts; those of ``broken`` channels say so."""
@@ -96,7 +96,7 @@ def of_traces(
     return readings
 
 
-def _broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
+def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
     """Return the channels of which a block goes on from the one before by its number, but not by its time.
 
     Between two events numbers are left out, or begin anew. Files with blocks of several lengths are not looked at.
@@ -152,7 +152,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
     entry = None if "sensitivity" in file.options.instead else _entry(file, trace)
-    covering = (epoch for epoch in file.inventories.of(trace.id) if epoch.start <= start < epoch.end)
+    covering = (epoch for epoch in file.inventories.epochs_of(trace.id) if epoch.start <= start < epoch.end)
     statements = _directions(trace.id, entry or next(covering, None))
     if entry is not None:
         assert entry.sensitivity
@@ -173,7 +173,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         name=name,
         dt=float(stats.delta),
         acceleration=trace.data * (factor / sensitivity),
-        orientation=settled(statements, stats.channel),
+        orientation=decided_orientation(statements, stats.channel),
         statements=statements,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
         source=source,
@@ -198,7 +198,7 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
         named = (("azimuth", entry.azimuth), ("dip", entry.dip))
         words = " and ".join(f"{name} {value:g}°" for name, value in named if value is not None)
         try:
-            angles = by_angles(channel, f"{words} in StationXML", entry.azimuth, entry.dip)
+            angles = angles_statement(channel, f"{words} in StationXML", entry.azimuth, entry.dip)
         except ValueError as error:
             raise InputError(f"{channel_id} is {error}") from None
         statements += [angles] if angles else []
@@ -210,7 +210,7 @@ def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
 
     Raises ``InputError`` where two give another one, unless the study states which it is.
     """
-    epochs = file.inventories.of(trace.id)
+    epochs = file.inventories.epochs_of(trace.id)
     start, end = trace.stats.starttime.timestamp, trace.stats.endtime.timestamp
     if not any(epoch.start <= start < epoch.end for epoch in epochs):
         return None
@@ -227,7 +227,7 @@ def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
 
 def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> UnstatedError:
     """Return the refusal of counts that no StationXML covers, with the files of StationXML that were not read."""
-    stats, epochs = trace.stats, file.inventories.of(trace.id)
+    stats, epochs = trace.stats, file.inventories.epochs_of(trace.id)
     refused = ", ".join(file.inventories.refused[:_MOST_NAMED])
     unread = f" (not read: {refused})" if refused else ""
     if epochs:

@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError, UnstatedError
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
+from rockbatch.motions.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
@@ -98,7 +98,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             name=file.stem,
             dt=dt,
             acceleration=samples * factor,
-            orientation=settled(statements, channel),
+            orientation=decided_orientation(statements, channel),
             statements=statements,
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
@@ -182,7 +182,7 @@ def _directions(channel: str, numbers: dict[str, float]) -> tuple[Statement, ...
     azimuth, inclination = numbers.get("CMPAZ"), numbers.get("CMPINC")
     words = ", ".join(f"{name} {numbers[name]:g}" for name in ("CMPAZ", "CMPINC") if name in numbers)
     try:
-        angles = by_angles(channel, words, azimuth, None if inclination is None else inclination - 90.0)
+        angles = angles_statement(channel, words, azimuth, None if inclination is None else inclination - 90.0)
     except ValueError:
         return by_code
     if angles is None:

@@ -61,7 +61,7 @@ def parse(text: str) -> list[Recording]:
         raise InputError(f"line 18: found a sampling rate of {rate:g} Hz; expected 0.1 to 100000")
     numbers, end = fixed_numbers(lines, _COMMENTS + comments, npts, *((14, 5) if integers[46] == 8 else (10, 8)))
     refuse_more(lines, end, f"the {npts} values that line 14 declares")
-    dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
+    dt, values, notes = _from_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
     start = None if unknown in (day, ms) else moment(year, 1, 1, hour, minute, second)
     extremes = [(peak, _real(lines, n - 1)) for n in (30, 32) if (peak := _real(lines, n))]
@@ -88,7 +88,7 @@ def parse(text: str) -> list[Recording]:
     ]
 
 
-def _on_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
+def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
     """Return interval [s], samples and notes of pairs of time [s] and value, which a header without a rate counts singly."""
     try:
         if len(values) % 2:

@@ -64,10 +64,10 @@ def read_table(
         elif row:
             if len(rows) <= _MOST_COUNTS and (counted := _counted(lines, row_lines, rows, wrapped, named, stated)):
                 return counted
-            raise _refused(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
+            raise _table_error(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
-                raise _refused(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
+                raise _table_error(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
@@ -77,7 +77,7 @@ def read_table(
         wrapped = not (named and (columns_with_units(header, width) or columns_without_units(header, width)))
     if remainder and pairs is None and not wrapped:
         reason = f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above"
-        refusal = _refused(lines, reason)
+        refusal = _table_error(lines, reason)
         may_be_wrapped = width > 2 and not isinstance(refusal, NoRecordError)
         raise UnstatedError(reason, "layout", choices=(_WRAPPED,)) if may_be_wrapped else refusal
     table = np.array(rows).reshape(-1, width)
@@ -147,7 +147,7 @@ def _below_its_count(header: list[str], pairs: Samples) -> tuple[list[str], Samp
     return [*header, said[1]], pairs[1:]
 
 
-def _refused(lines: list[str], reason: str) -> InputError:
+def _table_error(lines: list[str], reason: str) -> InputError:
     """Return the error of a table, or of a text with some numbers in it: less than half of its lines hold numbers only."""
     written = [line for line in lines if line.strip()]
     numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)

@@ -69,7 +69,7 @@ def parse(text: str) -> list[Recording]:
     count = int(channels)
     labels = [label.partition(";")[::2] for label in _value_of_each(header, "ORIENTACION C1-C6", count)]
     npts, dt = count_and_step({key: _common_value(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
-    first = _first(lines, index, [label.strip() for label, _ in labels])
+    first = _first_sample_line(lines, index, [label.strip() for label, _ in labels])
     values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
     rates, peaks, peak_samples = (_texts_of(header[key], count) for key in (_RATE, _PEAK, _PEAK_SAMPLE))
     station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
@@ -143,7 +143,7 @@ def _common_value(header: dict[str, str], key: str, count: int) -> str:
     return texts.pop()
 
 
-def _first(lines: list[str], start: int, labels: list[str]) -> int:
+def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
     """Return the index of the first sample's line, behind rulers and the directions, which must be those of the header."""
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):

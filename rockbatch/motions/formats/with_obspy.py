@@ -29,7 +29,7 @@ _LENGTH_IN = (b"005", b"008", b"010")  # the blockettes of a volume that tell th
 _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
 
 
-def mseed(data: bytes) -> bytes:
+def check_mseed(data: bytes) -> bytes:
     """Return MiniSEED, or a SEED volume, whose first data record can be."""
     start = 0
     if data[6:7] in _CONTROL:
@@ -96,7 +96,7 @@ def _tag(data: bytes, at: int) -> tuple[int, int, int]:
     return int(kind), int(length), int(of_data)
 
 
-def evt(data: bytes) -> bytes:
+def check_evt(data: bytes) -> bytes:
     """Return an .evt whose tags lead from one to the next, and to its end."""
     at = 0
     while at < len(data):
@@ -113,12 +113,12 @@ def evt(data: bytes) -> bytes:
 
 _OF_TRIGGERS = ("chan_lta", "chan_sta")
 
-CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": mseed, "KINEMETRICS_EVT": evt}
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": check_mseed, "KINEMETRICS_EVT": check_evt}
 """By ObsPy's name of the format."""
 
 
 @contextmanager
-def _unraisable() -> Iterator[list[str]]:
+def _collecting_unraisable() -> Iterator[list[str]]:
     """Collect errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
     errors: list[str] = []
     hook = sys.unraisablehook
@@ -139,7 +139,7 @@ def _is_harmless(warning: warnings.WarningMessage, name: str) -> bool:
 def read_stream(data: bytes, name: str) -> "obspy.Stream":
     """Return ObsPy's reading of ``data`` in the format ``name``; ``InputError`` if its header cannot be, or ObsPy complains."""
     data = CHECKS[name](data)
-    with warnings.catch_warnings(record=True) as caught, _unraisable() as unraised:
+    with warnings.catch_warnings(record=True) as caught, _collecting_unraisable() as unraised:
         warnings.simplefilter("always")
         try:
             stream = obspy.read(  # warns of its own use of the standard library when it is loaded
