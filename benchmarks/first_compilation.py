@@ -5,6 +5,7 @@ Each in a process and a folder of its own, so that no cache helps; less that of 
     python benchmarks/first_compilation.py
 """
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -18,10 +19,9 @@ PIERS = ("rigid", "bouc-wen", "rigid with devices", "bouc-wen with devices")
 def compile_and_run(pier: str, folder: str) -> float:
     """Return the processor time [s] of a first run, with kernels kept in ``folder``, over that of a second one."""
     from rockbatch.common.garbage import collect_rarely
-    from rockbatch.core import kernel
 
     collect_rarely()  # as the command
-    kernel.CACHE_FOLDER = folder
+    os.environ["ROCKBATCH_CACHE"] = folder
     import numpy as np
 
     from rockbatch.motions.motion import Motion

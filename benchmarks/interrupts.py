@@ -3,12 +3,11 @@
     python benchmarks/interrupts.py [--times 3]
 
 Each place is a time [s] behind a line that the command prints, behind its start, or behind the beginning of a file. Cold ones
-run a copy of the package, whose kernels nobody has compiled. A command that ends without a word answers by ending.
+find no compiled kernels. A command that ends without a word answers by ending.
 """
 
 import argparse
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -60,10 +59,10 @@ def interrupted(place: Place, folder: Path) -> tuple[float, float, int]:
     """Seconds from the signal to the next line and to the end, and the exit status."""
     path = folder / "study.toml"
     path.write_text(STUDIES[place.study], encoding="utf-8")
-    out, source = folder / "out", Path(rockbatch.__file__).parent
+    out = folder / "out"
+    environment = os.environ | {"PYTHONPATH": str(Path(rockbatch.__file__).parents[1])}
     if place.cold:
-        source = Path(shutil.copytree(source, folder / "rockbatch", ignore=shutil.ignore_patterns("__pycache__")))
-    environment = os.environ | {"PYTHONPATH": str(source.parent)}
+        environment["ROCKBATCH_CACHE"] = str(folder / "kernels")
     command = [sys.executable, "-m", "rockbatch", "run", str(path), "--out", str(out), "--fresh", *place.words]
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, env=environment, cwd=folder, text=True

@@ -3,6 +3,7 @@
 import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from unittest import mock
 
 import pytest
@@ -11,8 +12,11 @@ from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase
 from rockbatch.pier.restraints import Restraint
+from rockbatch.simulation import kept
 
 collect_rarely()
+with suppress(OSError):  # of no home
+    os.environ["ROCKBATCH_CACHE"] = str(kept.folder())  # commands that tests run elsewhere, as other users, find it too
 
 PHYSICS = ("core", "simulation", "verification")
 DEVICE = (Damper("viscous", nu=0.1),)

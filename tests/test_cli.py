@@ -459,20 +459,21 @@ def test_without_a_home_it_runs_and_a_path_from_home_is_refused(tmp_path):
     """As in a container that is started under a number: no HOME, and no entry in the table of users."""
     code = """
 import os, pwd, sys
-os.environ.pop("HOME", None)
+for name in ("HOME", "XDG_CACHE_HOME", "ROCKBATCH_CACHE"):
+    os.environ.pop(name, None)
 pwd.getpwuid = {}.__getitem__
-import rockbatch.core.kernel as kernel
-from pathlib import Path
-kernel._CORE = Path(sys.argv[1])  # a file: there is no folder to be made below it
-print(kernel._usable_folder())
+from rockbatch.simulation import kept
+kept.keep("kernel", "identity", b"")
+print(kept.unreported())
 from rockbatch.commands.cli import main
+main(["cache"])
 sys.exit(main(["run", sys.argv[1]]))
 """
     study = write_study(tmp_path, study_text(motions={"path": "~/records"}))
     done = subprocess.run([sys.executable, "-c", code, str(study)], capture_output=True, text=True)
     assert done.returncode == 2, done.stderr
-    assert "kernels-" in done.stdout
-    assert not os.path.exists(done.stdout.strip())
+    assert "there is no home folder" in done.stdout
+    assert "ROCKBATCH_CACHE" in done.stdout
     assert 'path = "~/records": there is no home folder here; write the whole path' in done.stderr
 
 

@@ -17,6 +17,7 @@ from rockbatch.batch.threads import cores
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions import Motion
 from rockbatch.results.columns import StudyRun
+from rockbatch.simulation import kept
 from rockbatch.simulation.compilation import compiles, kernel_of, load_numba, on_compilation
 from rockbatch.study import Numerics, Output, Study
 
@@ -41,7 +42,7 @@ def make_ready(study: Study, listener: Listener) -> None:
 
     def assist() -> None:
         listener.say("compiling the kernels (once for each kind of foundation, 10 to 30 s each)")
-        for _ in range(min(cores() - 1, len(waiting))):
+        for _ in range(min(cores() - 1, len(waiting)) if kept.usable() else 0):
             assistant = Thread(target=_compile_elsewhere, args=(waiting,), daemon=True)
             with suppress(RuntimeError):  # no more threads: this one compiles all of them
                 assistant.start()
@@ -54,6 +55,8 @@ def make_ready(study: Study, listener: Listener) -> None:
         assistant.join()
     for task in tasks if assistants else ():
         _compile(task)  # loads what was compiled elsewhere
+    if reason := kept.unreported():
+        listener.say(reason)
 
 
 def _tasks(study: Study) -> list[Task]:

@@ -207,5 +207,9 @@ COMMANDS = {
         },
     ),
     **{name: _of_analysis(name, door) for name, door in doors().items()},
+    "cache": Command(
+        "show where compiled kernels are kept, or remove them", "rockbatch cache --clear", "commands.cache.main",
+        {"--clear": flag("remove all of them: the next run of each kind of pier compiles its own again")},
+    ),
 }  # fmt: skip
 """All commands, in the order of the help."""

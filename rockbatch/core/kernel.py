@@ -1,22 +1,25 @@
 """Decorators that compile kernels: one for building blocks, one for entries, one for hooks that systems implement."""
 
-import atexit
-import contextlib
 import functools
 import hashlib
 import inspect
-import shutil
-import tempfile
-import uuid
+import pickle
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import llvmlite
 import numba
+import numpy as np
+from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
 from numba.extending import overload, register_jitable
+
+from rockbatch.core import kept
 
 _CORE = Path(__file__).parent
 
@@ -24,8 +27,7 @@ _CORE = Path(__file__).parent
 def core_digest(folder: Path = _CORE) -> str:
     """Return the digest of all kernel sources and of the compiler's version.
 
-    Numba's own cache looks only at the file of the function that is called: after a change in a function that it
-    calls, it would go on with the old physics. The cache folder therefore bears this digest.
+    A kernel is made of many functions of many files: after a change in any of them, none that was compiled before is used.
     """
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(folder.rglob("*.py")):
@@ -33,23 +35,8 @@ def core_digest(folder: Path = _CORE) -> str:
     return digest.hexdigest()[:20]
 
 
-def _usable_folder() -> str:
-    """Return the first writable folder: beside the sources, in the user's cache, or a temporary one of this process."""
-    name = f"kernels-{core_digest()}"
-    for parent in (lambda: _CORE / "__pycache__", lambda: Path.home() / ".cache" / "rockbatch"):
-        try:
-            folder = parent() / name
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-        except (OSError, RuntimeError):  # the latter where nobody is at home
-            continue
-        return str(folder)
-    temporary = tempfile.mkdtemp(prefix=name)
-    atexit.register(shutil.rmtree, temporary, ignore_errors=True)
-    return temporary
-
-
-CACHE_FOLDER = _usable_folder()
+_DIGEST = core_digest()
+"""As the sources are that this process loads."""
 
 _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",  # a division by zero gives inf, as in every array library, and costs no branch
@@ -160,19 +147,76 @@ def shared(function: Callable[..., Any]) -> Callable[..., Any]:
     return decorated
 
 
+_SWITCHES = ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX", "USING_SVML", "BOUNDSCHECK", "DEBUGINFO_DEFAULT")
+"""Settings of Numba that change machine code."""
+
+
+class _Kept(_Cache):
+    """Machine code of an entry on disk, found by its content: by any copy of the sources, at any place (:mod:`kept`)."""
+
+    def __init__(self, function: Callable[..., Any]):
+        if function.__closure__:
+            raise TypeError(f"{function.__qualname__}: the machine code of a closure cannot be kept: give it arguments")
+        self._function, self._enabled = function, True
+        self._sources = _DIGEST, self._own_digest()
+
+    def _own_digest(self) -> str:
+        """Return the digest of the function's own file, which need not be in the core."""
+        return hashlib.sha256(Path(inspect.getfile(self._function)).read_bytes()).hexdigest()
+
+    def _identity(self, signature: Any, codegen: Any) -> str:
+        """Return all that the machine code of a signature depends on, in words that are the same in every process."""
+        function = self._function
+        compiler = (sys.version, numba.__version__, llvmlite.__version__, np.__version__, *codegen.magic_tuple())
+        switches = [str(getattr(numba.config, name, "")) for name in _SWITCHES]
+        return repr((self._sources, compiler, switches, function.__module__, function.__qualname__, str(signature)))
+
+    def _name(self, identity: str) -> str:
+        return f"{self._function.__name__}-{hashlib.sha256(identity.encode()).hexdigest()[:40]}"
+
+    @property
+    def cache_path(self) -> str:
+        """See ``_Cache``."""
+        return str(kept.folder())
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """See ``_Cache``."""
+        target_context.refresh()
+        identity = self._identity(sig, target_context.codegen())
+        content = kept.read(self._name(identity), identity) if self._enabled else None
+        if content is None:
+            return None
+        signature, parts = pickle.loads(content)
+        # Types of the same name may differ: named tuples of two modules
+        return CompileResult._rebuild(target_context, *parts) if signature == sig else None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """See ``_Cache``; what was compiled from sources that were changed after they were loaded is not kept."""
+        changed = (core_digest(), self._own_digest()) != self._sources
+        if changed or data.library.has_dynamic_globals or not self._enabled:
+            return
+        identity = self._identity(sig, data.codegen)
+        kept.keep(self._name(identity), identity, dumps((sig, data._reduce())))
+
+    def enable(self) -> None:
+        """See ``_Cache``."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """See ``_Cache``."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """See ``_Cache``: nothing is held back."""
+
+
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function that Python calls, and keep the machine code on disk."""
-    settings: Any = numba.config
-    folder = settings.CACHE_DIR
-    settings.CACHE_DIR = CACHE_FOLDER
-    try:
-        dispatcher: Any = numba.njit(cache=True, **_OPTIONS)(function)
-    finally:
-        settings.CACHE_DIR = folder
-    with contextlib.suppress(AttributeError):  # uncompiled, or a Numba that keeps its cache otherwise
-        # Numba numbers the files: two processes that compile at a time would take one number, and one the other's code
-        dispatcher._cache._cache_file._data_name_pattern = f"{function.__name__}-{uuid.uuid4().hex}.{{number:d}}.nbc"
-    return dispatcher
+    dispatcher: Any = numba.njit(**_OPTIONS)(function)
+    if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        dispatcher._cache = _Kept(function)
+    compiled: Callable[..., Any] = dispatcher
+    return compiled
 
 
 def hook(stub: Callable[..., Any]) -> Any:

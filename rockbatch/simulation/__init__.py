@@ -12,7 +12,9 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name from its module."""
+    """Return a public name from its module, or the module of compiled kernels on disk."""
+    if name == "kept":
+        return import_module("rockbatch.core.kept")
     for module, names in _HOMES.items():
         if name in names:
             return getattr(import_module(module), name)

@@ -20,9 +20,10 @@ from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
+from rockbatch.core.kernel import entry
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
 from rockbatch.results.columns import columns
-from rockbatch.simulation import Stop
+from rockbatch.simulation import Stop, kept
 from rockbatch.study import Output, load_study
 from rockbatch.study.suite import ground_motions
 
@@ -86,6 +87,29 @@ def test_of_kernels_in_the_cache_nothing_is_said(study):
     said = Heard()
     make_ready(load_study(study), said)
     assert said.said == []
+
+
+def test_kernels_that_cannot_be_kept_are_mentioned_once_and_compiled_here_only(study, tmp_path, monkeypatch):
+    """Of what other processes compile nothing would be found."""
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("ROCKBATCH_CACHE", str(tmp_path / "file"))
+    monkeypatch.setattr(kept._State, "reported", False)
+    monkeypatch.setattr(kept._State, "reason", "")
+    monkeypatch.setattr(rockbatch.batch.compiling, "cores", lambda: 8)
+    monkeypatch.setattr(rockbatch.batch.compiling, "outcomes_of", lambda *_: entry(twice)(1.0))
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: pytest.fail("no process can help"))
+    said = Heard()
+    for _ in range(2):
+        make_ready(load_study(study), said)
+    compiling, reason, again = said.said
+    assert compiling == again
+    assert compiling.startswith("compiling the kernels")
+    assert reason.startswith("compiled kernels are not kept, and the next command compiles them again: ")
+    assert str(tmp_path / "file") in reason
+
+
+def twice(x):
+    return 2.0 * x
 
 
 class Heard(Listener):

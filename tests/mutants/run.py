@@ -86,7 +86,7 @@ def _digest(*folders: str) -> str:
 
 
 def copied(number: int) -> Path:
-    """Return a copy of the project in which errors may be made; kernels that an earlier one compiled stay in it."""
+    """Return a copy of the project in which errors may be made."""
     copy = BUILD / f"copy-{number}"
     for path in copy.rglob("*.py"):
         path.unlink()
@@ -172,8 +172,9 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     chosen = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
-    # To compile the libraries and pytest's plugins takes longer than most tests
-    os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(BUILD / "bytecode")}
+    # To compile the libraries and pytest's plugins takes longer than most tests; kernels with errors stay apart
+    bytecode, kernels = str(BUILD / "bytecode"), str(BUILD / "kernels")
+    os.environ |= {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": bytecode, "ROCKBATCH_CACHE": kernels}
     equivalent = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")) if EQUIVALENT.exists() else {}
     counts: dict[str, Counter[str]] = {}
     copies = [copied(number) for number in range(chosen.jobs)]

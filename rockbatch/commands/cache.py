@@ -1,0 +1,27 @@
+"""``rockbatch cache``: which compiled kernels are kept, and their removal."""
+
+import argparse
+import time
+
+from rockbatch.batch.listening import count
+from rockbatch.commands.streams import show
+from rockbatch.simulation import kept
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Print where compiled kernels are kept, how many there are and how large; or remove them."""
+    kernels = kept.clear() if arguments.clear else kept.files()
+    size = f"{count(len(kernels), 'compiled kernel')}, {sum(kernel.size for kernel in kernels) / 1e6:.1f} MB"
+    if arguments.clear:
+        show(f"{kept.folder()}: removed {size}")
+        return 0
+    show(f"{kept.folder()}: {size} of at most {kept.MOST_BYTES / 1e6:.0f} MB")
+    if kernels:
+        show(
+            f"last used between {_day(kernels[0].used)} and {_day(kernels[-1].used)}; unused for {kept.UNUSED_DAYS} days, they go"
+        )
+    return 0
+
+
+def _day(seconds: float) -> str:
+    return time.strftime("%Y-%m-%d", time.localtime(seconds))
