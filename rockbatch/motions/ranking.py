@@ -156,7 +156,7 @@ def use_of(file: Unusable | LeftOut) -> Use:
 
 
 def doubts_about(file: Unusable | LeftOut) -> list[str]:
-    """Return the facts that a file lacks before it can be used, in a word or two each; empty if it is left out."""
+    """Return the doubts about a file in a word or two each: unknown direction, missing keys, findings; [] if it is left out."""
     if isinstance(file, LeftOut):
         return []
     words = [_DOUBTS[file.problem]] if file.problem else []
