@@ -33,17 +33,18 @@ from rockbatch.core.history import MOMENT
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.run import Settings, march
 from rockbatch.core.springs.lanes import static_state
-from rockbatch.core.springs.model import BOUC_WEN, Contact
+from rockbatch.core.springs.laws import CODES
+from rockbatch.core.springs.model import Contact
 from rockbatch.core.system import begin, one_pass, rates
 from rockbatch.core.table import LANES, table
 from rockbatch.core.table import record as record_of
 from rockbatch.core.types import RIGHT, SURVIVED, Ground, Instant
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import Run, Stop, block, ground_of, run_all_fixed, springs
 from rockbatch.simulation.models import elements, line_of, system_of
 from rockbatch.simulation.models import model as model_of
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.starting import start_of
 
 BARE_STEPS = 200_000
@@ -135,7 +136,7 @@ def measure(law: str, motion: Motion, substeps: int, runs: int, repeats: int) ->
     events = (counted.rows - samples) // 2
 
     m = models[runs // 2]
-    branch = 1.0 if m.law == BOUC_WEN else 0.0
+    branch = 1.0 if m.law == CODES["bouc-wen"] else 0.0
     alone = (m, static_state(m, m.gravity), Contact(1.0, 1.0, branch, branch, 0.0), ground, dt / substeps, BARE_STEPS)
     times = interleaved(
         {"whole": lambda: march(system, lines, ground, stop, substeps), "bare": lambda: bare(*alone)}, repeats

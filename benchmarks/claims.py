@@ -29,10 +29,10 @@ import rigid_survey
 from independent import pool
 
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Pier
 from rockbatch.simulation import chaos, run_all_to_tolerance
 from rockbatch.simulation.models import readings
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, run_all_fixed
 
 TOLERANCE = 1e-4

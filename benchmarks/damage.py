@@ -31,9 +31,9 @@ import numpy as np
 
 import rockbatch as rb
 from rockbatch.batch.digests import study_digests
-from rockbatch.batch.finishing import cost_of_finished
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.plan import Plan
+from rockbatch.batch.preparing import cost_of_finished
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import EditedTable
 from rockbatch.reporting.finished_analysis import digest_of

@@ -8,7 +8,7 @@ yield and a stop; with --tiny the motion hardly lifts a pivot, or none. Each run
 10⁻⁴, with forces, the work of devices and sections at three heights, and again with an eighth and a sixteenth of the step.
 
 A claim is broken if a quantity differs from that of the finest run by more than the claimed share of it, of a hundredth of its
-scale at least (`simulation.changes`), and by more than the two fine runs differ. Undecided are claims below what these differ by.
+scale at least (`outcome.changes`), and by more than the two fine runs differ. Undecided are claims below what these differ by.
 Claims of runs whose outcome or count of impacts the finest step changes are counted apart, as chaotic.
 Ctrl-C ends the pool, and prints what has been counted.
 """
@@ -24,13 +24,17 @@ import numpy as np
 
 import rockbatch as rb
 from rockbatch.motions import Motion
+from rockbatch.observers.devices_work.observe import WorkOfDevices
+from rockbatch.observers.forces.observe import PeaksOfForces
+from rockbatch.observers.sections.observe import ForcesInSections
+from rockbatch.outcome.changes import FLOOR, OF_DEVICES, Sized, scales_of
+from rockbatch.outcome.device_work import OF_WORK
 from rockbatch.pier import Base, Pier, Restraint, problems
-from rockbatch.simulation.changes import FLOOR, OF_DEVICES, Sized, scales_of
-from rockbatch.simulation.device_work import OF_WORK
-from rockbatch.simulation.error_control import run_to_tolerance
+from rockbatch.simulation.error_control import CHANCE, run_to_tolerance
 from rockbatch.simulation.forces import _SIZED as OF_FORCES
-from rockbatch.simulation.histories import forces_in_sections, with_observed
+from rockbatch.simulation.observing import observed
 from rockbatch.simulation.runs import Run, run_fixed
+from rockbatch.simulation.sections import with_errors
 
 DT, DURATION, QUIET_S = 0.01, 2.5, 0.5
 TOLERANCE = 1e-4
@@ -127,11 +131,20 @@ def case(kind: str, number: int, seed: int, tiny: bool) -> Run:
     return Run(pier, base, Motion(f"waves {number}", DT, share * lifts * across, vertical))
 
 
-def observed(run: Run, outcome: Any, error: bool) -> tuple[Any, list[Any]]:
+class SectionsAlone(ForcesInSections):
+    """Forces in sections as they are, not as rows of a table."""
+
+    def add(self, run: Run, outcome: Any, fine: Any, coarse: Any) -> Any:
+        """See :class:`Observer`."""
+        return outcome.with_table(self.table, fine if coarse is None else with_errors(fine, coarse, run.pier, CHANCE))
+
+
+def demands(run: Run, outcome: Any, error: bool) -> tuple[Any, list[Any]]:
     """Return the outcome with forces and the work of devices, and the forces in sections."""
-    heights = [share * 2.0 * run.pier.height for share in HEIGHTS]
-    found = with_observed(run, outcome, QUIET_S, ledger=False, least_normal=0.1, error=error, least_stroke=0.02)
-    return found, forces_in_sections(run, outcome, QUIET_S, heights, error=error)
+    heights = tuple(share * 2.0 * run.pier.height for share in HEIGHTS)
+    observers = (PeaksOfForces(0.1), WorkOfDevices(0.02), SectionsAlone(heights))
+    (found,) = observed([run], [outcome], observers, QUIET_S, error=error)
+    return found, found.tables[SectionsAlone.table]
 
 
 def sizes(of: Any, quantities: Mapping[str, Sized]) -> Iterator[tuple[str, str, tuple[float, ...]]]:
@@ -169,9 +182,9 @@ def judge(run: Run) -> list[Claim]:
     outcome = run_to_tolerance(run.pier, run.base, run.motion, TOLERANCE, QUIET_S)
     if outcome.status not in ("ok", "flight"):
         return []
-    found, sections = observed(run, outcome, True)
+    found, sections = demands(run, outcome, True)
     fine = [run_fixed(run.pier, run.base, run.motion, factor * outcome.substeps, QUIET_S) for factor in REFINED]
-    refined = [observed(run, each, False) for each in fine]
+    refined = [demands(run, each, False) for each in fine]
     last = refined[-1][0]
     chaotic = (last.status, last.impacts) != (found.status, found.impacts)
     chaotic = chaotic or abs(last.theta_max - found.theta_max) > TOLERANCE * run.pier.alpha

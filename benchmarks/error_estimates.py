@@ -18,9 +18,9 @@ from pathlib import Path
 from rockbatch.batch.threads import cores
 from rockbatch.motions import Motion, fema_p695, read_motions
 from rockbatch.motions.pairing import to_motions
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, Damper, ElasticBase, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.simulation import run_fixed, run_to_tolerance
-from rockbatch.simulation.outcome import Outcome
 
 PIER = Pier(alpha=0.13, p=0.38)
 BASES: dict[str, Base] = {"rigid": RigidBase()} | {

@@ -48,10 +48,10 @@ from pathlib import Path
 from independent.pool import STRATA, Case, cases, just_overturning, scaled
 from independent.reference import HORIZON, Reference, reference, twice
 
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Base, RigidBase, YieldingBase, problems
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.simulation.models import PATIENCE
-from rockbatch.simulation.outcome import Outcome
 
 TOLERANCE = 1e-4
 RATCHETS = "ratchets over"

@@ -13,7 +13,8 @@ import numba
 import numpy as np
 
 from rockbatch.core.springs.lanes import static_state
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, Contact, Springs, State, Supports
+from rockbatch.core.springs.laws import CODES
+from rockbatch.core.springs.model import Contact, Springs, State, Supports
 from rockbatch.core.springs.transitions import handle
 from rockbatch.core.system import event_functions, rates
 from rockbatch.core.types import Ground, Instant, Moment
@@ -41,11 +42,11 @@ def watched(law: float, contact: Contact, supports: Supports, rest: float) -> tu
     def pivot(on_spring: float, yields: float, support: float) -> tuple[float, ...]:
         if on_spring == 0.0:
             return 0.0, 1.0, -support, 0.0, 0.0, 1.0
-        if law == ELASTIC:
+        if law == CODES["elastic"]:
             return -1.0, 0.0, 0.0, 0.0, 0.0, 1.0
         if yields != 0.0:
             return -1.0, 0.0, 0.0, 0.0, -1.0, -rest
-        if law == BOUC_WEN:
+        if law == CODES["bouc-wen"]:
             return -1.0, 0.0, 0.0, 0.0, 1.0, -rest
         return -1.0, 0.0, 0.0, 1.0, 0.0, 1.0
 
@@ -88,7 +89,7 @@ class Rocking:
         """Status and θ_max [rad], each stretch between two events integrated by ``stretch``."""
         m, rest = self.m, self.rest
         t, y, theta_max = 0.0, static_state(m, m.gravity), 0.0
-        branch = 1.0 if m.law == BOUC_WEN else 0.0
+        branch = 1.0 if m.law == CODES["bouc-wen"] else 0.0
         contact, supports = Contact(1.0, 1.0, branch, branch, 0.0), Supports(math.nan, math.nan)
         for _ in range(MOST_EVENTS):
             # An impact at one pivot may turn the other's velocity: that is an event before the next step

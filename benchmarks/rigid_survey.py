@@ -36,9 +36,9 @@ from independent.taylor import Truth, truth
 
 from rockbatch.motions import Motion, fema_p695, read_motions
 from rockbatch.motions.pairing import to_motions
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.simulation import run_all_to_tolerance
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop
 
 TOLERANCE = 1e-4  # of α

@@ -16,16 +16,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 TOP = Path(__file__).parents[1]
-ANALYSES = ("fragility", "spectrum", "sensitivity", "release")
+ANALYSES = ("fragility", "spectrum", "sensitivity")
 
 
 def commands(study: Path) -> Iterator[list[str]]:
-    """Yield the commands that a study is for: its runs, but of a release test, and its analyses."""
+    """Yield the commands that a study is for: its runs and its analyses."""
     tables = tomllib.loads(study.read_text(encoding="utf-8"))
-    if "release" not in tables:
-        yield ["run", str(study), "--jobs", "1"]
+    yield ["run", str(study), "--jobs", "1"]
     for name in (name for name in ANALYSES if name in tables):
-        yield [name, str(study), *(["--jobs", "1"] if name != "release" else [])]
+        yield [name, str(study), "--jobs", "1"]
 
 
 def tables_of(tree: Path, study: Path, out: Path) -> dict[str, bytes]:

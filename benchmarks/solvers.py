@@ -20,10 +20,10 @@ from tower import QUIET_S, TOWER, foundations, record
 
 from rockbatch.analyses.accuracy.error_and_time import reference
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import YieldingBase
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation import Run, Stop, run_all_fixed, run_all_to_tolerance
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.study import Case
 
 BASE = YieldingBase(80.0, 0.05, flight="stop", eta=2.5)

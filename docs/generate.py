@@ -8,11 +8,13 @@ verification is a PDF, too.
 import contextlib
 import csv
 import importlib.util
+import inspect
 import io
 import json
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -39,17 +41,22 @@ TOP = HERE.parent
 DOCUMENTS = {
     "theory.md": "THEORY.md",
     "performance.md": "benchmarks/README.md",
-    "extending.md": "CONTRIBUTING.md",
     "reference/columns.md": "docs/columns.md",
     "reference/motions.md": "motions/README.md",
 }
 """Pages that are documents of the repository."""
 
 
+def _is_error(name: str) -> bool:
+    """Return whether a public name is a class of errors below ``InputError``."""
+    thing = getattr(rockbatch, name)
+    return isinstance(thing, type) and issubclass(thing, rockbatch.InputError) and thing is not rockbatch.InputError
+
+
 TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
     "studies": (
         "Studies and results",
-        ("load_study", "Study", "run", "open_results", "report", "check", "Rule", "InputError"),
+        ("load_study", "Study", "run", "open_results", "report", "check", "Rule"),
     ),
     "piers": (
         "Piers and bases",
@@ -76,6 +83,7 @@ TOPICS: dict[str, tuple[str, tuple[str, ...]]] = {
         "Ground motions",
         ("read_motions", "ReadOptions", "Motion", "MotionSet", "pulse", "sequence", "pair_spectrum"),
     ),
+    "errors": ("Errors", ("InputError", "Problem", *(name for name in rockbatch.__all__ if _is_error(name)))),
 }
 """Pages of the Python reference, with their headings and the public names on them."""
 
@@ -282,6 +290,8 @@ def _python() -> dict[str, str]:
         topic: "\n".join([f"# {heading}", "", *(f"::: {_home(name)}.{name}\n" for name in names)])
         for topic, (heading, names) in TOPICS.items()
     }
+    heading, _, members = pages["errors"].partition("\n\n")
+    pages["errors"] = f"{heading}\n\n{_tree()}\n\n{members}"
     further = [name for name in motions.__all__ if name not in rockbatch.__all__]
     pages["motions"] += "\n".join(
         ["# Of `rockbatch.motions` alone", "", *(f"::: rockbatch.motions.{name}\n" for name in further)]
@@ -300,6 +310,14 @@ def _python() -> dict[str, str]:
         ]
     )
     return pages
+
+
+def _tree() -> str:
+    """Return what the module of the errors says of them, with their tree as a block of code."""
+    said = inspect.cleandoc(import_module("rockbatch.common.errors").__doc__ or "")
+    above, _, tree = said.partition("\n\n    InputError")
+    prose = re.sub(r":class:`(\w+)`", r"`\1`", above).replace("``", "`")
+    return f"{prose}\n\n```text\n{inspect.cleandoc('InputError' + tree)}\n```"
 
 
 def _home(name: str) -> str:

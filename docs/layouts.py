@@ -12,6 +12,7 @@ from pathlib import Path
 
 from rockbatch.motions import read_motions
 from rockbatch.motions.formats.stated import QUANTITIES
+from rockbatch.motions.ranking import Use, use_of
 
 HERE = Path(__file__).parent
 PAGE = HERE / "pages" / "formats.md"
@@ -81,12 +82,11 @@ def _outcome(layout) -> tuple[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / layout.file).write_bytes(layout.data)
         motions = read_motions(folder, options=layout.stated)
-    reasons = [refused.reason for refused in motions.unusable]
-    if motions.motions and not reasons:
+    if motions.motions and not motions.unusable:
         return "read", ""
-    reason = reasons[0].split("; if it is right")[0]
-    needs_statement = any(word in reasons[0] for word in ("state", "write confirm", "write role"))
-    return ("asked for" if needs_statement else "refused"), reason.replace("|", "\\|")
+    refused = motions.unusable[0]
+    outcome = "asked for" if use_of(refused) is Use.HELD_BACK else "refused"
+    return outcome, refused.reason.replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -6,18 +6,21 @@ from rockbatch.common.lazy import loading
 from rockbatch.common.version import __version__ as __version__
 
 _NAMES = {
-    "batch.running": "run",
+    "workflow.running": "run",
     "batch.single": "simulate",
     "checks": "Rule",
-    "checks.checking": "check",
-    "common.errors": "InputError",
+    "results.checking": "check",
+    "common.errors": (
+        "BadSyntax Contradiction InputError MissingKey NoDirection NoRecord NoStep NoUnit NotFound "
+        "OutOfRange Problem Truncated UnknownFormat UnknownKey Unstated Unusual UnusableRecord WrongType"
+    ),
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
     "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "reporting": "report",
     "results.opened": "open_results",
-    "simulation.response": "Response",
+    "outcome.response": "Response",
     "study": "Study load_study",
 }
 """Public names by their modules, beside those of the analyses; ``__init__.pyi`` has all of them for type checkers."""

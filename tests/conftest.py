@@ -4,6 +4,7 @@ import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
+from importlib import import_module
 from unittest import mock
 
 import pytest
@@ -27,7 +28,27 @@ SHARED = [
     ElasticBase(50.0),
     ElasticBase(50.0, zeta=0.05),
 ]
-"""Bases whose kernels fast tests compile (CONTRIBUTING.md)."""
+"""Bases whose kernels fast tests compile (docs/pages/extending.md)."""
+
+
+LIBRARIES = [
+    "numba.np.arraymath",
+    "scipy.signal",
+    "scipy.optimize",
+    "pint",
+    "distributed",
+    "pandas",
+    "matplotlib.pyplot",
+]
+"""What takes longest to load: ten seconds in a new environment, whose modules are compiled to bytecode then."""
+
+
+def pytest_sessionstart(session):
+    """Load libraries in every other worker from the last one on: two in step would both compile the bytecode of each."""
+    worker = getattr(session.config, "workerinput", None)
+    for library in LIBRARIES[:: -1 if int(worker["workerid"][2:]) % 2 else 1] if worker else ():
+        with suppress(ImportError):
+            import_module(library)
 
 
 SLOW = ({"finite"}, {"shaft"})

@@ -85,7 +85,7 @@ def test_a_word_for_a_base_is_answered_with_the_bases_there_are():
 def test_all_wrong_arguments_are_reported_at_once():
     with pytest.raises(rb.InputError) as caught:
         rb.simulate(BASE, PIER, "a.at2")
-    assert [problem.split(" = ")[0] for problem in caught.value.problems] == ["pier", "foundation", "motion"]
+    assert [problem.split(" = ")[0] for problem in caught.value.messages] == ["pier", "foundation", "motion"]
 
 
 def test_a_list_is_taken_for_a_tuple_and_its_members_are_checked():

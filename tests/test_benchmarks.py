@@ -169,7 +169,7 @@ def test_tables_that_differ_in_a_byte_or_are_missing_are_named(benchmark, monkey
         "a: 3 tables, of which differ: spectrum.csv, lost.csv, added.csv"
     ]
     assert list(module.differences(before, before, ["a"])) == ["a: 3 tables, all the same"]
-    assert [command[0] for command in module.commands(BENCHMARKS.parent / "configs" / "release.toml")] == ["release"]
+    assert [command[0] for command in module.commands(BENCHMARKS.parent / "configs" / "release.toml")] == ["run"]
 
 
 @pytest.mark.thorough

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from rockbatch.batch.analysis import AnalysisFolder
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
+from rockbatch.workflow.analysis import AnalysisFolder
 
 TOP = Path(__file__).parents[1] / "rockbatch"
 OF_FOLDERS = ("analyses", "batch", "checks", "reporting", "results")
@@ -35,7 +35,7 @@ def test_commands_print_by_one_door():
     found = [
         place for place, line in lines_of("commands", "analyses") if re.search(r"\bprint\(|sys\.std\w+\.write", line)
     ]
-    assert {place.partition(":")[0] for place in found} <= {"commands/streams.py"}
+    assert {place.partition(":")[0] for place in found} <= {"terminal/streams.py"}
 
 
 def test_an_edited_table_of_an_analysis_is_reported_and_kept(tmp_path):

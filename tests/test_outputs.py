@@ -16,7 +16,7 @@ from report_samples import FIG7, write_results
 from studies import RIGID, SINE, study_text, toml, write_study
 
 import rockbatch as rb
-from rockbatch.batch.finishing import OUTPUTS
+from rockbatch.batch.preparing import OUTPUTS
 from rockbatch.commands.cli import main
 from rockbatch.common.files import LOCK, only_writer, remove, replacing, write_output, write_whole
 
@@ -95,7 +95,7 @@ def records(tmp_path_factory):
 
 # Files in a folder of results
 
-WRITING = {name: ["run"] for name in (*OUTPUTS, "peaks.csv.part", LOCK)} | {
+WRITING = {name: ["run"] for name in (*OUTPUTS, "checks.csv", "report.html", "peaks.csv.part", LOCK)} | {
     "fragility.json": ["fragility"], "fragility_runs.csv": ["fragility"], "fragility_runs.csv.part": ["fragility"],
     "spectrum_suite.csv": ["spectrum"], "spectrum.json": ["spectrum"],
     "accuracy.csv": ["accuracy"],

@@ -149,7 +149,7 @@ def test_kilonewtons_need_a_pier_whose_mass_is_known():
 def test_a_sampling_rate_is_not_taken_for_a_step(dt, said):
     with pytest.raises(rb.InputError) as caught:
         rb.Motion.from_array(VALUES, dt, "m/s2")
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert said in problem
     assert problem.endswith('if it is right, write confirm = ["dt"]')
     assert rb.Motion.from_array(VALUES, dt, "m/s2", confirm=["dt"]).dt == dt

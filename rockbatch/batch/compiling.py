@@ -4,7 +4,7 @@ import pickle
 import subprocess
 import sys
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from threading import Thread
@@ -13,20 +13,24 @@ import numpy as np
 
 from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.listening import Listener
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.threads import cores
 from rockbatch.common.garbage import collect_rarely
 from rockbatch.motions import Motion
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation import kept
 from rockbatch.simulation.compilation import compiles, kernel_of, load_numba, on_compilation
-from rockbatch.study import Numerics, Output, Study
+from rockbatch.simulation.observing import Observer
+from rockbatch.study import Numerics, Study
 
-Task = tuple[StudyRun, Numerics, Output]
+Task = tuple[StudyRun, Numerics, Sequence[Observer]]
 """A short run that needs a kernel."""
 
 
-def make_ready(study: Study, listener: Listener) -> None:
+def make_ready(study: Study, listener: Listener, observers: Sequence[Observer] | None = None) -> None:
     """Have every kernel that ``study`` needs compiled or loaded, and tell ``listener`` if any has to be compiled.
+
+    ``observers`` are those of its runs, unless they are those of the columns of peaks.csv.
 
     Numba compiles one function at a time in a process. Once the first kernel turns out not to be in the cache, processes
     on the other processors compile the last ones, and leave them there.
@@ -37,7 +41,7 @@ def make_ready(study: Study, listener: Listener) -> None:
             "ends this"
         )
     load_numba()
-    tasks = _tasks(study)
+    tasks = _tasks(study, observers_of(study.output) if observers is None else observers)
     waiting, assistants = deque(tasks), list[Thread]()
 
     def assist() -> None:
@@ -59,12 +63,12 @@ def make_ready(study: Study, listener: Listener) -> None:
         listener.say(reason)
 
 
-def _tasks(study: Study) -> list[Task]:
+def _tasks(study: Study, observers: Sequence[Observer]) -> list[Task]:
     """Return a run for each kernel of the study."""
     still = Motion("still", 1e-3, np.zeros(2))
     numerics = replace(study.numerics, quiet_s=0.0)
     kernels = {kernel_of(case.pier, case.base): case for case in study.cases}
-    return [(StudyRun(still, "+", 1.0, case), numerics, study.output) for case in kernels.values()]
+    return [(StudyRun(still, "+", 1.0, case), numerics, observers) for case in kernels.values()]
 
 
 def _next_task(take: Callable[[], Task]) -> Task | None:
@@ -75,8 +79,8 @@ def _next_task(take: Callable[[], Task]) -> Task | None:
 
 
 def _compile(task: Task) -> None:
-    run, numerics, output = task
-    outcomes_of([run], numerics, output)
+    run, numerics, observers = task
+    outcomes_of([run], numerics, observers)
 
 
 def _compile_elsewhere(waiting: "deque[Task]") -> None:

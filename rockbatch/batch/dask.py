@@ -10,13 +10,14 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rockbatch.batch.digests import program
-from rockbatch.batch.groups import NOTHING_MORE, Group, groups, outcomes_of
+from rockbatch.batch.groups import Group, groups, outcomes_of
 from rockbatch.batch.threads import cores, finished
 from rockbatch.common.errors import InputError, starting_threads
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation.outcome import Outcome
-from rockbatch.study import Numerics, Output
+from rockbatch.simulation.observing import Observer
+from rockbatch.study import Numerics
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -136,7 +137,7 @@ class Dask:
         return self._threads
 
     def outcomes(
-        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+        self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
         """See :class:`rockbatch.batch.threads.Engine`."""
         from distributed import CancelledError
@@ -151,7 +152,7 @@ class Dask:
         def hand_out() -> None:
             most = AHEAD * max(self.jobs, 1)
             while len(pending) < most and (group := next(waiting, None)):
-                pending[records.submit(group.values(), numerics, output)] = group
+                pending[records.submit(group.values(), numerics, observers)] = group
 
         try:
             hand_out()
@@ -248,7 +249,7 @@ class Records:
         self.client = client
         self._sent: dict[int, tuple[Motion, Future]] = {}
 
-    def submit(self, runs: Iterable[StudyRun], numerics: Numerics, output: Output) -> "Future":
+    def submit(self, runs: Iterable[StudyRun], numerics: Numerics, observers: Sequence[Observer]) -> "Future":
         """Hand out a group of runs, whose records come by their places in it."""
         places: dict[int, int] = {}
         records = []
@@ -258,7 +259,7 @@ class Records:
                 places[id(run.record)] = len(places)
                 records.append(self._record(run.record))
             members.append((places[id(run.record)], *run[1:]))
-        return self.client.submit(simulate, records, members, numerics, output, program(), pure=False)
+        return self.client.submit(simulate, records, members, numerics, observers, program(), pure=False)
 
     def _record(self, motion: Motion) -> "Future":
         if id(motion) not in self._sent:  # kept with the motion, whose id must not become another's
@@ -301,11 +302,15 @@ def _unchanged(motion: Motion) -> Motion:
 
 
 def simulate(
-    records: Sequence[Motion], members: Iterable[tuple[Any, ...]], numerics: Numerics, output: Output, expected: str
+    records: Sequence[Motion],
+    members: Iterable[tuple[Any, ...]],
+    numerics: Numerics,
+    observers: Sequence[Observer],
+    expected: str,
 ) -> list[Outcome | None]:
     """Return the outcomes of a group, on a worker, which has to run the ``program`` that is ``expected``."""
     if program() != expected:
         raise InputError(
             f"a worker runs another rockbatch or another Numba ({program()}, not {expected}): install the same everywhere"
         )
-    return outcomes_of([StudyRun(records[place], *rest) for place, *rest in members], numerics, output)
+    return outcomes_of([StudyRun(records[place], *rest) for place, *rest in members], numerics, observers)

@@ -9,7 +9,7 @@ from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
 
-SHOW = ("commands", "reporting", "__init__.py", "__main__.py", "common/version.py")
+SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
 OF_ANALYSES = ("command.py", "section.py")

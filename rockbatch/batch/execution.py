@@ -5,14 +5,15 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import closing
 from typing import Any
 
-from rockbatch.batch.groups import NOTHING_MORE
+from rockbatch.batch.beside import packed
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Advance, silent
 from rockbatch.batch.plan import MOST_RUNS, Runs, some_of
 from rockbatch.batch.threads import Engine
 from rockbatch.common.errors import InputError
 from rockbatch.results.columns import StudyRun, cells
-from rockbatch.study import Numerics, Output
+from rockbatch.simulation.observing import Observer
+from rockbatch.study import Numerics
 
 RowOf = Callable[[StudyRun], Mapping[str, Any]]
 """From a finished run to its row of a table."""
@@ -20,6 +21,8 @@ RowOf = Callable[[StudyRun], Mapping[str, Any]]
 
 class InMemory(dict[int, Mapping[str, Any]]):
     """Rows of finished runs by their numbers, with some ``columns``, in place of a journal where nothing is kept on disk."""
+
+    beside: Sequence[str] = ()
 
     def __init__(self, columns: Sequence[str]) -> None:
         self.columns = columns
@@ -39,7 +42,7 @@ def execute_runs(
     numerics: Numerics,
     journal: Journal | InMemory,
     engine: Engine,
-    output: Output = NOTHING_MORE,
+    observers: Sequence[Observer] = (),
     *,
     first: int = 0,
     among: range | None = None,
@@ -48,20 +51,23 @@ def execute_runs(
 ) -> None:
     """Carry out those runs that are not in ``journal``, and write each into it as soon as its group is finished.
 
-    Of mirror images one is simulated, and both are written. ``first`` is the number of ``runs[0]`` in the journal, ``among`` the
+    Of mirror images one is simulated, and both are written. Rows of tables beside the peaks, which ``observers`` may give, stay
+    with those of the peaks. ``first`` is the number of ``runs[0]`` in the journal, ``among`` the
     indices of the runs that are wanted, if not all; ``row`` makes the row of a finished run, where that is not one of peaks.csv,
     and ``progress`` is called with the number of simulations of each group that is finished.
     """
     requested = range(len(runs)) if among is None else among
     remaining = to_simulate(runs, requested, journal, first)
-    with closing(engine.outcomes(some_of(runs, remaining), numerics, output)) as groups:
+    with closing(engine.outcomes(some_of(runs, remaining), numerics, observers)) as groups:
         for group in groups:
             finished = _with_images(runs, {remaining[place]: run for place, run in group.items()})
             missing = {first + i: run for i, run in finished if i in requested and first + i not in journal}
             if row is not None:
                 journal.add_all({number: row(run) for number, run in missing.items()})
             elif missing:
-                journal.add_columns(list(missing), cells(list(missing.values()), journal.columns))
+                ended = list(missing.values())
+                tables = {name: [packed(run, name) for run in ended] for name in journal.beside}
+                journal.add_columns(list(missing), cells(ended, journal.columns) | tables)
             progress(len(group))
 
 

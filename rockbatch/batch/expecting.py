@@ -10,12 +10,14 @@ from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.execution import to_simulate
 from rockbatch.batch.groups import least_steps, outcomes_of
 from rockbatch.batch.listening import Listener
+from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.batch.plan import Plan, some_of
-from rockbatch.batch.running import check_records, described, share_of
+from rockbatch.batch.preparing import check_records, described, share_of
 from rockbatch.common.errors import starting_threads
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun, columns, row
 from rockbatch.results.histories_file import history_bytes
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.runs import Stop
 from rockbatch.study import Study
 from rockbatch.study.suite import ground_motions
@@ -69,7 +71,7 @@ def expected(
 ) -> Expected:
     """Run a few runs, spread over the study, on as many threads, and extrapolate by the number of samples.
 
-    ``share`` and ``records`` as in :func:`rockbatch.batch.running.run_into`, of which a share keeps no histories.
+    ``share`` and ``records`` as in :func:`rockbatch.run`, of which a share keeps no histories.
     """
     motions = ground_motions(study)
     listener.motions(motions)
@@ -78,9 +80,10 @@ def expected(
     requested = share_of(len(plan), *share) if share else range(len(plan))
     simulated = some_of(plan, to_simulate(plan, requested))
     steps = [least_steps(run, study.numerics) for run in simulated]
-    make_ready(study, listener)
+    observers = (*observers_of(study.output), *observers_beside(study.output, motions.motions))
+    make_ready(study, listener, observers)
     started = time.perf_counter()
-    tried = _tried(study, simulated, _spread(steps), jobs, listener)
+    tried = _tried(study, simulated, _spread(steps), observers, jobs, listener)
     took = time.perf_counter() - started
     seconds = took * sum(steps) / sum(steps[i] for i in tried)
     ended = [simulated[i]._replace(outcome=outcome) for i, outcome in tried.items()]
@@ -96,14 +99,19 @@ def expected(
 
 
 def _tried(
-    study: Study, runs: Sequence[StudyRun], chosen: Sequence[int], jobs: int, listener: Listener
+    study: Study,
+    runs: Sequence[StudyRun],
+    chosen: Sequence[int],
+    observers: Sequence[Observer],
+    jobs: int,
+    listener: Listener,
 ) -> dict[int, Outcome]:
     """Return outcomes of ``chosen`` runs by their indices: first a run for each thread, then twice as many, until time is up."""
     outcomes: dict[int, Outcome | None] = {}
     stop, begun = Stop(), 0
 
     def carried_out(share: Sequence[int]) -> list[Outcome | None]:
-        return outcomes_of([runs[i] for i in share], study.numerics, study.output, stop)
+        return outcomes_of([runs[i] for i in share], study.numerics, observers, stop)
 
     with listener.progress(len(chosen)) as progress, ThreadPoolExecutor(jobs) as pool:
         started = time.perf_counter()

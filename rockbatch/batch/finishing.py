@@ -1,117 +1,45 @@
-"""Writing of a folder of results: from finished runs to the table, run.json, histories, checks and the report."""
+"""Writing of a folder of results: from finished runs to the table, run.json, histories and the tables beside."""
 
-import datetime
 import json
-import math
-import platform
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockbatch.batch.execution import to_simulate
+from rockbatch.batch.beside import rows_beside
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep
-from rockbatch.batch.listening import Listener, announced_if_slow
-from rockbatch.batch.plan import Plan
-from rockbatch.batch.repeated import HALF_CYCLES, rows_beside
+from rockbatch.batch.listening import announced_if_slow
+from rockbatch.batch.preparing import OUTPUTS, Batch
 from rockbatch.batch.threads import cores
-from rockbatch.checks import Verdict, write_verdicts
-from rockbatch.checks.checking import verdicts
-from rockbatch.checks.suite_target import suite_verdicts
-from rockbatch.checks.verdicts import CHECKS
 from rockbatch.common.errors import InputError
-from rockbatch.common.files import is_plain, legible, read_text, remove
-from rockbatch.common.version import __version__
-from rockbatch.motions import MotionSet
-from rockbatch.reporting import REPORT, write_report
-from rockbatch.results.beside_peaks import SEMICOLONS, write
+from rockbatch.common.files import is_plain, remove
+from rockbatch.common.observers import tables
+from rockbatch.results.beside_peaks import write
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
 from rockbatch.results.intensity import INTENSITY, intensities
-from rockbatch.results.opened import open_results
-from rockbatch.results.reading import Saved, edited
-from rockbatch.results.run_json import INFO, describe, versions, write_info
-from rockbatch.results.sections import SECTIONS
-from rockbatch.results.shocks import SHOCKS
-from rockbatch.study import Study
-
-OUTPUTS = (PEAKS, INFO, HISTORIES, INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS, CHECKS, REPORT, SEMICOLONS)
-"""Files that a run may leave in its folder."""
+from rockbatch.results.opened import Results, open_results
+from rockbatch.results.run_json import INFO, write_info
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
 """Entries of run.json that tell of the command, and not of what its results are."""
 
 
 @dataclass(frozen=True, eq=False)
-class FinishedBatch:
-    """Results that were written into a folder.
+class Written:
+    """Results that were written into a folder: the opened folder, its files, and why histories are not among them, if so."""
 
-    Attributes
-    ----------
-    saved : Saved
-        ``peaks.csv`` and ``run.json``.
-    motions : MotionSet
-        What the study was run under, and what of it could not be used.
-    verdicts : list of Verdict
-        Those of the study's checks, and of its target spectrum; empty where it has neither.
-    files : tuple of Path
-        Table, run.json, histories, checks and report, those that were written.
-    without : InputError or None
-        Why histories that the study asks for are not there.
-    """
-
-    saved: Saved
-    motions: MotionSet
-    verdicts: list[Verdict]
+    saved: Results
     files: tuple[Path, ...]
     without: InputError | None
 
 
-def what_was_run(
-    study: Study, motions: MotionSet, runs: Plan, digest: dict[str, str], command: Sequence[str]
-) -> dict[str, Any]:
-    """Return the content of run.json but for the cost; ``command`` are the words after ``rockbatch`` that do it again."""
-    return {
-        "rockbatch": __version__,
-        "created": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-        "command": ["rockbatch", *command],
-        **describe(study, motions),
-        "versions": versions(),
-        "machine": f"{platform.system()} {platform.machine()}, {cores()} processors",
-        "runs": len(to_simulate(runs, range(len(runs)))),
-        "digest": digest,
-    }
-
-
-def cost_of_finished(directory: Path, info: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the cost of the runs in ``directory``, if they are those of ``info``, all of them; else None.
-
-    Raises ``InputError`` where they are, and their table is not as it was written: it is nobody's to write over.
-    """
-    try:
-        earlier = json.loads(read_text(directory / INFO))
-        is_same = all(earlier[name] == info[name] for name in ("digest", "runs", "varied", "unusable"))
-        cost = {name: earlier[name] for name in ("jobs", "wall_s", "kept", "peaks")}
-        jobs, wall_s, n_kept = (float(cost[name]) for name in ("jobs", "wall_s", "kept"))
-    except (OSError, ValueError, LookupError, TypeError, RecursionError):
-        return None
-    if not (is_same and math.isfinite(jobs + wall_s + n_kept) and (directory / PEAKS).exists()):
-        return None
-    if differs := edited(directory, earlier):
-        raise InputError(
-            f"{directory / PEAKS}: {differs}; nothing is run: keep it as a copy elsewhere if it was edited, and run the "
-            "study again with --fresh"
-        )
-    return cost
-
-
-def unchanged(
-    directory: Path, study: Study, motions: MotionSet, runs: Plan, info: dict[str, Any]
-) -> FinishedBatch | None:
-    """Return what is in ``directory`` if nothing would change by finishing its runs again, those of ``info``; else None."""
+def unchanged(batch: Batch) -> Written | None:
+    """Return what is in the folder of a finished ``batch`` if nothing of it would change by finishing it again; else None."""
+    directory, study, runs = batch.directory, batch.study, batch.runs
     saved = open_results(directory)
-    described = json.loads(json.dumps(info))
+    described = json.loads(json.dumps(batch.info))
     if any(saved.info.get(name) != value for name, value in described.items() if name not in _OF_COMMAND):
         return None
     kept = len(to_keep(study, runs, saved.peaks.iloc[: len(runs)]).numbers)
@@ -121,109 +49,56 @@ def unchanged(
             return None
     except (InputError, OSError):  # damaged, or those of an earlier run
         return None
-    beside = _beside_peaks(study, motions)
-    if not all(is_plain(directory / name) for name in beside):
-        return None
-    judged = _judged(saved, study)
-    names = (PEAKS, INFO, *beside, *histories, *([CHECKS] if judged else []), REPORT)
-    files = tuple(directory / name for name in names)
-    return FinishedBatch(saved, motions, judged, files, None) if all(map(is_plain, files)) else None
+    files = tuple(directory / name for name in (PEAKS, INFO, *_beside_peaks(batch), *histories))
+    return Written(saved, files, None) if all(map(is_plain, files)) else None
 
 
-def to_be_replaced(directory: Path, study: Study) -> str | None:
-    """Describe the results in ``directory`` that those of ``study`` will replace; None without any.
-
-    Raises ``InputError`` for those of another study: of another file, or of one that is gone and had another title.
-    """
-    try:
-        earlier = json.loads(read_text(directory / INFO))
-        path, title = Path(earlier["study"]["path"]), str(earlier["study"]["title"])
-        created = str(earlier["created"])[:16].replace("T", " ")
-    except (OSError, ValueError, LookupError, TypeError, RecursionError):
-        return None
-    is_same = path.samefile(study.path) if path.exists() and study.path.exists() else title == study.title
-    if not is_same:
-        raise InputError(
-            f'{directory} holds the results of another study, {legible(str(path))}, "{legible(title)}", of {legible(created)}; '
-            "choose another folder with --out, or replace them with --fresh"
-        )
-    return f"the results of an earlier version of the study, of {legible(created)}, in {directory}"
-
-
-def write_peaks(journal: Journal, motions: MotionSet) -> dict[str, Any]:
+def write_peaks(batch: Batch, journal: Journal) -> dict[str, Any]:
     """Write peaks.csv; what belongs to earlier ones goes first, so that they cannot be mixed up.
 
     Returns its number of rows and its digest, as run.json has them.
     """
-    directory = journal.path.parent
-    for name in OUTPUTS[1:]:
-        remove(directory / name)
-    return journal.write_in_order(directory / PEAKS, unusable_rows(motions))._asdict()
+    for name in (*OUTPUTS[1:], *batch.later):
+        remove(batch.directory / name)
+    return journal.write_in_order(batch.directory / PEAKS, unusable_rows(batch.motions))._asdict()
 
 
-def finish(
-    directory: Path,
-    study: Study,
-    motions: MotionSet,
-    runs: Plan,
-    info: dict[str, Any],
-    listener: Listener,
-    records: Collection[str] = (),
-) -> FinishedBatch:
-    """Write run.json, histories, checks and the report beside peaks.csv; of ``records`` all histories, too.
+def finish(batch: Batch, journal: Journal, cost: dict[str, Any], records: Collection[str] = ()) -> Written:
+    """Write run.json, histories and tables beside peaks.csv; of ``records`` all histories, too.
 
-    ``info`` is what run.json is to say: :func:`what_was_run`, ``jobs``, ``wall_s`` and ``kept``.
+    ``cost`` is what run.json says of the runs: ``peaks``, ``jobs``, ``wall_s`` and ``kept``.
     """
-    remove(directory / REPORT)  # it comes last: where it is, the others are there
+    directory, listener = batch.directory, batch.listener
+    for name in batch.later:  # they come last: where they are, the others are there
+        remove(directory / name)
     with announced_if_slow(listener, f"writing {INFO}"):
-        write_info(directory, info)
+        write_info(directory, batch.info | cost)
         saved = open_results(directory)
-    histories, refusal = _keep_histories(saved, study, runs, listener, records)
-    tables = [write(directory / name, rows) for name, rows in _tables(saved, study, motions, runs, listener)]
-    with announced_if_slow(listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
-        judged = _judged(saved, study)
-        checks = write_verdicts(directory, judged) if judged else None
-    with announced_if_slow(listener, f"writing {REPORT}"):
-        report = write_report(directory, saved=saved)
-    written = (directory / PEAKS, directory / INFO, *tables, histories, checks, report)
-    return FinishedBatch(saved, motions, judged, tuple(path for path in written if path), refusal)
+    histories, refusal = _keep_histories(batch, saved, records)
+    beside = [write(directory / name, rows) for name, rows in _tables(batch, saved, journal)]
+    files = (directory / PEAKS, directory / INFO, *beside, histories)
+    return Written(saved, tuple(path for path in files if path), refusal)
 
 
-def _judged(saved: Saved, study: Study) -> list[Verdict]:
-    """Return the verdicts of the study's checks and of its target spectrum, if it has them."""
-    return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
+def _beside_peaks(batch: Batch) -> list[str]:
+    """Return the tables that stand beside peaks.csv, of intensity measures and of observers."""
+    of_motions = [INTENSITY] if batch.study.output.intensity else []
+    return [*of_motions, *(observer.table for observer in batch.observers)]
 
 
-def _beside_peaks(study: Study, motions: MotionSet) -> list[str]:
-    """Return the tables that stand beside peaks.csv: those that the study asks for, and that of the shocks of sequences."""
-    asked = {
-        INTENSITY: study.output.intensity,
-        SHOCKS: any(motion.shocks for motion in motions.motions),
-        HALF_CYCLES: study.output.half_cycles,
-        SECTIONS: study.output.requested_sections is not None,
-    }
-    return [name for name, is_asked in asked.items() if is_asked]
-
-
-def _tables(
-    saved: Saved, study: Study, motions: MotionSet, runs: Plan, listener: Listener
-) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
+def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
     """Yield name and rows of the tables beside the peaks, and take away those of another time."""
-    asked = _beside_peaks(study, motions)
-    for name in {INTENSITY, SHOCKS, HALF_CYCLES, SECTIONS}.difference(asked):
-        remove(saved.directory / name)
+    for name in {INTENSITY, *tables()}.difference(_beside_peaks(batch)):
+        remove(batch.directory / name)
+    if batch.study.output.intensity:
+        yield INTENSITY, intensities(saved.peaks, batch.study, batch.motions.motions)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
-    for name in asked:
-        if name == INTENSITY:
-            yield name, intensities(saved.peaks, study, motions.motions)
-        else:
-            yield name, rows_beside(name, study, runs, saved.peaks, jobs, listener)
+    yield from rows_beside(batch.observers, batch.study, batch.runs, saved.peaks, journal, jobs, batch.listener).items()
 
 
-def _keep_histories(
-    saved: Saved, study: Study, runs: Plan, listener: Listener, records: Collection[str]
-) -> tuple[Path | None, InputError | None]:
+def _keep_histories(batch: Batch, saved: Results, records: Collection[str]) -> tuple[Path | None, InputError | None]:
     """Write the histories that the study asks for: their file, and why some are not in it."""
+    study, runs, listener = batch.study, batch.runs, batch.listener
     chosen = to_keep(study, runs, saved.peaks.iloc[: len(runs)], records)
     if chosen.left_out:
         number = len(chosen.numbers)

@@ -44,6 +44,105 @@ class Written(NamedTuple):
     sha256: str
 
 
+class _Rows:
+    """The rows of finished runs in an open file: where each stands, by the number of its run.
+
+    ``path`` names the file in messages, ``remedy`` says there what to do about rows of another digest. See :class:`Journal`.
+    """
+
+    def __init__(
+        self, path: Path, columns: Sequence[str], digest: Mapping[str, str], runs: int = MOST_RUNS, remedy: str = ""
+    ) -> None:
+        self.path, self.columns, self.digest, self.runs, self.remedy = path, list(columns), dict(digest), runs, remedy
+        said = " ".join(f"{name}:{value}" for name, value in digest.items())
+        self.first = _encoded(csv_line([said, *self.columns]))[:-1]
+        self.seed = zlib.crc32(self.first)
+        self.file: io.FileIO
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget all rows."""
+        self.starts, self.sizes = array("q"), array("q")  # of each row [bytes], by the number of its run
+        self.count = 0
+        self.head = 0  # bytes of the first line
+        self.end = 0
+
+    def __contains__(self, number: object) -> bool:
+        return isinstance(number, int) and 0 <= number < len(self.starts) and self.starts[number] != ABSENT
+
+    def __iter__(self) -> Iterator[int]:
+        return (number for number, start in enumerate(self.starts) if start != ABSENT)
+
+    def row(self, number: int) -> bytes:
+        """Return the line of a run as the table has it."""
+        self.file.seek(self.starts[number])
+        return _unfolded(self.file.read(self.sizes[number]))
+
+    def remember(self, number: int, start: int, size: int) -> None:
+        """Note where the row of a run stands."""
+        missing = number + 1 - len(self.starts)
+        self.starts.extend([ABSENT] * missing)
+        self.sizes.extend([0] * missing)
+        self.count += self.starts[number] == ABSENT
+        self.starts[number], self.sizes[number] = start, size
+
+    def recover(self) -> int:
+        """Find the rows that an earlier process has finished; return how many lines are damaged.
+
+        Raises ``InputError`` for rows of another study, or if nothing says of which study they are.
+        """
+        self.forget()
+        lines = _whole_lines(self.file)
+        self.head, line = next(lines, (0, b""))
+        first = _unsealed(line)
+        if first not in (None, self.first):
+            self._refuse_rows_of(first, lines)
+            return 0
+        damaged, rows, self.end = int(self.head > 0 and first is None), 0, self.head
+        for self.end, line in lines:
+            rows += 1
+            number = self._number(_unsealed(line, self.seed))
+            if number is None:
+                damaged += 1
+            else:
+                size = _size_of_cells(line)
+                self.remember(number, self.end - size, size)
+        if rows and first is None and not self.count:
+            raise InputError(
+                f"{self.path}: its first line is damaged, or of another version, and none of its {rows} rows are of this "
+                "study as it is now; choose another folder with --out, or start over with --fresh"
+            )
+        if not self.count:
+            self.forget()
+        return damaged
+
+    def _number(self, body: bytes | None) -> int | None:
+        """Return the number of the run whose row ``body`` is; None where it is no row of this table."""
+        match = _NUMBER.match(body or b"")
+        if body is None or not match or int(match[1]) >= self.runs:
+            return None
+        try:
+            (cells,) = csv.reader([body.decode()], strict=True)
+        except (csv.Error, UnicodeDecodeError, ValueError):
+            return None
+        return int(match[1]) if len(cells) == len(self.columns) + 1 else None
+
+    def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
+        """Report what has changed since a journal with another first line, unless it has no rows."""
+        seed = zlib.crc32(first)
+        rows = sum(_unsealed(line, seed) is not None for _, line in lines)
+        self.forget()
+        if not rows:
+            return
+        head = first.decode(errors="replace").partition(",")[0]
+        digests = dict(part.partition(":")[::2] for part in head.split())
+        changed = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
+        raise InputError(
+            f"{self.path}: holds {rows} finished runs, but something has changed since ({', '.join(changed)}); "
+            f"{self.remedy}"
+        )
+
+
 class Journal:
     """Rows of an unfinished table, in a file beside it, each saved once its run is finished.
 
@@ -62,6 +161,8 @@ class Journal:
         The file, such as ``peaks.csv.part``; its folder is made.
     columns : sequence of str
         Columns of the table.
+    beside : sequence of str
+        Names of cells that stay with the row of a run until the table is written, and are not part of it: texts without commas.
     digest : mapping of str to str
         What the rows depend on, in plural words, each with its digest: ``{"cases": "5f1c…", "motions": "09ab…"}``.
     fresh : bool
@@ -80,26 +181,15 @@ class Journal:
 
     def __init__(
         self, path: Path, columns: Sequence[str], digest: Mapping[str, str], fresh: bool = False, *,
-        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None,
+        runs: int = MOST_RUNS, tell: Callable[[str], object] | None = None, beside: Sequence[str] = (),
     ) -> None:  # fmt: skip
         self.path = path
-        self.columns = list(columns)
-        self.digest = dict(digest)
-        self.runs = runs
+        self.columns, self.beside = [*columns, *beside], list(beside)
         self._fresh = fresh
         self._tell = tell or (lambda _: None)
-        said = " ".join(f"{name}:{value}" for name, value in digest.items())
-        self._first = _encoded(csv_line([said, *self.columns]))[:-1]
-        self._seed = zlib.crc32(self._first)
-        self._forget()
+        remedy = "undo that to continue, choose another folder with --out, or start over with --fresh"
+        self._rows = _Rows(path, self.columns, digest, runs, remedy)
         self._written = False
-        self._remedy = "undo that to continue, choose another folder with --out, or start over with --fresh"
-
-    def _forget(self) -> None:
-        self._starts, self._sizes = array("q"), array("q")  # of each row [bytes], by the number of its run
-        self._count = 0
-        self._head = 0  # bytes of the first line
-        self._end = 0
 
     def __enter__(self) -> Self:
         with ExitStack() as entered, naming_full_disk(self.path):
@@ -107,16 +197,16 @@ class Journal:
             entered.enter_context(only_writer(self.path.parent))
             if self._fresh:
                 remove(self.path)
-            self._file = opened(self.path, "r+b")
-            entered.callback(lambda: self._file.close())
-            if damaged := self._recover():
-                remark = f"the {self._count} undamaged runs are kept, the others are carried out again"
+            self._rows.file = opened(self.path, "r+b")
+            entered.callback(lambda: self._rows.file.close())
+            if damaged := self._rows.recover():
+                remark = f"the {self._rows.count} undamaged runs are kept, the others are carried out again"
                 self._tell(f"{self.path}: {_damaged(damaged)}; {remark}")
                 self._write_whole_rows_only()
-            self._file.truncate(self._end)
-            if self._end == 0:
-                self._append(_sealed(self._first))
-                self._head = self._end
+            self._rows.file.truncate(self._rows.end)
+            if self._rows.end == 0:
+                self._append(_sealed(self._rows.first))
+                self._rows.head = self._rows.end
             self._opened = entered.pop_all()
         self._process = os.getpid()
         return self
@@ -125,28 +215,35 @@ class Journal:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         with self._opened:
-            empty = os.fstat(self._file.fileno()).st_size <= self._head
-            self._file.close()
+            empty = os.fstat(self._rows.file.fileno()).st_size <= self._rows.head
+            self._rows.file.close()
             if os.getpid() == self._process and (empty or (self._written and kind is None)):
                 remove(self.path)
 
     def __len__(self) -> int:
         """Return the number of finished runs."""
-        return self._count
+        return self._rows.count
 
     def __contains__(self, number: object) -> bool:
-        return isinstance(number, int) and 0 <= number < len(self._starts) and self._starts[number] != ABSENT
+        return number in self._rows
 
     def __iter__(self) -> Iterator[int]:
         """Yield the numbers of the finished runs, from the lowest."""
-        return (number for number, start in enumerate(self._starts) if start != ABSENT)
+        return iter(self._rows)
 
     def __getitem__(self, number: int) -> dict[str, str]:
         """Return the cells of a finished run, as the table will have them: texts, "" where a column does not apply."""
         if number not in self:
             raise KeyError(number)
-        (cells,) = csv.reader(io.StringIO(self._row(number).decode(), newline=""))
+        (cells,) = csv.reader(io.StringIO(self._rows.row(number).decode(), newline=""))
         return dict(zip(self.columns, map(csv_plain, cells), strict=True))
+
+    def cells_beside(self, number: int) -> dict[str, str]:
+        """Return the cells beside the row of a run by their names; none of a run that is not finished here."""
+        if not self.beside or number not in self:
+            return {}
+        cells = self._rows.row(number).rstrip(b"\n").decode().rsplit(",", len(self.beside))[1:]
+        return dict(zip(self.beside, cells, strict=True))
 
     def rows(self) -> Iterator[tuple[int, dict[str, str]]]:
         """Yield number and cells of every finished run, from the lowest number."""
@@ -165,17 +262,17 @@ class Journal:
 
         Raises ``InputError`` if it is of another digest, or if the same run has another row there.
         """
-        source = Journal(path, self.columns, self.digest, runs=self.runs)
-        source._remedy = "undo that, or have its share run again"
-        with opened(path) as source._file:
-            if damaged := source._recover():
+        mine = self._rows
+        source = _Rows(path, mine.columns, mine.digest, mine.runs, "undo that, or have its share run again")
+        with opened(path) as source.file:
+            if damaged := source.recover():
                 self._tell(f"{path}: {_damaged(damaged)}; they are skipped")
             for number in source:
-                if number in self and source._row(number) != self._row(number):
+                if number in mine and source.row(number) != mine.row(number):
                     raise InputError(f"{path}: run {number} differs from the same run in another folder; leave one out")
-            missing = [number for number in source if number not in self]
+            missing = [number for number in source if number not in mine]
             for first in range(0, len(missing), ROWS_AT_ONCE):
-                self._add((number, source._row(number)) for number in missing[first : first + ROWS_AT_ONCE])
+                self._add((number, source.row(number)) for number in missing[first : first + ROWS_AT_ONCE])
 
     def write_in_order(self, path: Path, extra_rows: Iterable[Mapping[str, Any]] = ()) -> Written:
         """Write the table, whole or not at all: finished runs by their numbers, then rows that belong to no run.
@@ -192,114 +289,50 @@ class Journal:
         return Written(rows, digest.hexdigest())
 
     def _lines_in_order(self, extra_rows: Iterable[Mapping[str, Any]]) -> Iterator[bytes]:
-        yield _encoded(csv_line(self.columns))
-        with os.fdopen(os.dup(self._file.fileno()), "rb", BUFFER) as buffered:
+        yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
+        with os.fdopen(os.dup(self._rows.file.fileno()), "rb", BUFFER) as buffered:
             for number in self:
-                buffered.seek(self._starts[number])
-                yield _unfolded(buffered.read(self._sizes[number]))
+                buffered.seek(self._rows.starts[number])
+                yield self._without_beside(_unfolded(buffered.read(self._rows.sizes[number])))
         for row in extra_rows:
-            yield from self._lines(1, {name: [cell] for name, cell in row.items()})
+            yield from map(self._without_beside, self._lines(1, {name: [cell] for name, cell in row.items()}))
+
+    def _without_beside(self, line: bytes) -> bytes:
+        return line.rsplit(b",", len(self.beside))[0] + b"\n" if self.beside else line
 
     def _lines(self, rows: int, columns: Mapping[str, Sequence[Any]]) -> Iterator[bytes]:
         empty = [None] * rows
         return (_encoded(f"{line}\n") for line in csv_lines([columns.get(name, empty) for name in self.columns]))
 
-    def _row(self, number: int) -> bytes:
-        self._file.seek(self._starts[number])
-        return _unfolded(self._file.read(self._sizes[number]))
-
     def _add(self, rows: Iterable[tuple[int, bytes]]) -> None:
         block = bytearray()
         places = []
         for number, row in rows:
-            line = _sealed(b"%d," % number + row[:-1], self._seed)
+            line = _sealed(b"%d," % number + row[:-1], self._rows.seed)
             block += line
             size = _size_of_cells(line)
-            places.append((number, self._end + len(block) - size, size))
+            places.append((number, self._rows.end + len(block) - size, size))
         self._append(block)
         for place in places:
-            self._remember(*place)
+            self._rows.remember(*place)
 
     def _append(self, block: bytes | bytearray) -> None:
-        with naming_full_disk(self.path, f"the {self._count} rows that are finished are kept"):
-            self._file.seek(self._end)
+        with naming_full_disk(self.path, f"the {self._rows.count} rows that are finished are kept"):
+            self._rows.file.seek(self._rows.end)
             rest = memoryview(block)
             while rest:  # of a disk that is almost full, a write may take a part
-                rest = rest[self._file.write(rest) :]
-            os.fsync(self._file.fileno())
-        self._end += len(block)
-
-    def _remember(self, number: int, start: int, size: int) -> None:
-        missing = number + 1 - len(self._starts)
-        self._starts.extend([ABSENT] * missing)
-        self._sizes.extend([0] * missing)
-        self._count += self._starts[number] == ABSENT
-        self._starts[number], self._sizes[number] = start, size
-
-    def _recover(self) -> int:
-        """Find the rows that an earlier process has finished; return how many lines are damaged.
-
-        Raises ``InputError`` for rows of another study, or if nothing says of which study they are.
-        """
-        self._forget()
-        lines = _whole_lines(self._file)
-        self._head, line = next(lines, (0, b""))
-        first = _unsealed(line)
-        if first not in (None, self._first):
-            self._refuse_rows_of(first, lines)
-            return 0
-        damaged, rows, self._end = int(self._head > 0 and first is None), 0, self._head
-        for self._end, line in lines:
-            rows += 1
-            number = self._number(_unsealed(line, self._seed))
-            if number is None:
-                damaged += 1
-            else:
-                size = _size_of_cells(line)
-                self._remember(number, self._end - size, size)
-        if rows and first is None and not self._count:
-            raise InputError(
-                f"{self.path}: its first line is damaged, or of another version, and none of its {rows} rows are of this "
-                "study as it is now; choose another folder with --out, or start over with --fresh"
-            )
-        if not self._count:
-            self._forget()
-        return damaged
-
-    def _number(self, body: bytes | None) -> int | None:
-        """Return the number of the run whose row ``body`` is; None where it is no row of this table."""
-        match = _NUMBER.match(body or b"")
-        if body is None or not match or int(match[1]) >= self.runs:
-            return None
-        try:
-            (cells,) = csv.reader([body.decode()], strict=True)
-        except (csv.Error, UnicodeDecodeError, ValueError):
-            return None
-        return int(match[1]) if len(cells) == len(self.columns) + 1 else None
+                rest = rest[self._rows.file.write(rest) :]
+            os.fsync(self._rows.file.fileno())
+        self._rows.end += len(block)
 
     def _write_whole_rows_only(self) -> None:
         """Drop damaged lines, so that they are reported once."""
         with replacing(self.path) as temporary, temporary.open("wb") as file:
-            file.write(_sealed(self._first))
-            file.writelines(_sealed(b"%d," % number + self._row(number)[:-1], self._seed) for number in self)
-        self._file.close()
-        self._file = opened(self.path, "r+b")
-        self._recover()
-
-    def _refuse_rows_of(self, first: bytes, lines: Iterator[tuple[int, bytes]]) -> None:
-        """Report what has changed since a journal with another first line, unless it has no rows."""
-        seed = zlib.crc32(first)
-        rows = sum(_unsealed(line, seed) is not None for _, line in lines)
-        self._forget()
-        if not rows:
-            return
-        head = first.decode(errors="replace").partition(",")[0]
-        digests = dict(part.partition(":")[::2] for part in head.split())
-        changed = [name for name, digest in self.digest.items() if digests.get(name) != digest] or ["columns"]
-        raise InputError(
-            f"{self.path}: holds {rows} finished runs, but something has changed since ({', '.join(changed)}); "
-            f"{self._remedy}"
-        )
+            file.write(_sealed(self._rows.first))
+            file.writelines(_sealed(b"%d," % number + self._rows.row(number)[:-1], self._rows.seed) for number in self)
+        self._rows.file.close()
+        self._rows.file = opened(self.path, "r+b")
+        self._rows.recover()
 
 
 _NUMBER = re.compile(rb"(\d{1,15}),")

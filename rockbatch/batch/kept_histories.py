@@ -1,21 +1,23 @@
 """Histories kept beside the peaks: their runs are repeated and recorded."""
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from rockbatch.batch.listening import Advance, silent
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import simulations
-from rockbatch.batch.repeated import repeated
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.response import Response
 from rockbatch.results.columns import StudyRun
-from rockbatch.results.histories_file import FORCES, HISTORIES, LEDGER, has_value, history_bytes, write
+from rockbatch.results.histories_file import HISTORIES, has_value, history_bytes, write
 from rockbatch.results.reading import Saved
 from rockbatch.simulation.histories import histories
-from rockbatch.simulation.response import Response
+from rockbatch.simulation.recording import recorded
 from rockbatch.study import Study
 
 
@@ -44,7 +46,7 @@ def keep_histories(
             try:
                 yield _response(study, runs[number], table.iloc[number])
             except InputError as error:
-                too_long.extend(error.problems)
+                too_long.extend(error.messages)
             progress(1)
 
     write(path, responses(), saved.info)
@@ -104,11 +106,13 @@ def worst(table: "pd.DataFrame", cases: int) -> list[int]:
 
 
 def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
-    case, quiet_s = planned.case, study.numerics.quiet_s
-    (run,) = simulations([planned])
-    outcome = replace(repeated(run, row, quiet_s), status=row["status"], reason=row["reason"])
-    return histories(
-        run, outcome, quiet_s, case.name, case.columns,
-        ledger=has_value(row, LEDGER), forces=has_value(row, FORCES),
-        polarity=planned.polarity, scale=planned.scale,
+    (run,), case = simulations([planned]), planned.case
+    observers = [o for o in observers_of(study.output) if o.column and has_value(row, o.column)]
+    ended = Outcome(
+        row["status"], row["reason"], 0.0, 0.0, int(row["impacts"]), int(row["separations"]), None, row["t_end_s"],
+        int(row["substeps"]),
     )  # fmt: skip
+    recording = recorded(run, ended, study.numerics.quiet_s, any(o.histories_of_steps for o in observers))
+    return histories(
+        recording, row["status"], case.name, case.columns, observers, polarity=planned.polarity, scale=planned.scale
+    )

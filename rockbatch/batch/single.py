@@ -2,25 +2,28 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
+from rockbatch.batch.observers import observers_beside, observers_of
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.motions import Motion
 from rockbatch.motions.plausible import unlikely_samples
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.outcome.response import Response
 from rockbatch.pier import NO_SECTIONS, Base, Pier, problems, unlikely_devices
 from rockbatch.pier.sections import section_heights
 from rockbatch.results import sections as of_sections
+from rockbatch.results import shocks as of_shocks
 from rockbatch.results.columns import StudyRun, as_series, row
-from rockbatch.results.shocks import as_table, shock_rows
 from rockbatch.simulation.error_control import run_to_tolerance
-from rockbatch.simulation.histories import forces_in_sections, histories, rocking_from_lean, with_observed
+from rockbatch.simulation.histories import histories
+from rockbatch.simulation.leaning import with_lean
 from rockbatch.simulation.models import least_substeps
-from rockbatch.simulation.outcome import Outcome
-from rockbatch.simulation.response import Response
+from rockbatch.simulation.observing import Observer, observed
+from rockbatch.simulation.recording import Recording, recorded
 from rockbatch.simulation.runs import Run, run_fixed
-from rockbatch.simulation.shocks import by_shock
 from rockbatch.study import Case, Numerics
 from rockbatch.study.spec import LEAST_NORMAL_SHARE, LEAST_TOLERANCE, Output
 
@@ -109,21 +112,54 @@ def simulate(
     _check(run, numerics, least_normal_share, wait)
     if sections and foundation.bends:
         raise InputError(NO_SECTIONS)
-    heights = section_heights(pier, sections) if sections else ()
-    name, outcome = case or foundation.name, _outcome(run, numerics, wait)
-    response = histories(run, outcome, numerics.quiet_s, name, {}, ledger=ledger, forces=forces, wait=wait)
-    outcome = with_observed(
-        run, outcome, numerics.quiet_s, ledger=ledger, least_normal=least_normal_share if forces else None,
-        error=numerics.substeps is None, least_stroke=Output(devices_work=devices_work).least_stroke, wait=wait,
+    if sections:
+        section_heights(pier, sections)
+    name, outcome, quiet_s = case or foundation.name, _outcome(run, numerics, wait), numerics.quiet_s
+    output = Output(
+        ledger=ledger, forces=forces, least_normal_share=least_normal_share, devices_work=devices_work,
+        sections=sections if isinstance(sections, int) else None,
+        sections_m=() if isinstance(sections, int) else tuple(sections),
     )  # fmt: skip
-    if heights:
-        found = forces_in_sections(run, outcome, numerics.quiet_s, heights, error=numerics.substeps is None, wait=wait)
-        response = replace(response, sections=of_sections.as_table(of_sections.section_rows(pier, found)))
-    if motion.shocks:
-        outcomes = by_shock(run, outcome, numerics.quiet_s, error=numerics.substeps is None, wait=wait)
-        response = replace(response, shocks=as_table(shock_rows(motion, pier, outcomes)))
+    observers = (*observers_of(output), *observers_beside(output, [motion]))
+    kept = HistoriesOfRun(name, observers)
+    (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)
+    response = outcome.tables.get(kept.table) or kept.read(
+        recorded(run, outcome, quiet_s, kept.every_step, wait), outcome
+    )
     finished = StudyRun(motion, "+", 1.0, Case(name, pier, foundation, {}), outcome=outcome)
-    return replace(response, row=as_series(row(finished)))
+    return replace(
+        response,
+        row=as_series(row(finished)),
+        sections=of_sections.as_table(outcome.tables[of_sections.SECTIONS]) if sections else None,
+        shocks=of_shocks.as_table(outcome.tables.get(of_shocks.SHOCKS, ())) if motion.shocks else None,
+    )
+
+
+@dataclass(frozen=True)
+class HistoriesOfRun(Observer):
+    """The histories of a run of a ``case``, with those that other ``observers`` add."""
+
+    case: str
+    observers: tuple[Observer, ...]
+
+    table = "histories"
+
+    @property
+    def every_step(self) -> bool:  # type: ignore[override]
+        """See :class:`Observer`."""
+        return any(observer.histories_of_steps for observer in self.observers)
+
+    def claims_error(self, outcome: Outcome) -> bool:
+        """See :class:`Observer`."""
+        return False
+
+    def read(self, recording: Recording, outcome: Outcome) -> Response:
+        """See :class:`Observer`."""
+        return histories(recording, outcome.status, self.case, {}, self.observers)
+
+    def add(self, run: Run, outcome: Outcome, fine: Response | None, coarse: None) -> Outcome:
+        """See :class:`Observer`."""
+        return outcome if fine is None else outcome.with_table(self.table, fine)
 
 
 def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
@@ -135,14 +171,14 @@ def _outcome(run: Run, numerics: Numerics, wait: bool) -> Outcome:
         outcome = run_fixed(*settings, numerics.substeps, quiet_s, wait=wait)
     if not outcome.was_run:
         raise InputError(f"{run.motion.name}: {outcome.reason}")
-    return rocking_from_lean([run], [outcome], quiet_s, wait=wait)[0]
+    return with_lean([run], [outcome], quiet_s, wait=wait)[0]
 
 
 def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) -> None:
     """Raise ``InputError`` with everything impossible or implausible in a run and its settings."""
     pier, base, motion, substeps = run.pier, run.base, run.motion, numerics.substeps
     tolerance = numerics.tolerance or 0.0
-    wrong = problems(pier, base) or unlikely_devices(pier, base.restraints)
+    wrong: list[Problem | str] = [*(problems(pier, base) or unlikely_devices(pier, base.restraints))]
     wrong += unlikely_samples(motion, pier.gravity)
     if not tolerance >= LEAST_TOLERANCE:
         wrong.append(f"tolerance = {tolerance:g}: must be {LEAST_TOLERANCE:g} or above (on theta_max/alpha)")
@@ -154,5 +190,4 @@ def _check(run: Run, numerics: Numerics, least_normal_share: float, wait: bool) 
         wrong.append(f"substeps = {substeps}: must be a whole number of at least {least} for this pier and motion")
     if not 0.0 < least_normal_share < 1.0:
         wrong.append(f"least_normal_share = {least_normal_share:g}: must be above 0 and below 1, a share of the weight")
-    if wrong:
-        raise InputError(*wrong)
+    refuse(wrong)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
 
-from rockbatch.batch.groups import NOTHING_MORE, Group, groups, outcomes_of
+from rockbatch.batch.groups import Group, groups, outcomes_of
 from rockbatch.common.errors import InputError, starting_threads
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.runs import Stop
-from rockbatch.study import Numerics, Output
+from rockbatch.study import Numerics
 
 AHEAD = 2
 """Groups handed to each thread beforehand, so that none waits."""
@@ -33,7 +34,7 @@ class Engine(Protocol):
     ) -> None: ...
 
     def outcomes(
-        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+        self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
         """Every run with its outcome, group by group, as they finish.
 
@@ -76,7 +77,7 @@ class Threads:
         """Release nothing: threads live as long as a batch."""
 
     def outcomes(
-        self, runs: Sequence[StudyRun], numerics: Numerics, output: Output = NOTHING_MORE
+        self, runs: Sequence[StudyRun], numerics: Numerics, observers: Sequence[Observer] = ()
     ) -> Generator[Group, None, None]:
         """See :class:`Engine`."""
         waiting = groups(runs, numerics, self.jobs)
@@ -87,7 +88,7 @@ class Threads:
             while True:
                 while len(pending) < AHEAD * self.jobs and (group := next(waiting, None)):
                     with starting_threads(", or write --jobs 1" * (self.jobs > 1)):
-                        pending[pool.submit(outcomes_of, group.values(), numerics, output, stop)] = group
+                        pending[pool.submit(outcomes_of, group.values(), numerics, observers, stop)] = group
                 if not pending:
                     return
                 done, _ = wait(pending, return_when=FIRST_COMPLETED)

@@ -5,6 +5,7 @@ from contextlib import nullcontext
 from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener, silent
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Runs
 from rockbatch.batch.threads import Engine
 from rockbatch.common.lazy import pd
@@ -31,6 +32,12 @@ class Waves:
         pending = sum(number not in self.journal for number in range(first, self.finished))
         with self.listener.progress(pending) if pending else nullcontext(silent) as progress:
             execute_runs(
-                runs, self.study.numerics, self.journal, self.engine, self.study.output, first=first, progress=progress
+                runs,
+                self.study.numerics,
+                self.journal,
+                self.engine,
+                observers_of(self.study.output),
+                first=first,
+                progress=progress,
             )
         return as_table((read_cells(self.journal[number]) for number in range(first, self.finished)), self.study)

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.omissions import open_landings
-from rockbatch.common.notes import CHAOTIC, OVERTURNS
+from rockbatch.checks.omissions import omissions, open_landings
+from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.demands import Demand
+from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import Values
-from rockbatch.results.rows import NOT_RUN
-from rockbatch.study.rules import USUAL, Rule
 
 SCATTER = 2.0
 """Factor within which a chaotic result is known: of 41, motions 10⁻⁸ stronger or weaker moved five further (THEORY.md)."""
@@ -32,13 +32,29 @@ class Bounds(NamedTuple):
     estimated: bool
 
 
+class Demanded(NamedTuple):
+    """The demand of a rule in the n runs of a case.
+
+    ``bounds`` of every run, and whether it is ``counting`` at all; the ``own`` demand by the spring law of the case, and
+    ``by_other`` that by the other law, NaN if that did not go through and None if it was not run; ``chaotic`` runs; and what
+    the demand leaves out in runs that count (``omitted``), by the names of :data:`rockbatch.checks.omissions.OMISSIONS`.
+    """
+
+    bounds: Bounds
+    counting: npt.NDArray[np.bool_]
+    own: Values
+    by_other: Values | None
+    chaotic: npt.NDArray[np.bool_]
+    omitted: list[str]
+
+
 _COMBINED: dict[str, Callable[[Values, Values], Values]] = {
     "greater": np.maximum, "srss": np.hypot, "100_30": lambda x, y: np.maximum(x + 0.3 * y, 0.3 * x + y),
 }  # fmt: skip
 
 
 def on_both_axes(axes: Sequence[Bounds], how: str) -> Bounds:
-    """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.study.rules.BOTH_AXES`.
+    """Return the demands of runs on one or both axes of a pier, combined by ``how`` of :data:`rockbatch.checks.rules.BOTH_AXES`.
 
     Every way grows with both demands, so that bounds combine to bounds.
     """
@@ -79,28 +95,30 @@ def lacking(counting: npt.NDArray[np.bool_], counted_as: Texts) -> dict[str, tup
     return {name: (remaining[name], n) for name, n in expected.items() if 0 < remaining[name] < n}
 
 
-def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.bool_]]:
-    """Return the bounds of every run, and True for those that count at all."""
+def of_runs(rule: Rule, runs: Rows, case: Case) -> Demanded:
+    """Return the demand of a rule in the runs of a case, with its bounds and what is remarkable about it."""
     demand = DEMANDS[rule.demand]
     value, error = demand.evaluate(runs, case)
     status = runs.texts("status")
-    counting = np.ones(len(runs), dtype=bool)
+    counting, own = np.ones(len(runs), dtype=bool), value
     if demand.event:
-        open_ = noted(runs, OVERTURNS) & (rule.demand == "overturned")
+        open_ = runs.facts("may_overturn") & (rule.demand == "overturned")
         if rule.demand != "failed":  # what a run that was cut short would have come to is open
             open_ |= (status == "failed") | (status == "flight")
-        return Bounds(value, value, np.where(open_, 1.0, value), False), counting
+        bounds = Bounds(value, value, np.where(open_, 1.0, value), False)
+        return Demanded(bounds, counting, own, None, np.zeros(len(runs), dtype=bool), [])
 
     estimated = bool(np.isfinite(error).any())
-    margin, wild = np.nan_to_num(error), chaotic(rule, runs, error)
+    margin, wild = np.nan_to_num(error), _chaotic(demand, runs, error)
     low = np.where(wild, value / SCATTER, np.maximum(value - margin, 0.0))
     high = np.where(wild, value * SCATTER, value + margin)
-    by_other = by_other_law(rule, runs, case)
-    if by_other is not None:  # the worse counts
+    by_other = None
+    if demand.other_law and OTHER_LAW in runs and creeps(case):  # the worse counts
+        by_other = demand.other_law(runs, case)
         high = np.where(np.isnan(by_other) & rule.other_law, np.inf, np.fmax(high, by_other))
         value, low = (np.where(np.isnan(value), np.nan, np.fmax(bound, by_other)) for bound in (value, low))
     if rule.counts("overturned") == "infinite":
-        high = np.where(noted(runs, OVERTURNS), np.inf, high)
+        high = np.where(runs.facts("may_overturn"), np.inf, high)
     unknown = open_landings(demand, runs, case) & np.isfinite(value)
     for name in USUAL:
         ended, kind = status == name, rule.counts(name)
@@ -122,32 +140,27 @@ def of_runs(rule: Rule, runs: Rows, case: Case) -> tuple[Bounds, npt.NDArray[np.
     value, high = np.where(unknown, low, value), np.where(unknown, np.inf, high)
     if demand.landing and bends(case):
         low, high = np.where(np.isfinite(low), 0.0, low), np.full(len(runs), np.inf)
-    return Bounds(value, low, high, estimated), counting
+    omitted = omissions(demand, runs.where(counting), case)
+    return Demanded(Bounds(value, low, high, estimated), counting, own, by_other, wild, omitted)
 
 
-def chaotic(rule: Rule, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak."""
-    of_peak = np.isnan(runs.numbers("theta_max_error")) | DEMANDS[rule.demand].residual
-    return np.isnan(error) & of_peak & noted(runs, CHAOTIC)
+def _chaotic(demand: Demand, runs: Rows, error: Values) -> npt.NDArray[np.bool_]:
+    """Return True for each run whose demand is chaotic, shape (n,): its ``error`` is withdrawn, or that of the peak.
 
-
-def noted(runs: Rows, words: str) -> npt.NDArray[np.bool_]:
-    """Return True for each run whose note has these words, shape (n,)."""
-    return np.array([words in note for note in runs.texts("note")], dtype=bool)
-
-
-def by_other_law(rule: Rule, runs: Rows, case: Case) -> Values | None:
-    """Return values by the other spring law, shape (n,), NaN if it did not go through; None if it was not run."""
-    other_law = DEMANDS[rule.demand].other_law
-    return other_law(runs, case) if other_law and OTHER_LAW in runs and creeps(case) else None
+    An earlier version did not write the column: a run that ended well, and claims no error beside others that do, counts as such.
+    """
+    of_peak, ended_well = runs.numbers("theta_max_error"), np.isin(runs.texts("status"), ("ok", "flight"))
+    withheld = np.isnan(of_peak) & ended_well & bool(np.isfinite(of_peak).any())
+    chaotic = np.where(np.isnan(runs.numbers("chaotic")), withheld, runs.facts("chaotic"))
+    return np.isnan(error) & (np.isnan(of_peak) | demand.residual) & chaotic
 
 
 def counted(rule: Rule, suites: Iterable[Rows]) -> str:
     """Return the number of runs that did not go through, and how they count: "1 overturned (infinite), 2 flight (unknown)"."""
     numbers = Counter(
-        NOT_RUN if reason == NOT_RUN else status
+        NOT_RUN if missing else status
         for runs in suites
-        for status, reason in zip(runs.texts("status"), runs.texts("reason"), strict=True)
+        for status, missing in zip(runs.texts("status"), runs.missing, strict=True)
     )
     parts = []
     for name in (*USUAL, NOT_RUN):

@@ -9,7 +9,7 @@ import numpy as np
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case, of_pier
-from rockbatch.results.rows import NOT_RUN, rows_of_cases
+from rockbatch.quantities.rows import NOT_RUN, rows_of_cases
 
 ENDED = {"overturned": "overturned", "flight": "ended by flight", "failed": "failed", NOT_RUN: NOT_RUN}
 """Words for runs that do not end standing."""

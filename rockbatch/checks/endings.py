@@ -11,13 +11,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.checks.bounds import noted
+from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, NOT_DECIDED, PASS, Verdict
-from rockbatch.common.notes import OVERTURNS
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.results.rows import counts_as
-from rockbatch.study.rules import Rule
+from rockbatch.quantities.rows import counts_as
 
 
 class Ending(NamedTuple):
@@ -66,7 +64,7 @@ def left_open(judged: Sequence[tuple[Rule, Verdict]], suites: Sequence[Rows]) ->
 def _ended(suite: Rows, ending: str) -> npt.NDArray[np.bool_]:
     """Return True for each run that ended so, shape (n,)."""
     status = suite.texts("status")
-    return noted(suite, OVERTURNS) & (status != "overturned") if ending == MAY_OVERTURN else status == ending
+    return suite.facts("may_overturn") & (status != "overturned") if ending == MAY_OVERTURN else status == ending
 
 
 def _allowed(event: str, rules: Sequence[Rule]) -> bool:

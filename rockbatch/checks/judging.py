@@ -7,37 +7,33 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from rockbatch.checks.bounds import (
     SCATTER,
     Bounds,
-    by_other_law,
+    Demanded,
     by_record,
-    chaotic,
     counted,
     governing,
     lacking,
-    noted,
     of_runs,
     on_both_axes,
 )
 from rockbatch.checks.endings import left_open
 from rockbatch.checks.events import OfEvent, largest_event
-from rockbatch.checks.omissions import OMISSIONS, omissions
+from rockbatch.checks.omissions import OMISSIONS
+from rockbatch.checks.rule_choices import FAR, chooses, has_section, limit_key, unmet
+from rockbatch.checks.rules import Rule
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.common.showing import shown
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, creeps, has_device, of_pier
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS, OTHER_LAW
+from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.quantities.rows import complete, counts_as, rows_of_cases, simulated, with_case
 from rockbatch.quantities.statistics import STATISTICS, Values
-from rockbatch.results.rows import complete, counts_as, rows_of_cases, simulated, with_case
-from rockbatch.results.sections import MEANING as OF_SECTIONS
-from rockbatch.study.rule_choices import FAR, chooses, has_section, limit_key, unmet
-from rockbatch.study.rules import Rule
 
 MOST_NAMES = 5
 
@@ -76,7 +72,7 @@ def judge(
         Names of all horizontal components, each with its station, empty if it is not known; a run that is missing counts as
         failed. By default those in ``peaks``, with its column ``station``.
     count : str
-        How those rules count that do not say it, one of :data:`rockbatch.study.rules.COUNTS`; a code's statistic counts stations.
+        How those rules count that do not say it, one of :data:`rockbatch.checks.rules.COUNTS`; a code counts stations.
     sections : DataFrame, optional
         Rows of sections.csv, for rules about a section.
     events : mapping, optional
@@ -141,7 +137,7 @@ def at_section(runs: "pd.DataFrame", sections: "pd.DataFrame", rule: Rule) -> Ro
 
 
 def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events: Mapping[str, str]) -> Verdict:
-    demand, case = DEMANDS[rule.demand], axes[0].case
+    demand, case, absent = DEMANDS[rule.demand], axes[0].case, [_absent(rule, axis) for axis in axes]
     unknown: dict[str, Any] = dict.fromkeys(("value", "low", "high", "ratio", "margin"), math.nan)
     of_suite: dict[str, Any] = {"statistic": "", "runs": 0, "counted": "", "count": ""}
     if not demand.per_case:
@@ -149,7 +145,6 @@ def _verdict(rule: Rule, axes: Sequence[Axis], scale: float, count: str, events:
         statistic, number = rule.statistic or "max", sum(map(len, suites))
         count = "station" if STATISTICS[statistic].code else count
         of_suite = {"statistic": statistic, "runs": number, "counted": counted(rule, suites), "count": count}
-    absent = [_absent(rule, axis) for axis in axes]
     height = demand.height(case) if demand.height else rule.at_m
     applying = [axis for axis, reason in zip(axes, absent, strict=True) if not reason]
     none = Verdict(
@@ -222,8 +217,8 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     """Return the verdict on a statistic of a suite, on one or both axes; ``none`` is the verdict without its numbers."""
     suite = axes[0].suite
     of_axes = [of_runs(rule, axis.suite, axis.case) for axis in axes]
-    runs = on_both_axes([bounds for bounds, _ in of_axes], rule.both_axes or "greater")
-    counting = np.logical_and.reduce([counts for _, counts in of_axes])
+    runs = on_both_axes([its.bounds for its in of_axes], rule.both_axes or "greater")
+    counting = np.logical_and.reduce([its.counting for its in of_axes])
     counted_as, unknown = counts_as(suite, none.count)
     bounds = by_record(runs, counting, counted_as)
     n = len(bounds.value)
@@ -234,21 +229,22 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     statistic = STATISTICS[none.statistic]
     of_event = largest_event(suite.texts("record")[counting], counted_as[counting], events) if statistic.code else None
     verdict, few = _decide(rule, low, high, _unmet(rule, count, n, of_event))
-    omitted = [name for name in _omitted(rule, axes, of_axes) if verdict != PASS or OMISSIONS[name].decides]
+    left_out = {name for its in of_axes for name in its.omitted if verdict != PASS or OMISSIONS[name].decides}
+    omitted = [name for name in OMISSIONS if name in left_out]
     open_by = math.isinf(high) and not all(OMISSIONS[name].decides for name in omitted)
     deciding = governing(runs, counting, by_bound=verdict == NOT_DECIDED and low <= rule.limit < high)
     notes = [
         few or ("" if verdict != NOT_DECIDED or open_by else _between(low, high)),
         *(OMISSIONS[name].remark for name in omitted),
         _far(rule, value) if verdict == PASS else "",
-        _on_each([bounds for bounds, _ in of_axes], axes, deciding),
+        _on_each([its.bounds for its in of_axes], axes, deciding),
         statistic.remark(bounds.high) if statistic.remark and n else "",
         unknown,
         of_event.in_words if of_event else "",
         "" if none.count == "component" else _directions(lacking(counting, counted_as)),
-        *dict.fromkeys(_laws(rule, axis.suite, axis.case, deciding) for axis in axes),
+        *dict.fromkeys(_laws(its, axis.suite, deciding) for its, axis in zip(of_axes, axes, strict=True)),
         "" if bounds.estimated or DEMANDS[rule.demand].event else "no error estimate",
-        *dict.fromkeys(_chaotic(rule, axis.suite, axis.case) for axis in axes),
+        *dict.fromkeys(_chaotic(int(its.chaotic.sum())) for its in of_axes),
     ]
     run: dict[str, Any] = {}
     if deciding is not None:
@@ -266,16 +262,6 @@ def _of_suite(rule: Rule, axes: Sequence[Axis], none: Verdict, events: Mapping[s
     )
 
 
-def _omitted(rule: Rule, axes: Sequence[Axis], of_axes: Sequence[tuple[Bounds, npt.NDArray[np.bool_]]]) -> list[str]:
-    """Return what the demand leaves out in runs that count, on any axis, the gravest first."""
-    every = {
-        name
-        for axis, (_, counts) in zip(axes, of_axes, strict=True)
-        for name in omissions(DEMANDS[rule.demand], axis.suite.where(counts), axis.case)
-    }
-    return [name for name in OMISSIONS if name in every]
-
-
 def _on_each(bounds: Sequence[Bounds], axes: Sequence[Axis], deciding: int | None) -> str:
     """Return the demand of the run that governs on each of two axes; empty on one."""
     if len(axes) == 1 or deciding is None:
@@ -291,28 +277,24 @@ def _far(rule: Rule, value: float) -> str:
     return f"{value:.4g} is below {1 / FAR:g} of the limit; check its unit, or write confirm = [{shown(key)}]"
 
 
-def _laws(rule: Rule, suite: Rows, case: Case, deciding: int | None) -> str:
+def _laws(demanded: Demanded, suite: Rows, deciding: int | None) -> str:
     """Return the remark that the worse of two spring laws counts, with the demands of the run ``deciding`` by both."""
-    by_other = by_other_law(rule, suite, case)
+    by_other = demanded.by_other
     if by_other is None:
         return ""
     remark = "the worse of two spring laws counts"
     if deciding is not None and np.isfinite(by_other[deciding]):
-        of_case = float(DEMANDS[rule.demand].evaluate(suite, case).value[deciding])
-        remark += f": {of_case:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
+        remark += f": {demanded.own[deciding]:.4g} by that of the case, {by_other[deciding]:.4g} by the other"
     missing = int((np.isnan(by_other) & (suite.texts("status") == "ok")).sum())
     return remark + (f"; by the other {missing} of the runs did not go through" if missing else "")
 
 
-def _chaotic(rule: Rule, suite: Rows, case: Case) -> str:
-    """Return the remark on runs that claim no error because their results are chaotic."""
-    if DEMANDS[rule.demand].event or not noted(suite, CHAOTIC).any():
+def _chaotic(runs: int) -> str:
+    """Return the remark on this number of runs that claim no error because their results are chaotic."""
+    if not runs:
         return ""
-    wild = int(chaotic(rule, suite, DEMANDS[rule.demand].evaluate(suite, case).error).sum())
-    if not wild:
-        return ""
-    runs = "1 run is chaotic, and is" if wild == 1 else f"{wild} runs are chaotic, and are"
-    return f"{runs} known to a factor of {SCATTER:g}"
+    words = "1 run is chaotic, and is" if runs == 1 else f"{runs} runs are chaotic, and are"
+    return f"{words} known to a factor of {SCATTER:g}"
 
 
 def _directions(records: Mapping[str, tuple[int, int]]) -> str:

@@ -14,7 +14,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
-from rockbatch.results.rows import rows_of_cases
+from rockbatch.quantities.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
 """Demands that are the greatest rotation times a length of the case."""

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.checks.omissions import MODES, OMISSIONS
+from rockbatch.checks.rules import COUNTS, is_ban
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_plain, csv_text, legible, opened_text, write_whole
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.study.rules import COUNTS, is_ban
 
 PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY = "pass", "fail", "not decided", "does not apply"
 CHECKS = "checks.csv"
@@ -62,7 +62,7 @@ class Verdict:
     note : str
         Reason of an undecided verdict, and remarks.
     count : str
-        The way to count records, one of :data:`rockbatch.study.rules.COUNTS`; empty for a demand of the case.
+        The way to count records, one of :data:`rockbatch.checks.rules.COUNTS`; empty for a demand of the case.
     unit : str
         Of value, bounds, limit and margin; empty for a pure number.
     station, record, polarity : str

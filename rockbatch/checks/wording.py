@@ -4,11 +4,11 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from rockbatch.checks.rules import BOTH_AXES, EITHER, LESSER
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, MEAN_OVER_TARGET, NOT_DECIDED, PASS, Verdict
 from rockbatch.common.grouping import grouped
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.study.rules import BOTH_AXES, EITHER, LESSER
 
 WAYS = (PASS, FAIL, NOT_DECIDED, DOES_NOT_APPLY)
 SIGNS = {PASS: "✓", FAIL: "✗", NOT_DECIDED: "?", DOES_NOT_APPLY: "–"}

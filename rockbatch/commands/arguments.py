@@ -126,8 +126,8 @@ class _Demands(argparse.Action):
     """Lists what checks may ask for."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
-        from rockbatch.commands.streams import filled, show
         from rockbatch.quantities.catalogue import listed
+        from rockbatch.terminal.streams import filled, show
 
         for group, names in listed().items():
             show(filled(f"{group}: {', '.join(names)}"))
@@ -206,7 +206,7 @@ COMMANDS = {
             "--all": flag("unfold every section, so that all of them are printed"),
         },
     ),
-    **{name: _of_analysis(name, door) for name, door in doors().items()},
+    **{name: _of_analysis(name, door) for name, door in doors().items() if door.help},
     "cache": Command(
         "show where compiled kernels are kept, or remove them", "rockbatch cache --clear", "commands.cache.main",
         {"--clear": flag("remove all of them: the next run of each kind of pier compiles its own again")},

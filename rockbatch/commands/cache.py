@@ -4,8 +4,8 @@ import argparse
 import time
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.streams import show
 from rockbatch.simulation import kept
+from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace) -> int:

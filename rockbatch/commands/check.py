@@ -8,21 +8,21 @@ from pathlib import Path
 
 from rockbatch.checks import Verdict, wording, write_verdicts
 from rockbatch.checks.answer import answer
-from rockbatch.checks.checking import verdicts
 from rockbatch.checks.coverage import CaseRuns, runs_of_cases, stations_of
 from rockbatch.checks.remarks import pulled_supports, undamped_settlement, weak_supports
 from rockbatch.checks.responses import worst_of_cases
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, NOT_DECIDED, PASS
 from rockbatch.checks.wording import SIGNS, Notes
 from rockbatch.commands import scorecard
-from rockbatch.commands.streams import aligned, coloured, filled, say, show, shown, width
-from rockbatch.commands.summary import named
 from rockbatch.common.files import is_plain
 from rockbatch.reporting import report as make_report
 from rockbatch.reporting import write_report
+from rockbatch.results.checking import verdicts
 from rockbatch.results.labelled import labelled
 from rockbatch.results.opened import open_results
 from rockbatch.results.reading import Saved
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import aligned, coloured, filled, say, show, shown, width
 
 WORST = 10
 """Number of verdicts printed in full if there are too many to print all."""

@@ -12,11 +12,11 @@ from typing import Any, NoReturn
 
 from rockbatch.commands.arguments import COMMANDS, DISCARDING
 from rockbatch.commands.interrupts import answered_interrupts
-from rockbatch.commands.streams import is_lost, open_missing, say
 from rockbatch.common.errors import InputError, PlainRemark
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
-from rockbatch.common.version import __version__
+from rockbatch.common.version import full_version
+from rockbatch.terminal.streams import is_lost, open_missing, say
 
 _COMMANDS_MEANT = {word: name for name, words in {
     "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",
@@ -53,6 +53,14 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}{more}\n")
 
 
+class _Version(argparse.Action):
+    """Prints the version, for which a checkout asks Git, when it is called."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
+        print(f"rockbatch {full_version()}")
+        parser.exit()
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     commands = "\n".join(f"  {name:<13}{command.help}" for name, command in COMMANDS.items())
@@ -64,7 +72,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=f"commands:\n{commands}\n\n{first}\n\n{EXIT_CODES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    root.add_argument("--version", action="version", version=f"rockbatch {__version__}")
+    root.add_argument("--version", action=_Version, nargs=0)
     subparsers = root.add_subparsers(dest="command", metavar="COMMAND", prog="rockbatch", help=argparse.SUPPRESS)
     for name, command in COMMANDS.items():
         command.add_to(subparsers, name, EXIT_CODES)
@@ -129,7 +137,7 @@ def _exit_code(parsed: argparse.Namespace) -> int:
             warnings.showwarning = _plainly(warnings.showwarning)
             return COMMANDS[parsed.command].run_command(parsed)
     except InputError as error:
-        for problem in error.problems:
+        for problem in error.messages:
             say(f"rockbatch: {problem}")
         return 2
     except OSError as error:

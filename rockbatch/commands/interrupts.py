@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-from rockbatch.commands.streams import say
+from rockbatch.terminal.streams import say
 
 QUICK_S = 0.2
 """Time [s] within which a command ends without a word on it."""

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.batch.listening import count
-from rockbatch.commands.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.common.grouping import distinct, grouped
@@ -16,6 +15,7 @@ from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
 from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
+from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
 _SHOWN = {  # heads of the table in the terminal, and how their numbers are written
     "record": ("record", ""),
@@ -87,7 +87,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.csv:
         _write(arguments.csv, suite)
     if arguments.html:
-        from rockbatch.reporting.records import write_records
+        from rockbatch.workflow.records import write_records
 
         write_records(arguments.html, suite, f"Records in {', '.join(map(str, arguments.path))}", counts(suite))
     if arguments.all:

@@ -4,20 +4,19 @@ import argparse
 import sys
 
 from rockbatch.batch.expecting import expected
-from rockbatch.batch.finishing import FinishedBatch
 from rockbatch.batch.listening import count
-from rockbatch.batch.running import merge, run_into
 from rockbatch.batch.threads import cores
 from rockbatch.checks.verdicts import CHECKS
 from rockbatch.commands import check
-from rockbatch.commands.messages import Terminal
-from rockbatch.commands.options import engine, folder
-from rockbatch.commands.streams import say, show
 from rockbatch.commands.summary import failed_later, flexible, of_targets, summary, warnings
+from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.beside_peaks import write_semicolons
-from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.suite_statistics import reasons_of_failure
 from rockbatch.study import Study
+from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.options import engine, folder
+from rockbatch.terminal.streams import say, show
+from rockbatch.workflow.running import FinishedBatch, merge, run_into
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:

@@ -9,12 +9,12 @@ from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, stand
 from rockbatch.checks.scorecard import MOST_CASES, OPEN_CASES, Cell, scorecard
 from rockbatch.checks.verdicts import DOES_NOT_APPLY, PASS
 from rockbatch.checks.wording import SIGNS
-from rockbatch.commands.streams import in_width, shown
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.cases import Case
+from rockbatch.quantities.rows import rows_of_cases
 from rockbatch.reporting.markup import number
-from rockbatch.results.rows import rows_of_cases
+from rockbatch.terminal.streams import in_width, shown
 
 MOST_COLUMNS = 5
 """Checks that stand though they pass in every case."""

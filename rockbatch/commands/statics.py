@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from rockbatch.checks.remarks import pulled_supports, weak_supports
-from rockbatch.commands.streams import in_width, say, show
-from rockbatch.commands.summary import flexible, named
+from rockbatch.commands.summary import flexible
 from rockbatch.common.files import csv_text, write_output
 from rockbatch.motions import Motion
 from rockbatch.pier.statics import FACTS, Statics, statics
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study, load_study
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import in_width, say, show
 
 MOST_CASES = 12
 """Cases of a study beyond which their curves are not printed."""

@@ -1,18 +1,22 @@
 """The table of Fig. 7 in the terminal: θ_max/α of every record in every case, a block for each pier."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.batch.listening import count
 from rockbatch.checks.suite_target import NAMES
-from rockbatch.commands.streams import in_width
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import LEANS, LINEARISED, RATCHETS, WOULD_SLIDE
+from rockbatch.outcome.outcome import LEANS, Failure
+from rockbatch.pier.laws import steady
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import IN_MOTION, IN_MOTION_ERROR
-from rockbatch.results.rows import with_case
+from rockbatch.quantities.rows import with_case
 from rockbatch.study import PIER_KEYS, Study
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import in_width
 
 MOST_RUNS = 1000
 """Runs of a study beyond which its worst runs are printed instead of all."""
@@ -55,17 +59,18 @@ def _worst(runs: "pd.DataFrame", varied: tuple[str, ...]) -> str:
 def warnings(table: "pd.DataFrame", varied: Sequence[str]) -> list[str]:
     """Return remarks on the runs as a whole, a sentence each."""
 
-    def warning(runs: "pd.Series[bool]", singular: str, plural: str) -> str:
+    def warning(runs: npt.NDArray[np.bool_], singular: str, plural: str) -> str:
         """Return a sentence with the number of these runs, in the singular or the plural; empty for none."""
         n = int(runs.sum())
         return "" if n == 0 else singular if n == 1 else plural.format(n)
 
-    rotate = warning(table["note"].str.contains(LINEARISED), "1 run rotates", "{} runs rotate")
-    lean = warning(table["theta_max_is"] == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
-    slide = warning(table["note"].str.contains(WOULD_SLIDE), "1 run asks", "{} runs ask")
+    runs = Rows(table)
+    rotate = warning(runs.facts("beyond_linearised"), "1 run rotates", "{} runs rotate")
+    lean = warning(runs.texts("theta_max_is") == LEANS, "of 1 run, marked lean, is", "of {} runs, marked lean, is")
+    slide = warning(runs.facts("slides"), "1 run asks", "{} runs ask")
     sentences = [
         _other_law(table, varied),
-        rotate and f'{rotate} further than {LINEARISED} holds; see the column note, and run kinematics = "finite"',
+        rotate and f'{rotate} further than linearised kinematics holds; see the column note, and run kinematics = "finite"',
         lean and (
             f"theta_max/alpha {lean} mostly the lean of a base that has yielded; the column note has the rocking about it, and "
             "with rocking = true under [output] so has a column, for all runs"
@@ -88,11 +93,13 @@ def failed_later(runs: "pd.DataFrame") -> str:
     failed = (runs["status"] == "failed") & runs[IN_MOTION_ERROR].notna()
     if not failed.any():
         return ""
-    ratchet = int(runs.loc[failed, "reason"].str.contains(RATCHETS).sum())
+    ratchet = int((runs.loc[failed, "failure"] == Failure.RATCHETS).sum())
     n, advice = int(failed.sum()), ""
     if ratchet:
         share = "in all of them" if ratchet == n else f"in {ratchet:,}"
-        advice = f'; {share} the springs ratchet on free vibration: take spring = "epp" or "hardening", or zeta of 0.2 or more'
+        advice = (
+            f"; {share} the springs ratchet on free vibration: take spring = {steady('or')}, or zeta of 0.2 or more"
+        )
     return f"{n:,} failed only after the motion: {IN_MOTION} has the peak until then, a lower bound{advice}"
 
 
@@ -144,9 +151,3 @@ def _block(runs: "pd.DataFrame", rows: list[str], case_keys: list[str]) -> str:
     return in_width(
         ["", *cases], [[line, *(of_line.get(case, "") for case in cases)] for line, of_line in cells.items()]
     )
-
-
-def named(keys: Iterable[str], values: Iterable[Any]) -> str:
-    """Return ``beta=40 eta=2.5``, without keys that do not apply."""
-    pairs = [(key, value) for key, value in zip(keys, values, strict=True) if value == value and value != ""]
-    return " ".join(f"{key}={value}" if isinstance(value, str) else f"{key}={value:g}" for key, value in pairs)

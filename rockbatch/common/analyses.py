@@ -27,15 +27,15 @@ class Door:
 
     Functions are named, and loaded when they are used.
 
-    Its command is ``command.main``, its function in Python ``analysis.NAME``, and its sections of the study file, if it has
-    ``tables`` there, are ``study.SECTIONS``.
+    Its command, if ``help`` describes one, is ``command.main``, its function in Python ``analysis.NAME``, and its sections of the
+    study file, if it has ``tables`` there, are ``study.SECTIONS``.
 
     Attributes
     ----------
-    help, example, writes : str
-        Of its command: what it does, a command line that does it, and the files that it leaves, in lines.
     parts : tuple of ReportPart
         Its parts of the report.
+    help, example, writes : str
+        Of its command: what it does, a command line that does it, and the files that it leaves, in lines; empty without one.
     tables : tuple of str
         Names of its tables at the top of the study file.
     options : mapping
@@ -44,10 +44,10 @@ class Door:
         True if its runs are carried out by an engine that the command line may choose.
     """
 
-    help: str
-    example: str
-    writes: str
     parts: tuple[ReportPart, ...]
+    help: str = ""
+    example: str = ""
+    writes: str = ""
     tables: tuple[str, ...] = ()
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     engine: bool = True

@@ -9,7 +9,7 @@ from dataclasses import InitVar
 from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, Union, Unpack, get_args, get_origin, get_type_hints
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import Problem, WrongType, refuse
 
 Door = TypeVar("Door", bound=Callable[..., Any])
 
@@ -44,23 +44,23 @@ def checked(door: Door) -> Door:
     plain = {name: _AS_THEY_ARE.intersection(kinds[name]) for name in kinds}
 
     @functools.wraps(function)
-    def call(*args: object, **kwargs: object) -> object:
-        wrong: list[str] = []
+    def call(*args: Any, **kwargs: Any) -> Any:
+        wrong: list[Problem] = []
 
         def take(name: str, value: object) -> object:
             if name not in kinds or type(value) in plain[name]:
                 return value
             converted = _first_taken(value, kinds[name])
             if converted is _REFUSED:
-                wrong.append(f"{name} = {_shown(value)}: {_message(value, kinds[name])}")
+                text = f"{name} = {_shown(value)}: {_message(value, kinds[name])}"
+                wrong.append(Problem(name, value, text, kind=WrongType, named=False))
             return converted
 
         if keywords is not None and (unknown := kwargs.keys() - parameters.keys() - keywords):
             raise TypeError(f"{function.__name__}() got an unexpected keyword argument {min(unknown)!r}")
         args = (*map(take, parameters, args), *args[len(parameters) :])
         kwargs = {name: take(name, value) for name, value in kwargs.items()}
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
         return function(*args, **kwargs)
 
     if not isinstance(door, type):

@@ -3,8 +3,10 @@
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
+
+from rockbatch.common.errors import OutOfRange, Problem, Unusual
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s²] that the reference paper uses (its R0 = 7.36 m for p = 1 rad/s, μ = 3)."""
@@ -48,12 +50,15 @@ class Bounds:
         percent = "" if share is None else f"; if it is in percent, write {share:g}"
         return (self.why or f"must be within {self.low:g} and {self.high:g}") + percent
 
-    def problems(self, name: str, value: float | None) -> list[str]:
-        """Return the message about a value, after its name, if it is given and out of bounds."""
+    def problems(self, name: str, value: float | None) -> list[Problem]:
+        """Return the problem of a value of the key ``name``, if it is given and out of bounds."""
         if value is None or value in self:
             return []
-        written = f"{value:g}" if float(f"{value:g}") not in self else f"{value:.10g}"  # not rounded into the bounds
-        return [f"{name} = {written}: {self.message(value)}"]
+        problem = Problem(name, value, self.message(value), kind=OutOfRange)
+        if float(f"{value:g}") not in self:
+            return [problem]
+        text = f"{name} = {value:.10g}: {problem.text}"  # not rounded into the bounds
+        return [replace(problem, text=text, named=False)]
 
 
 POSITIVE = Bounds(LEAST, MOST)
@@ -74,12 +79,12 @@ class Usual(NamedTuple):
         """Return whether a value is usual."""
         return not isinstance(value, int | float) or value == 0 or self.least <= abs(value) <= self.most
 
-    def doubt(self, name: str, value: float) -> str:
-        """Return the complaint about an unusual value of the key ``name``; empty for a usual one."""
+    def doubts(self, name: str, value: float) -> list[Problem]:
+        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
         if self.holds(value):
-            return ""
+            return []
         bound = f"more than {self.most:g}" if abs(value) > self.most else f"less than {self.least:g}"
-        return f"{name} = {value:g}: {bound} {self.words}"
+        return [Problem(name, float(value), f"{bound} {self.words}", confirm=name, kind=Unusual)]
 
 
 def rounded_up(value: float, digits: int = 4) -> float:

@@ -23,7 +23,6 @@ _NAMES = {
     "sequences": "sequence",
     "spectrum": "spectral_acceleration",
     "spectrum_target": "SpectrumTarget",
-    "velocity_pulses": "VelocityPulse pulse_of",
 }
 """Public names by their modules; ``__init__.pyi`` has all of them for type checkers."""
 

@@ -36,5 +36,3 @@ from rockbatch.motions.selection import selected as selected
 from rockbatch.motions.sequences import sequence as sequence
 from rockbatch.motions.spectrum import spectral_acceleration as spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget as SpectrumTarget
-from rockbatch.motions.velocity_pulses import VelocityPulse as VelocityPulse
-from rockbatch.motions.velocity_pulses import pulse_of as pulse_of

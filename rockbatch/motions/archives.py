@@ -134,7 +134,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
         try:
             yield from list(_listed(path, f"{member.name}/"))
         except InputError as error:
-            yield Member(path, member.name, "; ".join(error.problems)), 0
+            yield Member(path, member.name, "; ".join(error.messages)), 0
 
 
 def is_member(path: Path) -> bool:

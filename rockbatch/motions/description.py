@@ -2,19 +2,29 @@
 
 import math
 from dataclasses import asdict
+from typing import NotRequired, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from rockbatch.motions import measures
-from rockbatch.motions.figures import Spectra
 from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
-from rockbatch.motions.velocity_pulses import pulse_of
+from rockbatch.motions.velocity_pulses import pulse_period
 
 MOST_SPECTRA = 200
 """Greatest number of motions whose spectra go into run.json; each takes about 10 ms."""
+
+
+class Spectra(TypedDict):
+    """Response spectra of a suite in run.json: ``sa_g`` in the order of the motions; ``None`` where undefined."""
+
+    damping: float
+    period_s: list[float]
+    sa_g: list[list[float]]
+    mean_sa_g: NotRequired[list[float | None]]
+    target_sa_g: NotRequired[list[float | None]]
 
 
 def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[str, object]:
@@ -51,10 +61,9 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
 
 
 def _pulse(motion: Motion) -> dict[str, object]:
-    """Return kind, indicator and period [s] of a motion's pulse by Baker (2007); the period is None without motion."""
-    pulse = pulse_of(motion)
-    period = None if math.isnan(pulse.period_s) else float(f"{pulse.period_s:.4g}")
-    return {"pulse": pulse.kind, "pulse_indicator": float(f"{pulse.indicator:.4g}"), "pulse_period_s": period}
+    """Return the period [s] of a motion's pulse by Baker (2007); None if it is not pulse-like."""
+    period = pulse_period(motion)
+    return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
 
 
 def spectra(

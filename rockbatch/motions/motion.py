@@ -4,14 +4,13 @@ import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
-from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, UnusableRecord, refuse
 from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
@@ -194,12 +193,13 @@ class Motion(Shown):
     def __post_init__(self) -> None:
         for text in ("name", "station"):  # which go into tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
-        wrong = []
+        wrong: list[Problem | str] = []
         if not (math.isfinite(self.dt) and self.dt > 0):
             wrong.append(f'motion "{self.name}": dt = {self.dt:g}: must be a number above 0 [s]')
-        elif "dt" not in self.confirm and (doubt := USUAL_STEP.doubt("dt", self.dt)):
+        elif "dt" not in self.confirm:
             rate = f"; if it is a rate in Hz, write dt = {1.0 / self.dt:g}" if self.dt >= 10.0 else ""
-            wrong.append(f'motion "{self.name}": {doubt}{rate}; if it is right, write confirm = ["dt"]')
+            doubts = USUAL_STEP.doubts("dt", self.dt)
+            wrong += [replace(doubt, text=f"{doubt.text}{rate}", place=f'motion "{self.name}"') for doubt in doubts]
         for component, samples in (("horizontal", self.horizontal), ("vertical", self.vertical)):
             if samples is None and component == "vertical":
                 continue
@@ -224,8 +224,7 @@ class Motion(Shown):
                 f'motion "{self.name}": {len(self.horizontal)} horizontal and {len(self.vertical)} vertical samples: '
                 "bring them to one length"
             )
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
 
     @classmethod
     @checked
@@ -449,22 +448,16 @@ class Motion(Shown):
         return times
 
 
-class Problem(Enum):
-    """A kind of problem that holds back a file or component until the user states the facts."""
-
-    DIRECTION = "its direction is not known"
-    CONTRADICTION = "statements of its direction, or of its recording, contradict each other"
-
-
 @dataclass(frozen=True)
 class Unusable:
     """A file or component that cannot be used, with the reason; it stays in the tables as a row.
 
-    ``label`` names one component, as in the file; empty for the whole file. ``lacks`` has the manifest keys that would
-    state the missing facts; ``number`` is the component's in its file, from 1, or 0. ``companion`` is the station of the
-    records that the file goes with, such as spectra or notes: "" for any; ``None`` for a file that goes with none.
-    ``station`` is the name under which it would count, by its header or file name; empty if unknown. ``problem`` is what
-    the user must settle, if anything. ``motion`` is a motion held back until its findings are confirmed.
+    ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
+    ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
+    in its file, from 1, or 0. A ``companion`` is what lies beside records, such as spectra or notes: beside any ("") or
+    those of a station. ``station`` is what it would count as, by its header or its file's name; empty if that is not known.
+    ``kind`` is the class of error by which it is refused, such as ``NoUnit``. ``motion`` is what was read, with its findings, if
+    these have to be confirmed before it is used.
     """
 
     name: str
@@ -475,7 +468,7 @@ class Unusable:
     number: int = 0
     companion: str | None = None
     station: str = ""
-    problem: Problem | None = None
+    kind: type[InputError] = UnusableRecord
     motion: Motion | None = field(default=None, repr=False)
 
     def __str__(self) -> str:

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import distinct, grouped
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY
@@ -16,7 +17,7 @@ from rockbatch.motions.azimuths import components_along
 from rockbatch.motions.common_span import on_common_samples, overlap, too_unlike
 from rockbatch.motions.component import Component
 from rockbatch.motions.measures import state_at
-from rockbatch.motions.motion import Finding, Motion, Problem, Unusable
+from rockbatch.motions.motion import Finding, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import same_azimuth
 from rockbatch.motions.origin import with_direction
@@ -52,11 +53,11 @@ def to_motions(
     unusable: list[Unusable] = []
     sound: list[Component] = []
     for c in components:
-        if (problem := _problem(c)) is None:
+        if (kind := _why_held(c)) is None:
             sound.append(c)
         else:
             question, label = _direction_question(c), c.orientation.label
-            unusable.append(Unusable(c.name, c.source, question, label, station=station_of(c), problem=problem))
+            unusable.append(Unusable(c.name, c.source, question, label, station=station_of(c), kind=kind))
     components = _with_packaged(sound, packaged)
     stations = by_station(components)
     number = {id(c): i for i, station in enumerate(stations) for c in station}
@@ -122,11 +123,11 @@ def _confirmed_motions(
     return MotionSet(motions, unusable)
 
 
-def _problem(component: Component) -> Problem | None:
-    """Return the kind of problem for which a component is held back; ``None`` if its direction is known."""
+def _why_held(component: Component) -> type[InputError] | None:
+    """Return the kind of error for which a component is held back; ``None`` if its direction is known."""
     if component.contradiction:
-        return Problem.CONTRADICTION
-    return None if component.orientation.known else Problem.DIRECTION
+        return Contradiction
+    return None if component.orientation.known else NoDirection
 
 
 def _direction_question(component: Component) -> str:

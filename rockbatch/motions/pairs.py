@@ -106,7 +106,7 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
             try:
                 common_samples(first, second)
             except InputError as error:
-                problems = problems or error.problems
+                problems = problems or error.messages
             else:
                 return first, second
     raise InputError(*problems)
@@ -117,7 +117,7 @@ def pairing_obstacle(motions: Sequence[Motion]) -> str:
     try:
         pair_of(motions)
     except InputError as error:
-        return "; ".join(error.problems)
+        return "; ".join(error.messages)
     return ""
 
 

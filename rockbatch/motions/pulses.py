@@ -25,7 +25,7 @@ from collections.abc import Callable, Collection
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Unusual, WrongType, refuse
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import MOST_SAMPLES, Initial, Motion, Samples
 
@@ -88,15 +88,13 @@ def pulse(
     """
     problems = _problems(shape, amplitude, period, dt, duration, gamma, nu)
     if not name.strip():
-        problems.append("name is empty: write the name that the pulse shall have in tables")
-    if not problems:
-        doubts = unlikely(abs(amplitude) / GRAVITY, period, dt)
-        typed = {"amplitude": f"{amplitude:g} m/s², "}
-        problems = [
-            f"{key} = {typed.get(key, '')}{text}; {remedy(key)}" for key, text in doubts.items() if key not in confirm
-        ]
-    if problems:
-        raise InputError(*problems)
+        problems.append(Problem("name", name, "write the name that the pulse shall have in tables", kind=MissingKey))
+    refuse(problems)
+    doubts = unlikely(abs(amplitude) / GRAVITY, period, dt)
+    values = {"amplitude": amplitude, "dt": dt}
+    refuse(
+        Problem(key, values[key], text, confirm=key, kind=Unusual) for key, text in doubts.items() if key not in confirm
+    )
     formula, length = _formula(shape, amplitude, period, gamma, nu)
     t = np.arange(round(duration / dt) + 1, dtype=np.float64) * dt
     acceleration = np.zeros_like(t)
@@ -113,12 +111,10 @@ def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
     doubts = {}
     if amplitude_g > MOST_PULSE:
         doubts["amplitude"] = (
-            f"{amplitude_g:.3g} g: more than {MOST_PULSE:g} g, where pulses of near-fault records have 0.1 to 1 g"
+            f"{amplitude_g:.3g} g are more than {MOST_PULSE:g} g, where pulses of near-fault records have 0.1 to 1 g"
         )
     if dt * LEAST_SAMPLES > period * (1.0 + _ON_A_SAMPLE):
-        doubts["dt"] = (
-            f"{dt:g} s: {period / dt:.2g} samples in a period of {period:g} s, which miss the pulse's peak; 50 do well"
-        )
+        doubts["dt"] = f"{period / dt:.2g} samples in a period of {period:g} s, which miss the pulse's peak; 50 do well"
     return doubts
 
 
@@ -135,35 +131,42 @@ def _problems(
     duration: float,
     gamma: float | None,
     nu: float | None,
-) -> list[str]:
-    """Return complaints about impossible values of a pulse, a sentence each."""
-    times = {"period": period, "dt": dt, "duration": duration}
+) -> list[Problem]:
+    """Return the problems of impossible values of a pulse."""
     wrong = [
-        f"{key} = {time:g}: must be a number above 0 [s]" for key, time in times.items() if not 0 < time < math.inf
+        Problem(name, value, "must be a number above 0 [s]", kind=OutOfRange)
+        for name, value in (("period", period), ("dt", dt), ("duration", duration))
+        if not (math.isfinite(value) and value > 0)
     ]
     if not wrong and duration / dt > MOST_SAMPLES:
-        wrong.append(f"dt = {dt:g}: more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger one")
+        text = f"more than {MOST_SAMPLES:,} samples in {duration:g} s; take a larger one"
+        wrong.append(Problem("dt", dt, text, kind=OutOfRange))
     times_are_sound = not wrong
     if not math.isfinite(amplitude) or amplitude == 0:
-        wrong.append(f"amplitude = {amplitude:g}: must be a number other than 0 [m/s²]")
+        wrong.append(Problem("amplitude", amplitude, "must be a number other than 0 [m/s²]", kind=OutOfRange))
     oscillates = shape == "mavroeidis-papageorgiou"
     if shape not in SHAPES:
         close = difflib.get_close_matches(shape, SHAPES, 1)
         hint = f'; did you mean "{close[0]}"?' if close else ""
-        wrong.append(f'shape = "{shape}": must be one of {", ".join(SHAPES)}{hint}')
+        wrong.append(Problem("shape", shape, f"must be one of {', '.join(SHAPES)}{hint}", kind=WrongType))
     elif oscillates:
         if gamma is None or not (math.isfinite(gamma) and gamma > 1):
-            wrong.append(f"gamma = {gamma}: a {shape} pulse needs its number of oscillations, above 1")
+            wrong.append(
+                Problem("gamma", gamma, f"a {shape} pulse needs its number of oscillations, above 1", kind=OutOfRange)
+            )
         if nu is None or not math.isfinite(nu):
-            wrong.append(f"nu = {nu}: a {shape} pulse needs its phase [rad]")
+            wrong.append(Problem("nu", nu, f"a {shape} pulse needs its phase [rad]", kind=OutOfRange))
     elif gamma is not None or nu is not None:
-        wrong.append(f'gamma and nu have no meaning for shape = "{shape}": leave them out')
+        text = f'gamma and nu have no meaning for shape = "{shape}": leave them out'
+        wrong.append(Problem("gamma", gamma, text, kind=Contradiction, named=False))
     if times_are_sound and dt >= period:
-        wrong.append(f"dt = {dt:g} s: must be below the period, {period:g} s (a fiftieth of it does well)")
+        text = f"must be below the period, {period:g} s (a fiftieth of it does well)"
+        wrong.append(Problem("dt", dt, text, kind=OutOfRange))
     if not wrong:
         _, length = _formula(shape, amplitude, period, gamma, nu)
         if duration < length * (1 - 1e-9):
-            wrong.append(f"duration = {duration:g} s: the pulse lasts {length:g} s; write that or more")
+            text = f"the pulse lasts {length:g} s; write that or more"
+            wrong.append(Problem("duration", duration, text, kind=OutOfRange))
     return wrong
 
 

@@ -7,12 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from rockbatch.common.errors import Contradiction, InputError, NoDirection
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions import measures
-from rockbatch.motions.motion import LeftOut, Motion, Problem, Unusable
+from rockbatch.motions import velocity_pulses
+from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import Cell, MotionSet, row
-from rockbatch.motions.velocity_pulses import LEAST_PGV, pulse_of
 
 
 class Use(Enum):
@@ -27,7 +27,7 @@ class Use(Enum):
     LEFT_OUT = "left out"
 
 
-_DOUBTS = {Problem.DIRECTION: "direction", Problem.CONTRADICTION: "contradiction"}
+_DOUBTS: dict[type[InputError], str] = {NoDirection: "direction", Contradiction: "contradiction"}
 
 COLUMNS = (
     "record",
@@ -152,14 +152,14 @@ def use_of(file: Unusable | LeftOut) -> Use:
     """Return the ``Use`` of a file without a motion in the set."""
     if isinstance(file, LeftOut):
         return Use.COPY if file.of else Use.LEFT_OUT
-    return Use.HELD_BACK if file.motion or file.problem or file.lacks else Use.NOT_READ
+    return Use.HELD_BACK if file.motion or file.kind in _DOUBTS or file.lacks else Use.NOT_READ
 
 
 def doubts_about(file: Unusable | LeftOut) -> list[str]:
     """Return the doubts about a file in a word or two each: unknown direction, missing keys, findings; [] if it is left out."""
     if isinstance(file, LeftOut):
         return []
-    words = [_DOUBTS[file.problem]] if file.problem else []
+    words = [_DOUBTS[file.kind]] if file.kind in _DOUBTS else []
     return [*words, *(f"no {key}" for key in file.lacks), *_finding_names([file.motion] if file.motion else [])]
 
 
@@ -177,12 +177,8 @@ def _other_pga_g(motion: Motion, others: Iterable[Motion]) -> float | None:
 
 def pulse_period(motion: Motion) -> float | None:
     """Return the period of the pulse [s] by the list beside the record, else by Baker (2007); None without a pulse."""
-    if motion.listed.pulse_period_s is not None:
-        return motion.listed.pulse_period_s
-    if measures.pgv(motion.horizontal, motion.dt, motion.initial) < LEAST_PGV:  # no pulse, and its search takes longest
-        return None
-    pulse = pulse_of(motion)
-    return pulse.period_s if pulse.kind == "yes" else None
+    listed = motion.listed.pulse_period_s
+    return velocity_pulses.pulse_period(motion) if listed is None else listed
 
 
 def rows(motions: MotionSet) -> list[dict[str, Cell]]:

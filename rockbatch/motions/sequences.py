@@ -340,7 +340,7 @@ def add_sequences(
         try:
             joined = _sequence_or_refusal(entry, by_name, reasons, source)
         except InputError as error:
-            wrong += error.problems
+            wrong += error.messages
         else:
             (joined_motions if isinstance(joined, Motion) else refused).append(joined)  # type: ignore[arg-type]
     if wrong:
@@ -383,7 +383,7 @@ def _sequence_or_refusal(
         try:
             return entry.as_motion([by_name[name] for name in entry.records])
         except InputError as error:
-            reasons_of_parts = list(error.problems)
+            reasons_of_parts = list(error.messages)
     reason = f"sequence {shown(entry.name)}: {'; '.join((*reasons_of_parts, *unknown))}"
     return Unusable(entry.name, source or "[[motions.sequence]]", reason)
 

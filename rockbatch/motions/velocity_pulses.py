@@ -8,11 +8,9 @@ time. With the residual's peak and energy over the record's,
     PI = 1/(1 + exp(−23.3 + 14.6 (PGV ratio) + 20.5 (energy ratio))),
 
 a record is pulse-like if PI > 0.85, PGV is 0.3 m/s or more and the pulse arrives early: 10 % of its ∫v² dt before 20 % of the
-record's. It is not if PI < 0.15; between them the criterion is ambiguous.
-"""
+record's."""
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -27,6 +25,9 @@ PERIODS_OF_PULSES = (0.25, 15.0)
 LEAST_PGV = 0.30
 """Least PGV of a pulse-like record [m/s]."""
 
+PULSE_LIKE = 0.85
+"""Indicator PI beyond which a record is pulse-like."""
+
 _PSEUDO_PERIOD = 1.4  # scales: 1 over the central frequency of the wavelet
 _SUPPORT = 7.0  # scales
 _WAVELETS = 10
@@ -37,43 +38,26 @@ _HALVINGS = 9  # of the unit grid on which the wavelet is tabulated
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class VelocityPulse:
-    """Result of Baker's criterion for a record."""
-
-    indicator: float  # PI, 0..1
-    period_s: float  # of the pulse [s]; NaN for a record without motion
-    pgv: float  # of the record [m/s]
-    early: bool  # whether the pulse arrives early, as those of forward directivity do
-
-    @property
-    def kind(self) -> str:
-        """Return "yes", "no" or "ambiguous"; "late" or "weak", not pulse-like, for a late pulse or too small a PGV."""
-        if self.indicator <= 0.85:
-            return "no" if self.indicator < 0.15 else "ambiguous"
-        if self.pgv < LEAST_PGV:
-            return "weak"
-        return "yes" if self.early else "late"
+def pulse_period(motion: Motion) -> float | None:
+    """Return the period [s] of the pulse in the horizontal component as it was recorded; None if that is not pulse-like."""
+    return period_of_pulse(velocity(motion.horizontal, motion.dt, motion.initial) / motion.factor, motion.dt)
 
 
-def pulse_of(motion: Motion) -> VelocityPulse:
-    """Return the pulse in the horizontal component of a motion as recorded, before scaling to a target."""
-    recorded = velocity(motion.horizontal, motion.dt, motion.initial) / motion.factor
-    return velocity_pulse(recorded, motion.dt)
-
-
-def velocity_pulse(v: Samples, dt: float) -> VelocityPulse:
-    """Return the pulse in a ground velocity [m/s], shape (npts,), sampled every ``dt`` [s]."""
-    pgv = float(np.abs(v).max())
-    if pgv == 0:
-        return VelocityPulse(0.0, math.nan, 0.0, False)
+def period_of_pulse(v: Samples, dt: float) -> float | None:
+    """Return the period [s] of the pulse in a ground velocity [m/s], sampled every ``dt`` [s]; None if it is not pulse-like."""
+    if float(np.abs(v).max()) < LEAST_PGV:
+        return None
     scale, place = _largest(v, dt)
     pulse = _wavelet_sum(v, scale, place)
+    is_early = _sample_reaching(pulse, 0.10) < _sample_reaching(v, 0.20)
+    return _PSEUDO_PERIOD * scale * dt if is_early and _indicator(v, pulse) > PULSE_LIKE else None
+
+
+def _indicator(v: Samples, pulse: Samples) -> float:
+    """Return PI of a velocity with this pulse, 0..1."""
     residual = v - pulse
-    peak, energy = np.abs(residual).max() / pgv, residual @ residual / (v @ v)
-    indicator = 1.0 / (1.0 + math.exp(-23.3 + 14.6 * peak + 20.5 * energy))
-    early = _sample_reaching(pulse, 0.10) < _sample_reaching(v, 0.20)
-    return VelocityPulse(float(indicator), _PSEUDO_PERIOD * scale * dt, pgv, bool(early))
+    peak, energy = np.abs(residual).max() / np.abs(v).max(), residual @ residual / (v @ v)
+    return 1.0 / (1.0 + math.exp(-23.3 + 14.6 * float(peak) + 20.5 * float(energy)))
 
 
 def _largest(v: Samples, dt: float) -> tuple[float, int]:

@@ -1,6 +1,6 @@
 """Bases of a pier: rigid, elastic and yielding (Palmeri & Makris 2007).
 
-Values are checked together: :func:`problems` reports what is impossible about a pier on a base, and the limit.
+What is impossible about a pier on a base is in :mod:`rockbatch.pier.possible`.
 """
 
 import math
@@ -10,15 +10,16 @@ from dataclasses import InitVar, dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, Superseded
-from rockbatch.common.showing import InNotebook
-from rockbatch.common.units import LEAST, MOST, Bounds, Usual, rounded_up
-from rockbatch.pier.bending import problems as bending_problems
+from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
+from rockbatch.common.showing import InNotebook, shown
+from rockbatch.common.units import LEAST, MOST, Bounds, Usual
 from rockbatch.pier.block import Pier
-from rockbatch.pier.places import holds_a_tilt, places, prestress_over_weight
-from rockbatch.pier.plausibility import wrong_on_springs, wrong_restraints
+from rockbatch.pier.first_loading import Curve, Straight
+from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
+from rockbatch.pier.laws import LAWS, Law, SpringLaw
+from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint, described_restraints
-from rockbatch.pier.sizes import refuse, unusual
+from rockbatch.pier.sizes import unusual
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 
 LEAST_ETA = 1.000001
@@ -35,15 +36,8 @@ FLIGHT_LIMIT_MM = 5.0
 
 Kinematics = Literal["first-order", "finite"]
 Flight = Literal["guided", "stop"]
-SpringLaw = Literal["bouc-wen", "epp", "hardening"]
 Impact = Literal["landing", "housner"]
 Shaft = Literal["rigid", "elastic"]
-
-WITH_EXPONENT: tuple[SpringLaw, ...] = ("bouc-wen", "hardening")
-"""Laws whose first loading is Bouc–Wen's curve with the exponent n; the other has a sharp corner."""
-
-RATCHETING: tuple[SpringLaw, ...] = ("bouc-wen",)
-"""Laws with cyclic settlement (ratcheting): their springs settle a little with every cycle below their yield force."""
 
 WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 """Impacts with a restitution ε of the landing pivot; Housner's e follows from the pier."""
@@ -51,11 +45,8 @@ WITH_EPSILON: tuple[Impact, ...] = ("landing",)
 ASKING_TENSION: tuple[Impact, ...] = ("housner",)
 """Impacts that ask a support for a pull, which one without tension cannot give (THEORY.md, Impact by Housner's e)."""
 
-OTHER_LAW: dict[str, SpringLaw] = {"bouc-wen": "epp"}
-"""For each law that ratchets one that does not: the settlement lies between both (THEORY.md, Results of a run)."""
-
 EPSILON_AND_ZETA = "zeta is given too, and a damped support takes a landing without an impulse; keep one"
-"""Message about a support with both."""
+"""What is wrong about a support with both."""
 
 
 def _strength(eta: float) -> str:
@@ -84,10 +75,10 @@ BOUNDS = {
     "eta": Bounds(LEAST_ETA, MOST, why=_strength),
     "n": Bounds(1.0, MOST_EXPONENT, why=f"the Bouc–Wen exponent must be at least 1, and {MOST_EXPONENT:g} at most"),
 }
-"""Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (:func:`problems`)."""
+"""Possible values of the fields of bases; the least β and η depend on the pier and on tendons, too (`possible.py`)."""
 
 WORDS: dict[str, tuple[str, ...]] = {
-    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": get_args(SpringLaw), "shaft": get_args(Shaft),
+    "kinematics": get_args(Kinematics), "flight": get_args(Flight), "spring": tuple(LAWS), "shaft": get_args(Shaft),
     "impact": get_args(Impact),
 }  # fmt: skip
 """Possible words of the fields of bases."""
@@ -142,12 +133,12 @@ class _Traits(InNotebook):
         ]
         for name, words in WORDS.items():
             if name in values and values[name] not in words:
-                wrong.append(f'{name} = "{values[name]}": must be ' + " or ".join(f'"{word}"' for word in words))
+                wrong.append(Problem(name, values[name], f"must be {' or '.join(map(shown, words))}", kind=WrongType))
         wrong += self._wrong_together()
         refuse(wrong or unusual(USUAL, self.confirm, **{name: values[name] for name in USUAL if name in values}))
 
-    def _wrong_together(self) -> list[str]:
-        """Return which fields cannot be together: one sentence each."""
+    def _wrong_together(self) -> list[Problem]:
+        """Return which fields cannot be together."""
         return []
 
     @property
@@ -181,7 +172,7 @@ class _Traits(InNotebook):
         return self.yields or holds_a_tilt(self.restraints)
 
     def by_other_law(self) -> Self:
-        """Return the same base with its springs by the other law (:data:`OTHER_LAW`); itself if it has none."""
+        """Return the same base with its springs by the other law if its own ratchets; else itself."""
         return self
 
 
@@ -231,7 +222,7 @@ class RigidBase(_Traits):
         if flexural_impact is None:
             return
         if problem := wrong_blow(flexural_impact):
-            raise InputError(f'flexural_impact = "{flexural_impact}": {problem}')
+            raise WrongType(Problem("flexural_impact", flexural_impact, problem))
         message = 'flexural_impact = "momentum" has no effect, since no other rule of a blow is left; leave it out'
         warnings.warn(message, Superseded, stacklevel=4)
 
@@ -310,14 +301,24 @@ class ElasticBase(_Traits):
     def __post_init__(self) -> None:
         self._check()
 
-    def _wrong_together(self) -> list[str]:
+    def _wrong_together(self) -> list[Problem]:
         wrong = BETA.problems("beta", self.beta)
+        given: dict[str, Any] = {"epsilon": self.epsilon} if self.epsilon != 0 else {}
+        text = f'has no effect with impact = "{self.impact}"; leave it out' if self.impact not in WITH_EPSILON else ""
         if self.zeta is not None:
-            wrong += [f"epsilon = {self.epsilon:g}: {EPSILON_AND_ZETA}"] * (self.epsilon != 0)
-            wrong += [f'impact = "{self.impact}": {EPSILON_AND_ZETA}'] * (self.impact != "landing")
-        elif self.impact not in WITH_EPSILON and self.epsilon != 0:
-            wrong.append(f'epsilon = {self.epsilon:g}: has no effect with impact = "{self.impact}"; leave it out')
-        return wrong
+            given |= {"impact": self.impact} if self.impact != "landing" else {}
+            text = EPSILON_AND_ZETA
+        return wrong + [Problem(name, value, text, kind=Contradiction) for name, value in given.items() if text]
+
+    @property
+    def reference_eta(self) -> float:
+        """Return η, by which the springs' forces and deflections are measured: 1, the static ones, of elastic springs."""
+        return 1.0
+
+    @property
+    def first_loading(self) -> Curve:
+        """Return the curve of the springs' first loading, over the force and deflection by which they are measured."""
+        return Straight(math.inf)
 
     @property
     def has_epsilon(self) -> bool:
@@ -383,18 +384,33 @@ class YieldingBase(ElasticBase):
     yields = True
 
     @property
+    def reference_eta(self) -> float:
+        """Return η, by which the springs' forces and deflections are measured."""
+        return self.eta
+
+    @property
+    def law(self) -> Law:
+        """Return the law of these springs."""
+        return LAWS[self.spring]
+
+    @property
+    def first_loading(self) -> Curve:
+        """Return the curve of the springs' first loading."""
+        return self.law.first_loading(self.n)
+
+    @property
     def has_exponent(self) -> bool:
         """Return whether ``n`` applies to these springs."""
-        return self.spring in WITH_EXPONENT
+        return self.law.has_exponent
 
     @property
     def ratchets(self) -> bool:
         """Return whether these springs settle cyclically under vibration (ratcheting)."""
-        return self.spring in RATCHETING
+        return self.law.creep is not None
 
     def by_other_law(self) -> Self:
         """Return these springs by the other law, elastic–perfectly plastic for Bouc–Wen; themselves if they do not ratchet."""
-        return replace(self, spring=OTHER_LAW.get(self.spring, self.spring))
+        return self if self.law.creep is None else replace(self, spring=self.law.creep.other)
 
     def parameters(self, pier: Pier) -> dict[str, Any]:
         """Return these springs under ``pier`` by the keys of run.json."""
@@ -435,63 +451,6 @@ def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
     return values
 
 
-def least_beta(pier: Pier, base: Base) -> float:
-    """Return β below which the pier topples on its springs under its own weight, or at the least push (THEORY.md, eq. 13).
-
-    A Bouc–Wen or hardening spring under the weight, z = −1/η, is softer where it is loaded than where it is unloaded, by the
-    factor r = 1 − η⁻ⁿ, with tendons r = 1 − (η/(1 + ψ))⁻ⁿ; both together have 2r/(1 + r) of the elastic springs' stiffness in
-    rotation.
-    """
-    if not (isinstance(base, YieldingBase) and base.has_exponent and base.eta > 1 and base.n >= 1):
-        return pier.least_beta
-    carried = base.eta / (1.0 + prestress_over_weight(pier, base.restraints))
-    if carried <= 1:
-        return pier.least_beta
-    softer = -math.expm1(-base.n * math.log(carried))
-    return pier.least_beta * math.sqrt((1.0 + softer) / (2.0 * softer))
-
-
-def least_eta(pier: Pier, base: Base) -> float:
-    """Return η below which the springs cannot carry the weight and the prestress of the tendons."""
-    return LEAST_ETA * (1.0 + prestress_over_weight(pier, base.restraints))
-
-
-def enough_eta(pier: Pier, base: Base) -> float:
-    """Return η above which the springs carry weight and prestress, and with the stiffness that they have hold the pier upright.
-
-    The inverse of :func:`least_beta` for a β above that of elastic springs; :func:`least_eta` for another.
-    """
-    least = least_eta(pier, base)
-    if isinstance(base, YieldingBase) and base.has_exponent and base.beta > pier.least_beta:
-        excess = 2.0 * (base.beta / pier.least_beta) ** 2 - 1.0
-        least *= (1.0 - 1.0 / excess) ** (-1.0 / base.n)
-    return least
-
-
-def vertical_frequency(pier: Pier, base: Base) -> float:
-    """Return the circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
-    return base.beta * pier.p
-
-
-def static_deflection(pier: Pier, base: Base) -> float:
-    """Return δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
-    return pier.gravity / vertical_frequency(pier, base) ** 2
-
-
-def yield_deflection(pier: Pier, base: ElasticBase) -> float:
-    """Return δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
-    eta = base.eta if isinstance(base, YieldingBase) else 1.0
-    return eta * pier.gravity / vertical_frequency(pier, base) ** 2
-
-
-def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v: float) -> float:
-    """Return the tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 20).
-
-    ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
-    """
-    return 1.0 - gravity * height / (omega_v * half_width) ** 2
-
-
 def neglected(pier: Pier, theta: float) -> float:
     """Return the share of inertia and righting moment that linearised kinematics neglects at the rotation ``theta`` [rad].
 
@@ -499,96 +458,3 @@ def neglected(pier: Pier, theta: float) -> float:
     """
     inertia = pier.mu / (1 + pier.mu) * math.sin(pier.alpha) * math.cos(pier.alpha) * abs(theta)
     return inertia + 0.5 * theta * theta
-
-
-def rocking_frequency(pier: Pier, base: ElasticBase) -> float:
-    """Return the circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
-    mu, alpha = pier.mu, pier.alpha
-    stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
-    return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
-
-
-def fastest(pier: Pier, base: ElasticBase) -> float:
-    """Return the greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of decay if overdamped.
-
-    A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
-    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
-    """
-    damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
-    share = pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)
-
-    def rate(omega: float, decay: float) -> float:
-        return omega if decay <= omega else decay + math.sqrt(decay**2 - omega**2)
-
-    return max(
-        rate(vertical_frequency(pier, base), damping),
-        rate(rocking_frequency(pier, base), damping * share),
-    )
-
-
-def problems(pier: Pier, base: Base) -> list[str]:
-    """Return what is impossible about ``pier`` on ``base``, a sentence each, with the limit; empty if nothing is."""
-    if base.on_springs and pier.deck_over_columns is not None:
-        return [
-            f"columns: a rocking frame is solved on rigid ground only, and this base is {base.name}. On springs the columns "
-            "sink by themselves, the deck no longer moves level, and no one block stands for them (Makris & Vassiliou 2013); "
-            'write base = "rigid"; or, if the columns are fixed to their cap beam, leave columns out and write [[pier.part]] '
-            "for them and the beam, with width_m between the outer feet"
-        ]
-    wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
-    wrong += wrong_restraints(pier, base.restraints)
-    if base.bends:
-        wrong += _wrong_bending(pier, base)
-    if isinstance(base, RigidBase) and base.contact_stiffness_kN_m is not None:
-        wrong += _wrong_contact(pier, base, f"contact_stiffness_kN_m = {base.contact_stiffness_kN_m:g}")
-    if base.on_springs and not wrong:
-        wrong += wrong_on_springs(pier, base.restraints)
-    if isinstance(base, YieldingBase) and base.eta < (least := least_eta(pier, base)):
-        prestress = prestress_over_weight(pier, base.restraints)
-        wrong.append(
-            f"eta = {base.eta:g}: the springs cannot carry the weight and the prestress of the tendons, psi = "
-            f"{prestress:g} of it; eta must be above 1 + psi, {rounded_up(least):g}"
-        )
-    return wrong
-
-
-def _wrong_bending(pier: Pier, base: Base) -> list[str]:
-    wrong = bending_problems(pier)
-    if any(place.height != 0.0 for device in base.restraints for place in places(pier, device)):
-        wrong.append(
-            'shaft = "elastic": devices on the deck are of a rigid shaft; leave them out, or write shaft = "rigid"'
-        )
-    if isinstance(base, RigidBase) and base.restitution is not None:
-        wrong.append(
-            f"restitution = {base.restitution:g}: what a blow takes of a shaft that bends follows from the momentum of its mode; "
-            "leave it out"
-        )
-    return wrong
-
-
-def _wrong_contact(pier: Pier, base: RigidBase, key: str) -> list[str]:
-    """Return why the force of a landing foot cannot be estimated, each message at the ``key``."""
-    wrong = []
-    if pier.mass_t is None:
-        wrong.append(f"{key}: is of a pier whose mass is known; write mass_t in [pier], or leave it out")
-    if pier.deck_over_columns is not None:
-        wrong.append(f"{key}: how the columns of a frame share a landing is not known; leave it out")
-    if base.bends:
-        wrong.append(f'{key}: is of a rigid shaft; leave it out, or write shaft = "rigid"')
-    return wrong
-
-
-def _wrong_stiffness(pier: Pier, base: ElasticBase) -> list[str]:
-    least = least_beta(pier, base)
-    if not base.beta > pier.least_beta:
-        return [
-            f"beta = {base.beta:g}: the pier topples on its springs under its own weight; beta must be above "
-            f"sqrt((1+mu) cos(alpha)/mu)/sin(alpha) = {pier.least_beta:.4g}"
-            + (f", for these springs above {least:.4g}" if least > pier.least_beta else "")
-        ]
-    if not base.beta > least and isinstance(base, YieldingBase):
-        return [
-            f"beta = {base.beta:g}: the least push topples the pier, because such springs near their yield force "
-            f"(eta = {base.eta:g}, n = {base.n:g}) give way on the loaded side; beta must be above {least:.4g}"
-        ]
-    return []

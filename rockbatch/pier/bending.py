@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockbatch.common.errors import Problem
 from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
 from rockbatch.pier.sections import parts_of, unknown_masses
@@ -22,12 +23,11 @@ class Mode(NamedTuple):
     coupling: float  # λ = ∫φ z dm/M [m]
 
 
-def problems(pier: Pier) -> list[str]:
+def problems(pier: Pier) -> list[Problem]:
     """Return why the shaft of ``pier`` cannot bend; empty if it can."""
-    wrong = [] if pier.flexural_period_s is not None else [
-        'shaft = "elastic": flexural_period_s is missing, the period of the pier fixed at its base; write it in [pier]'
-    ]  # fmt: skip
-    return wrong + [f'shaft = "elastic": {problem}' for problem in unknown_masses(pier)]
+    lacking = "flexural_period_s is missing, the period of the pier fixed at its base; write it in [pier]"
+    texts = [*([lacking] if pier.flexural_period_s is None else []), *unknown_masses(pier)]
+    return [Problem("shaft", "elastic", text) for text in texts]
 
 
 def mode_of(pier: Pier) -> Mode:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import InputError, MissingKey, OutOfRange, Problem, refuse
 from rockbatch.common.showing import InNotebook
 from rockbatch.common.units import GRAVITY
 from rockbatch.pier.parts import Part, in_floats, part_problems
@@ -15,8 +15,8 @@ from rockbatch.pier.sizes import (
     THINNEST,
     USUAL,
     falls,
+    odd,
     out_of_bounds,
-    refuse,
     unlikely_deck,
     unlikely_heights,
     unlikely_inertia,
@@ -190,7 +190,7 @@ class Pier(InNotebook):
         for n, part in enumerate(parts, 1):
             wrong += part_problems(n, part)
         if not parts:
-            wrong.append("parts: there are none; a pier has one at least")
+            wrong.append(Problem("parts", None, "there are none; a pier has one at least", kind=MissingKey))
         refuse(wrong)
         mass = math.fsum(part.mass_t for part in parts)
         height = math.fsum(part.mass_t * part.height_m for part in parts) / mass
@@ -279,13 +279,16 @@ class Pier(InNotebook):
             raise InputError("column: must be a Pier, a solid rectangle with its mass")
         wrong = out_of_bounds(deck_mass_t=deck_mass_t)
         if columns < 2:
-            wrong.append(f"columns = {columns}: must be a whole number, 2 or above; a single one is a pier with a deck")
+            text = "must be a whole number, 2 or above; a single one is a pier with a deck"
+            wrong.append(Problem("columns", columns, text, kind=OutOfRange))
         if column.mass_t is None:
-            wrong.append("mass_t is missing, of one column [t]")
+            wrong.append(Problem("mass_t", None, "mass_t is missing, of one column [t]", kind=MissingKey, named=False))
         if not math.isclose(column.mu, 3.0) or column.deck_over_columns is not None:
-            wrong.append(f"mu = {column.mu:g}: the columns of a frame are solid rectangles, mu = 3")
-        if wrong or column.mass_t is None:
-            raise InputError(*wrong)
+            wrong.append(
+                Problem("mu", column.mu, "the columns of a frame are solid rectangles, mu = 3", kind=OutOfRange)
+            )
+        refuse(wrong)
+        assert column.mass_t is not None
         refuse(unlikely_deck(columns * column.mass_t, deck_mass_t, confirm))
         ratio = deck_mass_t / (columns * column.mass_t)
         return cls(
@@ -397,7 +400,7 @@ def share_of_shaft(alpha: float, mu: float, deck_over_columns: float | None = No
     return ratio / (1.0 + ratio)
 
 
-def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") -> list[str]:
+def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") -> list[Problem]:
     """Return what is odd about the mass of a pier for its size, if it is known; empty if ``name`` is in ``confirm``.
 
     ``name`` is the mass, or "width_m" if the parts of the pier give its mass.
@@ -406,10 +409,11 @@ def unlikely_mass(pier: Pier, confirm: Collection[str], name: str = "mass_t") ->
     if pier.mass_t is None or THINNEST <= pier.mass_t / volume <= THICKEST or name in confirm:
         return []
     width, density = 2.0 * pier.half_width, pier.mass_t / volume
-    return [
-        f"{name} = {pier.mass_t if name == 'mass_t' else width:g}: a block {width:.3g} m wide and as thick, "
-        f"{2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have {density:.2g} t/m³; {remedy(name)}"
-    ]
+    text = (
+        f"a block {width:.3g} m wide and as thick, {2 * pier.height:.3g} m high, of {pier.mass_t:g} t would have "
+        f"{density:.2g} t/m³"
+    )
+    return [odd(name, pier.mass_t if name == "mass_t" else width, text)]
 
 
 def described(pier: Pier) -> dict[str, float]:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Self
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import Contradiction, Problem, WrongType
+from rockbatch.common.showing import shown
 from rockbatch.common.units import POSITIVE
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import FIRMEST, LEAST_FORCE, SOFTEST, Device, Doubt, if_finite, over_weight, wrong_words
@@ -116,10 +118,10 @@ class Damper(Device):
     def _measured(self) -> Sequence[str]:
         return DAMPERS.get(self.kind, ())
 
-    def _wrong(self) -> list[str]:
+    def _wrong(self) -> list[Problem]:
         wrong = _wrong_place(self)
         if self.kind not in DAMPERS:
-            wrong.append(f'kind = "{self.kind}": must be ' + " or ".join(f'"{kind}"' for kind in DAMPERS))
+            wrong.append(Problem("kind", self.kind, f"must be {' or '.join(map(shown, DAMPERS))}", kind=WrongType))
         return wrong + super()._wrong() + _of_other_kinds(self) + _wrong_brace(self)
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
@@ -159,30 +161,32 @@ class Damper(Device):
                 )
 
 
-def _wrong_place(damper: Damper) -> list[str]:
+def _wrong_place(damper: Damper) -> list[Problem]:
     if damper.at == "deck" and damper.kind == "friction":
-        return [
-            'at = "deck": friction at the deck is not solved; write kind = "hysteretic" with a small yield_mm, whose limit '
-            "friction is"
-        ]
+        text = 'friction at the deck is not solved; write kind = "hysteretic" with a small yield_mm, whose limit friction is'
+        return [Problem("at", "deck", text, kind=Contradiction)]
     return wrong_words(damper.at, "left", "right", "deck")
 
 
-def _of_other_kinds(damper: Damper) -> list[str]:
+def _of_other_kinds(damper: Damper) -> list[Problem]:
     own = DAMPERS.get(damper.kind, ())
     others = {name for names in DAMPERS.values() for name in names if own and name not in own}
     given = {name: value for name in sorted(others) if (value := getattr(damper, name)) != getattr(Damper, name)}
-    return [f"{name} = {value:g}: is not of a {damper.kind} damper; leave it out" for name, value in given.items()]
+    text = f"is not of a {damper.kind} damper; leave it out"
+    return [Problem(name, value, text, kind=Contradiction) for name, value in given.items()]
 
 
-def _wrong_brace(damper: Damper) -> list[str]:
+def _wrong_brace(damper: Damper) -> list[Problem]:
     if damper.brace == math.inf:
         return []
+    text = ""
     if damper.kind == "friction":
-        return [
-            f'brace = {damper.brace:g}: friction on a brace is a hysteretic damper; write kind = "hysteretic" with the '
-            "deflection of the brace under the damper's force as yield_mm"
-        ]
-    if damper.kind == "viscous" and damper.exponent > 1.0:
-        return [f"brace = {damper.brace:g}: with one the exponent must be 1 at most; leave the brace out"]
+        text = (
+            'friction on a brace is a hysteretic damper; write kind = "hysteretic" with the deflection of the brace under '
+            "the damper's force as yield_mm"
+        )
+    elif damper.kind == "viscous" and damper.exponent > 1.0:
+        text = "with one the exponent must be 1 at most; leave the brace out"
+    if text:
+        return [Problem("brace", damper.brace, text, kind=Contradiction)]
     return POSITIVE.problems("brace", damper.brace)

@@ -5,11 +5,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, NamedTuple, Self
 
-from rockbatch.common.errors import InputError, remedy
-from rockbatch.common.showing import InNotebook
+from rockbatch.common.errors import Problem, Unusual, WrongType, placed, refuse
+from rockbatch.common.showing import InNotebook, shown
 from rockbatch.common.units import LEAST, MOST, NOT_NEGATIVE, Bounds
 from rockbatch.pier.block import Pier
-from rockbatch.pier.sizes import refuse
+from rockbatch.pier.supports import NO_MASS
 
 BOUNDS = {
     "f": Bounds(0.0, 10.0, why="its force over the weight must be within 0..10"),
@@ -51,14 +51,14 @@ class Device(InNotebook, ABC):
     confirm: Sequence[str]
 
     def __post_init__(self) -> None:
-        refuse([f"{self.what}: {problem}" for problem in self._wrong()])
+        refuse(placed(self._wrong(), self.what))
 
     @abstractmethod
     def _measured(self) -> Sequence[str]:
         """Return its fields with numbers that count."""
 
-    def _wrong(self) -> list[str]:
-        """Return what is impossible about it under any pier: one sentence each."""
+    def _wrong(self) -> list[Problem]:
+        """Return what is impossible about it under any pier."""
         return [
             problem
             for name in self._measured()
@@ -75,11 +75,12 @@ class Device(InNotebook, ABC):
         return self
 
 
-def wrong_words(place: float | str | None, *words: str) -> list[str]:
+def wrong_words(place: float | str | None, *words: str) -> list[Problem]:
     """Return what is wrong about a place that is a word, none of these; empty if nothing is."""
     if not isinstance(place, str) or place in words:
         return []
-    return [f'at = "{place}": must be ' + "".join(f'"{word}", ' for word in words)[:-2] + " or an offset in m"]
+    text = f"must be {', '.join(map(shown, words))} or an offset in m"
+    return [Problem("at", place, text, kind=WrongType)]
 
 
 def doubt(pier: Pier, device: Device) -> Doubt | None:
@@ -87,11 +88,11 @@ def doubt(pier: Pier, device: Device) -> Doubt | None:
     return next((doubt for doubt in device.doubts(pier) if doubt.name not in device.confirm), None)
 
 
-def unlikely_devices(pier: Pier, devices: Sequence[Device]) -> list[str]:
-    """Return what is odd about devices of ``pier``, a sentence each, except what they confirm."""
+def unlikely_devices(pier: Pier, devices: Sequence[Device]) -> list[Problem]:
+    """Return what is odd about devices of ``pier``, except what they confirm."""
     doubts = [(device, doubt(pier, device)) for device in devices]
     return [
-        f"{device.what}: {odd.name} = {getattr(device, odd.name):g}: {odd.meaning}; {remedy(odd.name)}"
+        Problem(odd.name, getattr(device, odd.name), odd.meaning, device.what, odd.name, Unusual)
         for device, odd in doubts
         if odd is not None
     ]
@@ -122,9 +123,7 @@ def if_finite(**values: float) -> dict[str, float]:
 def over_weight(pier: Pier, **values: float) -> dict[str, Any]:
     """Return the fields of a device from the keys of a study."""
     if pier.mass_t is None:
-        raise InputError("mass_t is missing: kN are of a pier whose mass is known")
-    wrong = [problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)]
-    if wrong:
-        raise InputError(*wrong)
+        refuse([NO_MASS])
+    refuse([problem for name, value in values.items() for problem in NOT_NEGATIVE.problems(name, value)])
     factors = fields_of(pier)
     return {factors[name][0]: value / factors[name][1] for name, value in values.items()}

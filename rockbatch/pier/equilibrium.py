@@ -12,14 +12,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.pier.bases import Base, ElasticBase
+from rockbatch.pier.bases import Base, ElasticBase, YieldingBase
 from rockbatch.pier.block import Pier
-from rockbatch.pier.first_loading import Array, first_loading, spring_of
+from rockbatch.pier.first_loading import Array, Spring, steel
+from rockbatch.pier.frequencies import static_deflection
 from rockbatch.pier.places import places, prestress_over_weight
 from rockbatch.pier.restraints import Damper, DeckSpring, Restraint, Stop, Tendon
-
-EXPONENT = 5.0
-"""Bouc–Wen exponent of hysteretic dampers."""
 
 MOST_STEPS, NEAR = 64, 1e-8
 """Steps of the vertical balance, and the bracket at which it ends, over the deflection under the whole weight."""
@@ -92,14 +90,12 @@ class Place:
         if device.kind == "friction":
             return device.f * np.sign(elongation - since)
         compliance = device.f / (self.stiffness * device.yield_m)
-        total = elongation / device.yield_m
-        start = math.copysign(
-            float(first_loading(np.array([abs(since) / device.yield_m]), EXPONENT, compliance)[0]), since
-        )
+        curve, total = steel(compliance), elongation / device.yield_m
+        start = math.copysign(float(curve.force(np.array([abs(since) / device.yield_m]))[0]), since)
         back = start + (elongation - since) / (device.yield_m * (1.0 + compliance))
         turned = (elongation - since) * since < 0.0
         x = np.where(turned, back, total)
-        loaded = np.sign(x) * first_loading(np.abs(x), EXPONENT, compliance)
+        loaded = np.sign(x) * curve.force(np.abs(x))
         return device.f * np.where(turned & (back * start > 0.0), back, loaded)  # unloading is elastic
 
 
@@ -139,6 +135,12 @@ class Equilibria:
     def acceleration(self) -> Array:
         """Return the steady horizontal ground acceleration that holds the pier there [g]."""
         return self.moment / self.lever
+
+
+def spring_of(pier: Pier, base: ElasticBase) -> Spring:
+    """Return a support of ``base`` under ``pier``."""
+    strength = 0.5 * base.eta if isinstance(base, YieldingBase) else math.inf
+    return Spring(0.5 / static_deflection(pier, base), strength, base.first_loading)
 
 
 class SlowTurn:
@@ -256,7 +258,7 @@ class SlowTurn:
 
         limit = self.settled - risen + 2.0 * self.b * (1.0 if self.finite else 0.5 * math.pi)
         if not self.places:
-            bears = spring.strength > 1.0 or (spring.strength == 1.0 and spring.exponent is None)
+            bears = spring.strength > 1.0 or (spring.strength == 1.0 and spring.curve.corner)
             depth = spring.depth(1.0) if bears else math.inf
         else:
             start, near = np.array([self.settled - risen]), NEAR / spring.stiffness
@@ -274,14 +276,14 @@ class SlowTurn:
         spring, rise = self.spring, self._rise(theta)
         if not on_both:
             return np.full_like(theta, spring.depth(1.0)), np.zeros_like(theta)
-        if spring.exponent is None:
+        if spring.curve.corner:
             heel = np.maximum(0.5 - spring.stiffness * rise, max(1.0 - spring.strength, 0.0))
             return self.settled + 2.0 * rise - (0.5 - heel) / spring.stiffness, heel
         bears = self.settled + 2.0 * rise - self.at_rest / spring.stiffness  # the depth from which on the heel does
         depth = self.settled + rise  # of an elastic toe; Newton's method from there never goes past the root
         for _ in range(MOST_STEPS):
             toe, lifted = spring.force(depth), depth < bears
-            slope = np.where(lifted, 1.0, 2.0) - (toe / spring.strength) ** spring.exponent
+            slope = np.where(lifted, 0.0, 1.0) + spring.curve.tangent(toe / spring.strength)
             excess = 1.0 - toe - self._heel(theta, depth)
             step = excess / (spring.stiffness * np.maximum(slope, NEAR))
             depth, before = np.where(lifted, np.minimum(depth + step, bears), depth + step), depth
@@ -410,7 +412,7 @@ class SlowTurn:
         regimes = [np.zeros(len(curve.theta), dtype=bool)]
         if self.spring is not None:
             regimes += [curve.heel >= self.spring.strength]
-            if self.spring.exponent is None:
+            if self.spring.curve.corner:
                 regimes += [curve.depth * self.spring.stiffness >= self.spring.strength]
         for place in self.places:
             device, elongation = place.device, self.elongation(place, curve.theta, curve.depth)

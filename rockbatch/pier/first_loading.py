@@ -1,87 +1,154 @@
-"""Force of a support that is loaded slowly for the first time (THEORY.md, Statics), over the weight M g."""
+"""First loading of a spring that is loaded slowly: force over F_y by deflection over δ_y, and the other way.
 
-import math
+A curve follows from its tangent stiffness over the elastic one, s(z) at z = F/F_y: its deflection is ∫ dz/s(z). The statics
+sheet, releases and the static state of a run all take it from here.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.pier.bases import ElasticBase, YieldingBase, static_deflection
-from rockbatch.pier.block import Pier
-
 Array = npt.NDArray[np.float64]
+
+STEEL_EXPONENT = 5.0
+"""Bouc–Wen exponent of hysteretic dampers."""
+
+SLOW = 0.99
+"""zⁿ from which on the series of a Bouc–Wen curve takes too many terms."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+@dataclass(frozen=True)
+class Straight:
+    """A curve with the elastic stiffness up to the force ``most``/F_y."""
+
+    most: float = 1.0
+    corner = True
+
+    def force(self, deflection: Array) -> Array:
+        """Return F/F_y at a ``deflection``/δ_y ≥ 0."""
+        return np.minimum(deflection, self.most)
+
+    def deflection(self, force: float) -> float:
+        """Return the deflection/δ_y under a ``force``/F_y < 1."""
+        return force
+
+    def tangent(self, force: Array) -> Array:
+        """Return 1."""
+        return np.ones_like(force)
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """A curve whose tangent stiffness falls to 0 at F_y.
+
+    ``softening`` is s as a function of the deficit 1 − z, from which it is exact near F_y; ``give`` the deflection/δ_y of a brace
+    in series with the spring under F_y.
+    """
+
+    softening: Callable[[Array], Array]
+    give: float = 0.0
+    corner = False
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        """Forces, in ever smaller steps towards z = 1, and deflections there."""
+        deficit = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
+        steps = self._between(deficit[:-1], deficit[1:])
+        return 1.0 - deficit, np.concatenate(([0.0], np.cumsum(steps)))
+
+    def _between(self, start: Array, end: Array) -> Array:
+        """Return by how much the spring deflects as its deficit falls from ``start`` to ``end``."""
+        half, middle = 0.5 * (start - end), 0.5 * (start + end)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            compliance = 1.0 / self.softening(middle[..., None] + half[..., None] * _NODES)
+        return half * (np.where(half[..., None] > 0.0, compliance, 0.0) @ _WEIGHTS)
+
+    def _deflections(self, force: Array) -> Array:
+        forces, deflections = self._table
+        i = np.searchsorted(forces, force, side="right") - 1
+        return deflections[i] + self._between(1.0 - forces[i], 1.0 - force) + self.give * force
+
+    def deflection(self, force: float) -> float:
+        """Return the deflection/δ_y under a ``force``/F_y < 1."""
+        return float(self._deflections(np.array([force]))[0])
+
+    def force(self, deflection: Array) -> Array:
+        """Return F/F_y at a ``deflection``/δ_y ≥ 0: from the table, by two steps of Newton's method."""
+        forces, deflections = self._table
+        force = np.interp(deflection, deflections + self.give * forces, forces)
+        for _ in range(2):
+            tangent = self.tangent(force)
+            step = (deflection - self._deflections(force)) * tangent / (1.0 + self.give * tangent)
+            force = np.clip(force + step, 0.0, forces[-1])
+        return force
+
+    def tangent(self, force: Array) -> Array:
+        """Return the tangent stiffness of the spring without its brace over the elastic one."""
+        return self.softening(1.0 - force)
+
+
+Curve = Straight | Smooth
+"""First loading of a spring."""
+
+
+@dataclass(frozen=True)
+class BoucWen(Smooth):
+    """The curve of s = 1 − zⁿ, whose deflection is a series."""
+
+    exponent: float = 5.0
+
+    def deflection(self, force: float) -> float:
+        """Return the deflection/δ_y under a ``force``/F_y < 1: ∫ ds/(1 − sⁿ) from 0, by its series where that converges soon."""
+        n = self.exponent
+        ratio = force * force * (force * force) * force if n == 5.0 else force**n
+        if ratio > SLOW:
+            return super().deflection(force)
+        term, total, k = force, 0.0, 0
+        while term > 1e-17 * total:
+            total += term / (1.0 + k * n)
+            term *= ratio
+            k += 1
+        return total + self.give * force
 
 
 @cache
-def _curve(exponent: float) -> tuple[Array, Array, Array]:
-    """Return deflections, forces and stiffnesses of the first loading ∫ dz/(1 − zⁿ), in ever smaller steps towards z = 1."""
-    deficit = np.unique(np.concatenate((np.geomspace(1.0, 1e-15, 1200), np.linspace(1.0, 0.1, 300))))[::-1]
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    half, middle = 0.5 * -np.diff(deficit), 0.5 * (deficit[1:] + deficit[:-1])
+def bouc_wen(exponent: float, give: float = 0.0) -> BoucWen:
+    """Return the curve of a Bouc–Wen spring, with a brace in series that ``give`` says."""
 
-    def stiffness(deficit: Array) -> Array:
+    def softening(deficit: Array) -> Array:
         with np.errstate(divide="ignore"):
             return -np.expm1(exponent * np.log1p(-deficit))
 
-    steps = half * (weights / stiffness(middle[:, None] + half[:, None] * nodes)).sum(axis=1)
-    return np.concatenate(([0.0], np.cumsum(steps))), 1.0 - deficit, stiffness(deficit)
+    return BoucWen(softening, give, exponent)
 
 
-def first_loading(deflection: Array, exponent: float, give: float = 0.0) -> Array:
-    """Return F/F_y at a ``deflection``/δ_y ≥ 0 of a Bouc–Wen spring that is loaded for the first time.
-
-    ``give`` is the deflection/δ_y of a brace in series with it under F_y.
-    """
-    x, z, slope = _curve(exponent)
-    if give:
-        x, slope = x + give * z, slope / (1.0 + give * slope)
-    i = np.clip(np.searchsorted(x, deflection, side="right") - 1, 0, len(x) - 2)
-    step = x[i + 1] - x[i]
-    s = np.clip((deflection - x[i]) / step, 0.0, 1.0)
-    rise, start, end = z[i + 1] - z[i], slope[i] * step, slope[i + 1] * step
-    return z[i] + s * (start + s * (3.0 * rise - 2.0 * start - end + s * (start + end - 2.0 * rise)))
-
-
-def deflection_under(force: float, exponent: float) -> float:
-    """Return the deflection/δ_y of a Bouc–Wen spring that is first loaded to ``force``/F_y < 1."""
-    x, z, slope = _curve(exponent)
-    i = int(np.searchsorted(z, force, side="right")) - 1
-    deflection = float(x[i] + (force - z[i]) / slope[i])
-    for _ in range(20):  # Newton's method, from the side on which the curve is concave
-        loading = float(first_loading(np.array([deflection]), exponent)[0])
-        step = (force - loading) / -math.expm1(exponent * math.log(loading))
-        deflection += step
-        if step <= 1e-15 * deflection:
-            break
-    return deflection
+def steel(give: float) -> BoucWen:
+    """Return the curve of a hysteretic damper on a brace that gives by ``give``, the deflection/δ_y under its whole force."""
+    return bouc_wen(STEEL_EXPONENT, give)
 
 
 @dataclass(frozen=True)
 class Spring:
-    """A support: stiffness [1/m] and strength over the weight; the Bouc–Wen exponent of its first loading if it has one."""
+    """A support: stiffness [1/m] and strength over the weight, and the curve of its first loading."""
 
     stiffness: float
-    strength: float = math.inf
-    exponent: float | None = None
+    strength: float
+    curve: Curve
 
     def force(self, depth: Array) -> Array:
         """Return the force at a ``depth`` [m] of the pivot below its unstressed place, in first loading; 0 above it."""
         elastic = self.stiffness * np.maximum(depth, 0.0)
-        if self.exponent is None:
+        if self.curve.corner:
             return np.minimum(elastic, self.strength)
-        return self.strength * first_loading(elastic / self.strength, self.exponent)
+        return self.strength * self.curve.force(elastic / self.strength)
 
     def depth(self, force: float) -> float:
         """Return the depth [m] under a ``force`` below the strength, in first loading."""
-        if self.exponent is None:
+        if self.curve.corner:
             return force / self.stiffness
-        return deflection_under(force / self.strength, self.exponent) * self.strength / self.stiffness
-
-
-def spring_of(pier: Pier, base: ElasticBase) -> Spring:
-    """Return a support of ``base`` under ``pier``."""
-    stiffness = 0.5 / static_deflection(pier, base)
-    if not isinstance(base, YieldingBase):
-        return Spring(stiffness)
-    return Spring(stiffness, 0.5 * base.eta, base.n if base.has_exponent else None)
+        return self.curve.deflection(force / self.strength) * self.strength / self.stiffness

@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import OutOfRange, Problem, refuse
 from rockbatch.common.units import LEAST, MOST
-from rockbatch.pier.sizes import BOUNDS, out_of_bounds, refuse
+from rockbatch.pier.sizes import BOUNDS, out_of_bounds
 
 
 class Part(NamedTuple):
@@ -55,34 +56,36 @@ def in_floats(mass_t: float, height_m: float, inertia_t_m2: float = 0.0, length_
     return Part(float(mass_t), float(height_m), float(inertia_t_m2), None if length_m is None else float(length_m))
 
 
-def part_problems(n: int, part: Part) -> list[str]:
-    """Return a message for each value of part ``n`` that cannot be."""
+def part_problems(n: int, part: Part) -> list[Problem]:
+    """Return a problem for each value of part ``n`` that cannot be."""
     wrong = BOUNDS["mass_t"].problems(f"part_{n}_mass_t", part.mass_t)
     for name, value in (("height_m", part.height_m), ("inertia_t_m2", part.inertia_t_m2)):
         if not (value == 0 or LEAST <= value <= MOST):
-            wrong.append(f"part_{n}_{name} = {value:g}: must be 0 or a number above it, to {MOST:g}")
+            wrong.append(Problem(f"part_{n}_{name}", value, _NOT_NEGATIVE, kind=OutOfRange))
     return wrong + _length_problems(n, part)
 
 
-def _length_problems(n: int, part: Part) -> list[str]:
+def _length_problems(n: int, part: Part) -> list[Problem]:
     """Return why the length of part ``n`` cannot be; empty if it can, or is not given."""
     length = part.length_m
     if length is None or length == 0:
         return []
-    name = f"part_{n}_length_m"
-    if not LEAST <= length <= MOST:
-        return [f"{name} = {length:g}: must be 0 or a number above it, to {MOST:g}"]
-    if 0.5 * length > part.height_m * (1.0 + _ROUNDING):
-        reach = 2.0 * part.height_m
-        return [f"{name} = {length:g}: reaches below the pivots; about {part.height_m:g} m it may be {reach:g} at most"]
     rod = part.mass_t * length**2 / 12.0
-    if part.inertia_t_m2 < rod * (1.0 - _ROUNDING):
-        return [
-            f"{name} = {length:g}: a mass spread over it has an inertia of m L²/12 = {rod:.6g} t m² at least, "
-            f"inertia_t_m2 = {part.inertia_t_m2:g} is less"
-        ]
-    return []
+    if not LEAST <= length <= MOST:
+        text = _NOT_NEGATIVE
+    elif 0.5 * length > part.height_m * (1.0 + _ROUNDING):
+        text = f"reaches below the pivots; about {part.height_m:g} m it may be {2.0 * part.height_m:g} at most"
+    elif part.inertia_t_m2 < rod * (1.0 - _ROUNDING):
+        text = (
+            f"a mass spread over it has an inertia of m L²/12 = {rod:.6g} t m² at least, inertia_t_m2 = "
+            f"{part.inertia_t_m2:g} is less"
+        )
+    else:
+        return []
+    return [Problem(f"part_{n}_length_m", length, text, kind=OutOfRange)]
 
+
+_NOT_NEGATIVE = f"must be 0 or a number above it, to {MOST:g}"
 
 _ROUNDING = 1e-6
 """Share by which lengths and inertias of parts may be beyond what can be: digits that a study does not give."""

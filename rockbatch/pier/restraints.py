@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
+from rockbatch.common.errors import OutOfRange, Problem, WrongType
+from rockbatch.common.showing import shown
 from rockbatch.pier.block import Pier
 from rockbatch.pier.dampers import DAMPERS, Damper
 from rockbatch.pier.devices import (
@@ -88,11 +90,11 @@ class Tendon(Device):
     def _measured(self) -> Sequence[str]:
         return FIELDS[self.what]
 
-    def _wrong(self) -> list[str]:
+    def _wrong(self) -> list[Problem]:
         wrong = wrong_words(self.at, "left", "right") + super()._wrong()
         if self.strength <= self.psi:
-            strength = f"its yield force over the weight, {self.strength:g}"
-            wrong.append(f"{strength}, must be above its prestress, {self.psi:g}")
+            text = f"its yield force over the weight must be above its prestress, {self.psi:g}"
+            wrong.append(Problem("strength", self.strength, text, kind=OutOfRange))
         return wrong
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
@@ -167,7 +169,7 @@ class Stop(Device):
     def _measured(self) -> Sequence[str]:
         return FIELDS[self.what]
 
-    def _wrong(self) -> list[str]:
+    def _wrong(self) -> list[Problem]:
         return wrong_words(self.at, "left", "right") + super()._wrong()
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:
@@ -237,10 +239,12 @@ class DeckSpring(Device):
     def _measured(self) -> Sequence[str]:
         return FIELDS[self.what]
 
-    def _wrong(self) -> list[str]:
+    def _wrong(self) -> list[Problem]:
         wrong = HEIGHT.problems("height_m", self.height_m)
         if self.side not in get_args(Side):
-            wrong.append(f'side = "{self.side}": must be ' + " or ".join(f'"{side}"' for side in get_args(Side)))
+            wrong.append(
+                Problem("side", self.side, f"must be {' or '.join(map(shown, get_args(Side)))}", kind=WrongType)
+            )
         return wrong + super()._wrong()
 
     def doubts(self, pier: Pier) -> Iterator[Doubt]:

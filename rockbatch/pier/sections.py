@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem, refuse
 from rockbatch.pier.block import Pier
 from rockbatch.pier.parts import Part
 
@@ -25,9 +25,9 @@ class Above(NamedTuple):
     inertia: float  # about that centre [m²]
 
 
-def problems(pier: Pier) -> list[str]:
+def problems(pier: Pier) -> list[Problem]:
     """Return why forces in sections of ``pier`` cannot be computed; empty if they can."""
-    return [f"sections: {problem}" for problem in unknown_masses(pier)]
+    return [Problem("sections", None, text) for text in unknown_masses(pier)]
 
 
 def unknown_masses(pier: Pier) -> list[str]:
@@ -63,9 +63,7 @@ def section_heights(pier: Pier, sections: int | Sequence[float]) -> tuple[float,
 
     Raises ``InputError`` for heights outside the pier, and for a pier whose sections are not known.
     """
-    wrong = problems(pier)
-    if wrong:
-        raise InputError(*wrong)
+    refuse(problems(pier))
     top = pier.highest
     if isinstance(sections, int):
         if sections < 2:

@@ -6,7 +6,7 @@ Implausible ones, as of a wrong unit or of two values exchanged, are refused unt
 import math
 from collections.abc import Collection, Mapping
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import OutOfRange, Problem, Unusual
 from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
 
 
@@ -68,72 +68,66 @@ LIGHTEST, HEAVIEST = 0.005, 100.0
 """Bounds of the mass of a deck over that of what carries it."""
 
 
-def out_of_bounds(**values: float | None) -> list[str]:
-    """Return a message for each of the named values that is given and not within its :data:`BOUNDS`."""
+def out_of_bounds(**values: float | None) -> list[Problem]:
+    """Return a problem for each of the named values that is given and not within its :data:`BOUNDS`."""
     return [problem for name, value in values.items() for problem in BOUNDS[name].problems(name, value)]
 
 
-def falls(alpha: float, theta: float) -> list[str]:
+def falls(alpha: float, theta: float) -> list[Problem]:
     """Return that a pier of slenderness ``alpha`` let go at ``theta`` [rad] does not come back; empty if it does."""
     if abs(theta) < alpha:
         return []
     degrees = f"; if it is in degrees, write {math.radians(theta):.4g}" if abs(theta) > 0.5 else ""
-    return [
-        f"initial_rotation_rad = {theta:g}: must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is "
-        f"let go falls{degrees}"
-    ]
+    text = f"must be below alpha = {alpha:.4g} rad in magnitude, beyond which a pier that is let go falls{degrees}"
+    return [Problem("initial_rotation_rad", theta, text, kind=OutOfRange)]
 
 
-def refuse(wrong: list[str]) -> None:
-    """Raise an InputError with these messages, if there are any."""
-    if wrong:
-        raise InputError(*wrong)
+def odd(name: str, value: float, text: str) -> Problem:
+    """Return the problem of an unusual value that ``confirm`` accepts by its name."""
+    return Problem(name, value, text, confirm=name, kind=Unusual)
 
 
-def unusual(usual: Mapping[str, Usual], confirm: Collection[str], **values: float | None) -> list[str]:
-    """Return what is odd about the named values that are given, not ``usual`` and not in ``confirm``: one sentence each."""
+def unusual(usual: Mapping[str, Usual], confirm: Collection[str], **values: float | None) -> list[Problem]:
+    """Return what is odd about the named values that are given, not ``usual`` and not in ``confirm``."""
     given = {name: value for name, value in values.items() if value is not None and name not in confirm}
-    doubts = [(name, usual[name].doubt(name, value)) for name, value in given.items()]
-    return [f"{doubt}; {remedy(name)}" for name, doubt in doubts if doubt]
+    return [problem for name, value in given.items() for problem in usual[name].doubts(name, value)]
 
 
-def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+def unlikely_sizes(width_m: float, height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
     """Return what is odd about a pier's width and height [m] and its other ``heights``, except those in ``confirm``."""
-    doubts = {}
-    if width_m > height_m:
-        doubts["width_m"] = (
-            f"width_m = {width_m:g}: more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g "
-            "only, and slides before; width and height may be exchanged"
+    wrong = []
+    if width_m > height_m and "width_m" not in confirm:
+        text = (
+            f"more than the height, {height_m:g} m: such a block lifts off at {width_m / height_m:.2g} g only, and slides "
+            "before; width and height may be exchanged"
         )
-    wrong = [f"{text}; {remedy(name)}" for name, text in doubts.items() if name not in confirm]
+        wrong = [odd("width_m", width_m, text)]
     return wrong + unlikely_heights(height_m, confirm, **heights)
 
 
-def unlikely_heights(height_m: float, confirm: Collection[str], **heights: float | None) -> list[str]:
+def unlikely_heights(height_m: float, confirm: Collection[str], **heights: float | None) -> list[Problem]:
     """Return what is odd about ``heights`` over that of a pier [m], except those in ``confirm``."""
     return [
-        f"{name} = {value:g}: {value / height_m:.2g} times the height of the pier, {height_m:g} m; {remedy(name)}"
+        odd(name, value, f"{value / height_m:.2g} times the height of the pier, {height_m:g} m")
         for name, value in heights.items()
         if value is not None and not LOWEST * height_m <= value <= HIGHEST * height_m and name not in confirm
     ]
 
 
-def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[str]:
+def unlikely_deck(mass_t: float, deck_mass_t: float, confirm: Collection[str]) -> list[Problem]:
     """Return what is odd about the mass of a deck over that of what carries it [t]; empty if it is in ``confirm``."""
     ratio = deck_mass_t / mass_t
     if LIGHTEST <= ratio <= HEAVIEST or "deck_mass_t" in confirm:
         return []
-    return [
-        f"deck_mass_t = {deck_mass_t:g}: {ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}; {remedy('deck_mass_t')}"
-    ]
+    return [odd("deck_mass_t", deck_mass_t, f"{ratio:.3g} times the mass of the pier, mass_t = {mass_t:g}")]
 
 
-def unlikely_inertia(deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]) -> list[str]:
+def unlikely_inertia(
+    deck_mass_t: float, inertia_t_m2: float, height_m: float, confirm: Collection[str]
+) -> list[Problem]:
     """Return what is odd about the rotary inertia of a deck at this height; empty if it is 0 or in ``confirm``."""
     radius = math.sqrt(max(inertia_t_m2, 0.0) / deck_mass_t)
     if inertia_t_m2 == 0 or NARROWEST * height_m <= radius <= BROADEST * height_m or "deck_inertia_t_m2" in confirm:
         return []
-    return [
-        f"deck_inertia_t_m2 = {inertia_t_m2:g}: that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck "
-        f"at {height_m:g} m; {remedy('deck_inertia_t_m2')}"
-    ]
+    text = f"that of a mass of {deck_mass_t:g} t at {radius:.2g} m from its axis, of a deck at {height_m:g} m"
+    return [odd("deck_inertia_t_m2", inertia_t_m2, text)]

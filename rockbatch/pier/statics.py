@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import refuse
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
-from rockbatch.pier.bases import Base, ElasticBase, problems, vertical_frequency
+from rockbatch.pier.bases import Base, ElasticBase
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
 from rockbatch.pier.free_rocking import FreeRocking, Swings
+from rockbatch.pier.frequencies import vertical_frequency
 from rockbatch.pier.places import symmetric
+from rockbatch.pier.possible import problems
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -320,9 +322,7 @@ def statics(pier: Pier, foundation: Base) -> Statics:
       periods   0.1 α 4.92 s, 0.5 α 13.9 s, 0.9 α 31.5 s
       impacts   as viscous damping 0.1 α 1.71%, 0.5 α 2.33%, 0.9 α 4.59%
     """
-    wrong = problems(pier, foundation) or unlikely_devices(pier, foundation.restraints)
-    if wrong:
-        raise InputError(*wrong)
+    refuse(problems(pier, foundation) or unlikely_devices(pier, foundation.restraints))
     return sheet_of(pier, foundation)
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Collection
 from typing import NamedTuple
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import MissingKey, Problem, Unusual, refuse
 from rockbatch.common.units import POSITIVE
 from rockbatch.pier.block import Pier
 
@@ -32,10 +32,15 @@ def eta_of(pier: Pier, yield_kN: float) -> float:
 def _mass(pier: Pier, **value: float) -> float:
     wrong = [problem for name, number in value.items() for problem in POSITIVE.problems(name, number)]
     if pier.mass_t is None:
-        wrong.append("mass_t is missing: kN and kN/m are of a pier whose mass is known")
-    if wrong or pier.mass_t is None:
-        raise InputError(*wrong)
+        wrong.append(NO_MASS)
+    refuse(wrong)
+    assert pier.mass_t is not None
     return pier.mass_t
+
+
+NO_MASS = Problem(
+    "mass_t", None, "mass_t is missing: kN and kN/m are of a pier whose mass is known", kind=MissingKey, named=False
+)
 
 
 class Support(NamedTuple):
@@ -50,9 +55,11 @@ class Support(NamedTuple):
         """Return whether a value is usual under a pier."""
         return self.least <= self.comes_to(pier, value) <= self.most
 
-    def doubt(self, pier: Pier, name: str, value: float) -> str:
-        """Return what is odd about a value of the key ``name``; empty if nothing is."""
-        return "" if self.holds(pier, value) else f"{name} = {value:g}: {self.words.format(self.comes_to(pier, value))}"
+    def doubts(self, pier: Pier, name: str, value: float) -> list[Problem]:
+        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
+        if self.holds(pier, value):
+            return []
+        return [Problem(name, value, self.words.format(self.comes_to(pier, value)), confirm=name, kind=Unusual)]
 
 
 def _half_weight(pier: Pier) -> float:
@@ -86,8 +93,7 @@ SUPPORTS = {
 """Usual supports of a pier of known mass, in a study and in Python alike: a wrong unit explains others better than the ground."""
 
 
-def unlikely_supports(pier: Pier, confirm: Collection[str], **values: float | None) -> list[str]:
-    """Return what is odd about :data:`SUPPORTS` under a pier of known mass that are given and not confirmed, a sentence each."""
+def unlikely_supports(pier: Pier, confirm: Collection[str], **values: float | None) -> list[Problem]:
+    """Return what is odd about :data:`SUPPORTS` under a pier of known mass that are given and not confirmed."""
     given = {name: value for name, value in values.items() if value is not None and name not in confirm}
-    doubts = [(name, SUPPORTS[name].doubt(pier, name, value)) for name, value in given.items()]
-    return [f"{doubt}; {remedy(name)}" for name, doubt in doubts if doubt]
+    return [problem for name, value in given.items() for problem in SUPPORTS[name].doubts(pier, name, value)]

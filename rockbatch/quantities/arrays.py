@@ -68,6 +68,15 @@ class Rows:
             self._numbers[column] = np.append(whole, np.nan)  # which MISSING takes
         return self._numbers[column][self.places]
 
+    @property
+    def missing(self) -> npt.NDArray[np.bool_]:
+        """True for each row that the table lacks, shape (n,)."""
+        return self.places == MISSING
+
+    def facts(self, column: str) -> npt.NDArray[np.bool_]:
+        """Return True where a column of facts is 1, shape (n,); False where it is empty, too."""
+        return self.numbers(column) == 1.0
+
     def texts(self, column: str) -> Texts:
         """Return a column of texts; "" for one that an earlier version did not write."""
         if column in self._own:

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from rockbatch.pier.bases import ASKING_TENSION, IMPULSIVE, RATCHETING
+from rockbatch.pier.bases import ASKING_TENSION, IMPULSIVE
 from rockbatch.pier.block import share_of_shaft
+from rockbatch.pier.laws import RATCHETING
 from rockbatch.pier.restraints import what_of
 
 Case = Mapping[str, Any]

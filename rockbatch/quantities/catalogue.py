@@ -281,6 +281,15 @@ FIXED = (
 )  # fmt: skip
 """Quantities that every table has, in its order; then come those of the keys that the study varies."""
 
+_CHANGED = "a motion 10⁻⁸ stronger or weaker"
+_KNOWN = "; empty with a fixed step, and of a run that failed"
+
+
+def _fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
+    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)
+
+
 _DUCTILITY = "greatest deflection of {} support over its yield deflection"
 _DISSIPATED = "plastic work of each support, per unit mass"
 
@@ -400,6 +409,18 @@ TRAILING = (
     Quantity(
         "drift_height_m", "height above the pivots at which drift is read", lambda run: run.pier.top, "m",
         ReportFormat("drift at [m]", ".6g", behind="top_drift_m"), ": `top_m` of the pier, or its highest point",
+    ),
+    Quantity(
+        "failure",
+        "kind of failure of a run: contacts, blew up, undecided, ratchets, not settled, large step, many steps; of a record: "
+        "unusable; see reason",
+        lambda run: run.outcome.failure.value if run.outcome.failure else "", kind="text", sometimes=True,
+    ),
+    _fact("chaotic", f"{_CHANGED}, or another step, changes the peak or the residuals beyond the tolerance", _KNOWN),
+    _fact("may_overturn", f"{_CHANGED} overturns the pier, and this one does not", _KNOWN),
+    _fact(
+        "beyond_linearised", "the rotations are too large for linearised kinematics",
+        '; empty with kinematics = "finite"',
     ),
 )  # fmt: skip
 """Quantities that follow those of the varied keys. A table of an earlier version may lack the last of them."""
@@ -645,6 +666,13 @@ _LANDING_FORCE = replace(
 )
 
 
+_SLIDES_FACT = _fact(
+    "slides", "the friction demand, of impacts too, is more than the interface has",
+    ", as `friction` of the case; with [output] forces = true", _of_forces("slides"),
+    requested=lambda study: study.output.forces and any(case.base.friction is not None for case in study.cases),
+)  # fmt: skip
+
+
 def _energy(term: str, form: str = ".4f") -> Quantity:
     """Return a term of the energy ledger."""
 
@@ -689,8 +717,8 @@ OPTIONAL = (
     ),
     Quantity(
         OTHER_LAW,
-        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; unless [output] "
-        "both_laws = false",
+        "settlement of Bouc–Wen springs by the elastic–perfectly plastic law, the other end of the range; with [output] "
+        "both_laws = true, or with a check of a settlement",
         "settlement_other_law", "m", ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
         requested=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),
@@ -731,6 +759,7 @@ OPTIONAL = (
     *_WORK,
     *_OF_BENDING,
     _LANDING_FORCE,
+    _SLIDES_FACT,
 )  # fmt: skip
 """Quantities at the end of a table, on request of the study."""
 
@@ -738,7 +767,9 @@ COLUMNS = {quantity.name: quantity for quantity in (*FIXED, *TRAILING, *OPTIONAL
 """All of them, by name, in the order of the file."""
 
 TEXTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "text")
-COUNTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "count")
+FACTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "fact")
+COUNTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind in ("count", "fact"))
+"""Columns of whole numbers."""
 UNBOUNDED = tuple(quantity.name for quantity in COLUMNS.values() if quantity.unbounded)
 
 _OTHERS = (

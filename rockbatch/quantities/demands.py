@@ -161,6 +161,24 @@ def axial(sign: float) -> Evaluate:
     return evaluate
 
 
+OF_SECTIONS = {
+    "height_m": "height of the section above the pivots [m]",
+    "section_shear_m_s2": "greatest shear across the axis, over the mass of the pier [m/s²]",
+    "section_moment_m2_s2": "greatest moment about the middle of the section, over the mass of the pier [m²/s²]",
+    "section_axial_least_m_s2": "least axial force, positive in compression, over the mass of the pier [m/s²]",
+    "section_axial_greatest_m_s2": "greatest axial force, likewise [m/s²]",
+    "section_axial_at_moment_m_s2": "axial force when the moment is greatest, likewise [m/s²]",
+    "section_shear_kN": "greatest shear across the axis [kN]; this and the following if mass_t is given",
+    "section_moment_kNm": "greatest moment about the middle of the section [kN m]",
+    "section_axial_least_kN": "least axial force, positive in compression [kN]",
+    "section_axial_greatest_kN": "greatest axial force, likewise [kN]",
+    "section_axial_at_moment_kN": "axial force when the moment is greatest, likewise [kN]",
+    "sections_error": "largest relative error of shear, moment and axial extremes: four times the change when the step was "
+    "halved; empty with a fixed step",
+}
+"""Columns of sections.csv behind those that name the run, with their meanings."""
+
+
 def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
     """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
 

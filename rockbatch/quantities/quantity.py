@@ -39,7 +39,7 @@ class Run(Protocol):
 
     @property
     def outcome(self) -> Any:
-        """Its :class:`rockbatch.simulation.outcome.Outcome`."""
+        """Its :class:`rockbatch.outcome.outcome.Outcome`."""
 
     @property
     def pga(self) -> float:
@@ -108,7 +108,7 @@ class Quantity:
     more : str
         What its meaning goes on with.
     kind : str
-        "number", "count" (a whole one) or "text".
+        "number", "count" (a whole one), "fact" (1 if it holds, 0 if not) or "text".
     over_alpha : bool
         True if the outcome's angle is divided by the pier's α.
     bases : tuple of str
@@ -145,7 +145,7 @@ class Quantity:
     unit: str = "1"
     page: ReportFormat | None = None
     more: str = ""
-    kind: Literal["number", "count", "text"] = "number"
+    kind: Literal["number", "count", "fact", "text"] = "number"
     over_alpha: bool = False
     bases: tuple[str, ...] = ALL
     stood: bool = False

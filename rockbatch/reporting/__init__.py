@@ -9,13 +9,13 @@ from rockbatch.checks import as_table
 from rockbatch.common.arguments import checked
 from rockbatch.common.files import made_folder, write_output, write_whole
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.response import Response
 from rockbatch.reporting.finished import Finished, read
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.page import comparison, page
 from rockbatch.reporting.pair import pair
 from rockbatch.results.opened import Results
 from rockbatch.results.run_json import describe_study, is_of
-from rockbatch.simulation.response import Response
 from rockbatch.study import Study
 
 REPORT = "report.html"

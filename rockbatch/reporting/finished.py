@@ -12,15 +12,15 @@ from rockbatch.checks.coverage import CaseRuns, runs_of_cases
 from rockbatch.checks.responses import Worst, worst_of_cases
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.response import Response
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.rows import NOT_RUN, counts_as, simulated
 from rockbatch.reporting.finished_analysis import Contents
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, tag
 from rockbatch.results.labelled import Labelled, by_pga, foundation, groups_of, labelled, pier_of
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.reading import Saved
-from rockbatch.results.rows import NOT_RUN, counts_as, simulated
-from rockbatch.simulation.response import Response
 
 if TYPE_CHECKING:
     from pandas.core.groupby import DataFrameGroupBy

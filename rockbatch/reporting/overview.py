@@ -6,7 +6,7 @@ from typing import Any
 from rockbatch.checks import wording
 from rockbatch.checks.responses import PEAKS
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import LEANS
+from rockbatch.outcome.outcome import LEANS
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.reporting import dots

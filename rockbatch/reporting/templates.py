@@ -3,11 +3,8 @@
 import base64
 import hashlib
 import shlex
-import sys
 from collections.abc import Iterable
-from contextlib import suppress
 from functools import cache
-from importlib.util import cache_from_source
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,7 +17,6 @@ from rockbatch.reporting.table import THETA
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-    from jinja2.bccache import Bucket
 
 HERE = Path(__file__).parent
 
@@ -71,23 +67,9 @@ def render(template: str, **values: object) -> Markup:
 
 @cache
 def _environment() -> "Environment":
-    import jinja2
-    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    class Compiled(FileSystemBytecodeCache):
-        """Compiled templates beside Python's compiled modules; where these cannot be written, nor can they."""
-
-        def dump_bytecode(self, bucket: "Bucket") -> None:
-            if not sys.dont_write_bytecode:
-                with suppress(OSError):
-                    super().dump_bytecode(bucket)
-
-    # Jinja looks at a template's text and at Python's version only, but its own sources and the options below count, too
-    sources = (*sorted(Path(jinja2.__file__).parent.glob("*.py")), Path(__file__))
-    compiler = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:8]
-    pattern = f"%s.{sys.implementation.cache_tag}-{compiler}.jinja"
     made = Environment(
-        bytecode_cache=Compiled(str(Path(cache_from_source(__file__)).parent), pattern),
         loader=FileSystemLoader(TOP), autoescape=True, undefined=StrictUndefined,
         finalize=lambda value: value if hasattr(value, "__html__") else escape(value),
         trim_blocks=True, lstrip_blocks=True,

@@ -12,8 +12,8 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.pier import Pier
 from rockbatch.quantities.catalogue import TEXTS
+from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.columns import PEAKS
-from rockbatch.results.rows import as_in_peaks, simulated, with_case
 from rockbatch.study import Study
 
 NAMING = ("record", "case", "polarity", "scale")

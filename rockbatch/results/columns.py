@@ -12,10 +12,10 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import shown
 from rockbatch.motions import Motion, MotionSet
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Pier
 from rockbatch.quantities.arrays import texts_in
-from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.quantities.catalogue import COLUMNS, COUNTS, FACTS, FIXED, MIRROR_OF, OPTIONAL, TEXTS, TRAILING, names
 from rockbatch.study import Case, Study
 
 PEAKS = "peaks.csv"
@@ -75,6 +75,8 @@ def cells(runs: Sequence[StudyRun], requested: Container[str] = COLUMNS) -> dict
     alpha = [run.case.pier.alpha for run in runs]
     for name in _OVER_ALPHA:
         table[name] = [None if x is None else x / a for x, a in zip(table[name], alpha, strict=True)]
+    for name in table.keys() & FACTS:
+        table[name] = [None if holds is None else int(holds) for holds in table[name]]
     return table
 
 
@@ -86,7 +88,12 @@ def row(run: StudyRun) -> dict[str, Any]:
 def unusable_rows(motions: MotionSet) -> list[dict[str, Any]]:
     """Return a row for each file that could not be used, with the reason."""
     return [
-        {"record": file.name, "status": "failed", "reason": f"{file.source}: {file.reason}"}
+        {
+            "record": file.name,
+            "status": "failed",
+            "reason": f"{file.source}: {file.reason}",
+            "failure": Failure.UNUSABLE.value,
+        }
         for file in motions.unusable
     ]
 
@@ -130,7 +137,18 @@ def as_series(cells: Mapping[str, Any]) -> "pd.Series[Any]":
     return _typed(table, ()).iloc[0].rename(cells["record"])
 
 
-NEEDED = ("record", "case", "polarity", "scale", "status", "flight_s", "theta_max_over_alpha", "theta_max_error")
+NEEDED = (
+    "record",
+    "case",
+    "polarity",
+    "scale",
+    "status",
+    "flight_s",
+    "theta_max_over_alpha",
+    "theta_max_error",
+    "chaotic",
+    "may_overturn",
+)
 """Columns without which a run would seem to have gone well."""
 
 

@@ -29,9 +29,9 @@ from rockbatch.common.figures.description import (
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.rows import counts_as
 from rockbatch.results.labelled import Labelled, as_dicts, by_pga, ceiling, groups_of
 from rockbatch.results.labels import Series
-from rockbatch.results.rows import counts_as
 from rockbatch.results.sections import columns_in
 from rockbatch.results.suite_statistics import NO_PEAK, distribution, worst_records
 

@@ -36,6 +36,8 @@ import numpy as np
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import opened, replacing, state_of
 from rockbatch.common.lazy import h5py, pd
+from rockbatch.outcome.outcome import TERMS
+from rockbatch.outcome.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 from rockbatch.pier import (
     Base,
     ElasticBase,
@@ -52,8 +54,6 @@ from rockbatch.pier.sizes import USUAL as PIERS
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
 from rockbatch.results.hdf5 import array_in, attribute, attributes_of, group_in
-from rockbatch.simulation.outcome import TERMS
-from rockbatch.simulation.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 
 HISTORIES = "histories.h5"
 """File of the histories that were kept, beside peaks.csv."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.labels import Key, Series, digits_that_tell, named, quantity
-from rockbatch.results.rows import as_in_peaks, simulated, with_case
 from rockbatch.study import PIER_KEYS
 
 

@@ -13,15 +13,15 @@ from rockbatch.common.files import read_table
 from rockbatch.common.grouping import closest
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown, several, shown
+from rockbatch.outcome.response import Response
 from rockbatch.quantities.catalogue import in_words
+from rockbatch.quantities.rows import simulated, with_case
 from rockbatch.results.histories_file import HISTORIES, Responses
 from rockbatch.results.intensity import INTENSITY, orders
 from rockbatch.results.labelled import Labelled, labelled
 from rockbatch.results.reading import Saved, read_saved
-from rockbatch.results.rows import simulated, with_case
 from rockbatch.results.sections import SECTIONS, read_sections
 from rockbatch.results.shocks import SHOCKS, read_shocks
-from rockbatch.simulation.response import Response
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

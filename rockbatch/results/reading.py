@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import EditedTable, InputError, MissingColumns
+from rockbatch.common.errors import EditedTable, InputError, MissingColumns, NotFound, Problem, refuse
 from rockbatch.common.files import CHANGED, csv_plain, legible, opened, opened_text, read_text, sha256_of
 from rockbatch.common.lazy import pd
 from rockbatch.common.version import __version__
-from rockbatch.quantities.catalogue import COUNTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
+from rockbatch.quantities.catalogue import COUNTS, FACTS, FIXED, TEXTS, TRAILING, UNBOUNDED, names
 from rockbatch.results.columns import PEAKS, STATUSES, numbers_or_words
 from rockbatch.results.run_json import INFO, SHAPE
 from rockbatch.results.shape import unfit
@@ -71,14 +71,13 @@ def read_saved(directory: Path) -> Saved:
     if directory.exists() and not directory.is_dir():
         folder = directory.parent if (directory.parent / INFO).exists() else Path("reports") / directory.stem
         raise InputError(f"{directory}: a file, not a folder of results; write the folder, such as {folder}")
-    problems: list[str] = []
+    problems: list[Problem | str] = []
     info: dict[str, Any] = {}
     with _noting(problems):
         info = _read_info(directory / INFO)
     with _noting(problems):
         peaks = _read_peaks(directory / PEAKS, info.get("varied", []))
-    if problems:
-        raise InputError(*problems, *_of_another_version(directory))
+    refuse([*problems, *_of_another_version(directory)] if problems else [])
     if unknown := {name for case in info["cases"] for name in case["columns"]} - set(info["varied"]):
         raise InputError(
             f"{directory / INFO}: cases vary {', '.join(sorted(unknown))}, which varied does not list; start `rockbatch run` "
@@ -124,7 +123,7 @@ def edited(directory: Path, info: Mapping[str, Any]) -> str:
 
 
 @contextmanager
-def _noting(problems: list[str]) -> Iterator[None]:
+def _noting(problems: list[Problem | str]) -> Iterator[None]:
     """Add the problems of an ``InputError`` to those of the other file."""
     try:
         yield
@@ -138,7 +137,7 @@ def _naming_damage(path: Path, line: str, kind: str, *damages: type[Exception]) 
     try:
         yield
     except FileNotFoundError:
-        raise InputError(f"{path}: not there; give a folder that `rockbatch run` has written") from None
+        raise NotFound(f"{path}: not there; give a folder that `rockbatch run` has written") from None
     except InputError:
         raise
     except damages as error:
@@ -154,8 +153,7 @@ def _read_info(path: Path) -> dict[str, Any]:
     problems = [f"{path}: {misfit}; start `rockbatch run` again" for misfit in misfits if misfit.place not in missing]
     if missing:
         problems.insert(0, f"{path}: has no {', '.join(missing)}; start `rockbatch run` again with this version")
-    if problems:
-        raise InputError(*problems)
+    refuse(problems)
     return dict(info)
 
 
@@ -187,7 +185,9 @@ def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
                 index_col=False, dtype={**dict.fromkeys(texts, "str"), **dict.fromkeys(numbers, "float64")},
             )  # fmt: skip
         for name in table.columns.intersection(list(COUNTS)):
-            if (table[name].abs() > MOST_COUNT).any():
+            if (table[name].abs() > MOST_COUNT).any() or (
+                name in FACTS and not table[name].isin([0, 1, math.nan]).all()
+            ):
                 raise ValueError(f"{name} is out of range")
             table[name] = table[name].astype("Int64")
         finite = [name for name in numbers if name not in UNBOUNDED]
@@ -221,10 +221,9 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
                     continue
                 row = dict(zip(head, cells, strict=True))
                 bad += [
-                    f'{place}: {name} = "{row[name][:80]}": expected {"a whole number" if name in COUNTS else "a number"} '
-                    "or nothing"
+                    f'{place}: {name} = "{row[name][:80]}": expected {_expected(name)} or nothing'
                     for name in numbers
-                    if not _is_number(row[name], name in COUNTS, name in UNBOUNDED)
+                    if not _is_number(row[name], name)
                 ]
                 if row["status"] not in STATUSES:
                     bad.append(f'{place}: status = "{row["status"][:80]}": expected {", ".join(STATUSES)}')
@@ -237,11 +236,21 @@ def _bad_cells(path: Path, head: Sequence[str], numbers: Sequence[str]) -> list[
     return bad
 
 
-def _is_number(text: str, whole: bool, unbounded: bool) -> bool:
+def _expected(name: str) -> str:
+    """Return what a filled cell of a column holds, in words."""
+    if name in FACTS:
+        return "0, 1"
+    return "a whole number" if name in COUNTS else "a number"
+
+
+def _is_number(text: str, name: str) -> bool:
+    """Return whether a cell of column ``name`` is a number as it takes them, or empty."""
     try:
         value = float(text or 0)
     except ValueError:
         return False
-    if unbounded and value == math.inf:
+    if name in FACTS:
+        return value in (0.0, 1.0)
+    if name in UNBOUNDED and value == math.inf:
         return True
-    return math.isfinite(value) and (not whole or (value.is_integer() and abs(value) <= MOST_COUNT))
+    return math.isfinite(value) and (name not in COUNTS or (value.is_integer() and abs(value) <= MOST_COUNT))

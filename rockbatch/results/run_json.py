@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from rockbatch.common.files import is_plain, read_text, replacing
+from rockbatch.common.version import commit
 from rockbatch.motions import MotionSet
 from rockbatch.motions.description import entry, spectra
 from rockbatch.motions.motion import Motion, Unusable
@@ -94,8 +95,8 @@ SHAPE = {
         | dict.fromkeys(("dt_s", "duration_s", "pga_g"), float)
         | dict.fromkeys(("pga_v_g", "pgv_m_s", "pgd_m"), _NUMBER)
         | {name: Maybe(_NUMBER) for name in ("arias_m_s", "d5_95_s", "azimuth_deg", "magnitude", "distance_km")}
-        | {name: Maybe(_NUMBER) for name in ("pulse_indicator", "pulse_period_s")}
-        | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction", "pulse")}
+        | {name: Maybe(_NUMBER) for name in ("pulse_period_s",)}
+        | {name: Maybe((str, None)) for name in ("label", "event", "station", "station_name", "direction")}
         | {
             "factor": Maybe(float),
             "vertical_factor": Maybe(float),
@@ -124,10 +125,11 @@ VERSIONS_OF = ("numba", "numpy", "pandas", "obspy", "h5py")
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that numbers depend on."""
+    """Return the versions of Python and of the packages that numbers depend on, and the commit of a checkout."""
     from importlib.metadata import version  # 20 ms that nobody needs who reads results
 
-    return {"python": platform.python_version(), **{name: version(name) for name in VERSIONS_OF}}
+    packages = {name: version(name) for name in VERSIONS_OF}
+    return {"python": platform.python_version(), **packages} | ({"commit": commit()} if commit() else {})
 
 
 def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
@@ -160,7 +162,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
 def _not_used(file: Unusable) -> dict[str, Any]:
     """Return the entry of a file that is not used; the samples of one that is held back are not in it."""
     entry = {name: value for name, value in vars(file).items() if name != "motion"}
-    return entry | {"lacks": list(file.lacks), "problem": file.problem and file.problem.name.lower()}
+    return entry | {"lacks": list(file.lacks), "kind": file.kind.__name__}
 
 
 def describe_study(study: Study) -> dict[str, str]:

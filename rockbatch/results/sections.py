@@ -5,28 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Pier
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.results.beside_peaks import read_beside
-from rockbatch.simulation.outcome import Section
 
 SECTIONS = "sections.csv"
-
-MEANING = {
-    "height_m": "height of the section above the pivots [m]",
-    "section_shear_m_s2": "greatest shear across the axis, over the mass of the pier [m/s²]",
-    "section_moment_m2_s2": "greatest moment about the middle of the section, over the mass of the pier [m²/s²]",
-    "section_axial_least_m_s2": "least axial force, positive in compression, over the mass of the pier [m/s²]",
-    "section_axial_greatest_m_s2": "greatest axial force, likewise [m/s²]",
-    "section_axial_at_moment_m_s2": "axial force when the moment is greatest, likewise [m/s²]",
-    "section_shear_kN": "greatest shear across the axis [kN]; this and the following if mass_t is given",
-    "section_moment_kNm": "greatest moment about the middle of the section [kN m]",
-    "section_axial_least_kN": "least axial force, positive in compression [kN]",
-    "section_axial_greatest_kN": "greatest axial force, likewise [kN]",
-    "section_axial_at_moment_kN": "axial force when the moment is greatest, likewise [kN]",
-    "sections_error": "largest relative error of shear, moment and axial extremes: four times the change when the step was "
-    "halved; empty with a fixed step",
-}
-"""Columns behind those that name the run."""
 
 
 def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]]:
@@ -34,18 +18,18 @@ def section_rows(pier: Pier, sections: Sequence[Section]) -> list[dict[str, Any]
     rows = []
     for height, *forces, error in sections:
         in_kilonewtons = [None if pier.mass_t is None else pier.mass_t * force for force in forces]
-        rows.append(dict(zip(MEANING, (height, *forces, *in_kilonewtons, error), strict=True)))
+        rows.append(dict(zip(OF_SECTIONS, (height, *forces, *in_kilonewtons, error), strict=True)))
     return rows
 
 
 def as_table(rows: Iterable[dict[str, Any]]) -> "pd.DataFrame":
     """Return rows as a DataFrame of numbers; NaN where one is not known."""
-    return pd.DataFrame(list(rows), columns=list(MEANING), dtype="float64")
+    return pd.DataFrame(list(rows), columns=list(OF_SECTIONS), dtype="float64")
 
 
 def read_sections(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
     """Return the table of a study that varies these keys; ``InputError`` if it is not as it was written."""
-    return read_beside(path, varied, MEANING).astype(dict.fromkeys(MEANING, "float64"))
+    return read_beside(path, varied, OF_SECTIONS).astype(dict.fromkeys(OF_SECTIONS, "float64"))
 
 
 def columns_in(runs: "pd.DataFrame") -> tuple[dict[str, str], dict[str, str]]:

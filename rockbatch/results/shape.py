@@ -24,7 +24,7 @@ class Maybe:
     shape: Any
 
 
-class Problem(NamedTuple):
+class Misfit(NamedTuple):
     """A part that does not fit: its place, and what was expected there; ``str`` says both."""
 
     place: str
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
         return f"{place} is missing" if self.missing else f"{place}: expected {self.expected}"
 
 
-def unfit(value: Any, shape: Any, most: int | None = None) -> Iterator[Problem]:
+def unfit(value: Any, shape: Any, most: int | None = None) -> Iterator[Misfit]:
     """Return the first ``most`` parts of ``value`` that do not fit; none if all of it does."""
     return islice(_unfit(value, shape, ""), most)
 
@@ -46,12 +46,12 @@ def fits(value: Any, shape: Any) -> bool:
     return next(unfit(value, shape), None) is None
 
 
-def _unfit(value: Any, shape: Any, place: str) -> Iterator[Problem]:
+def _unfit(value: Any, shape: Any, place: str) -> Iterator[Misfit]:
     if isinstance(shape, dict):
         yield from _unfit_object(value, shape, place)
     elif isinstance(shape, list):
         if not isinstance(value, list):
-            yield Problem(place, "a list")
+            yield Misfit(place, "a list")
             return
         for number, item in enumerate(value):
             yield from _unfit(item, shape[0], f"{place}[{number}]")
@@ -59,14 +59,14 @@ def _unfit(value: Any, shape: Any, place: str) -> Iterator[Problem]:
         if not any(
             fits(value, choice) if isinstance(choice, list | dict) else _is_a(value, choice) for choice in shape
         ):
-            yield Problem(place, " or ".join(map(_words, shape)))
+            yield Misfit(place, " or ".join(map(_words, shape)))
     elif not _is_a(value, shape):
-        yield Problem(place, _words(shape))
+        yield Misfit(place, _words(shape))
 
 
-def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Problem]:
+def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Misfit]:
     if not isinstance(value, dict):
-        yield Problem(place, "an object")
+        yield Misfit(place, "an object")
         return
     if str in shape:
         for key, item in value.items():
@@ -78,7 +78,7 @@ def _unfit_object(value: Any, shape: dict[Any, Any], place: str) -> Iterator[Pro
             if not _soon(value[key], expected):
                 yield from _unfit(value[key], expected, f"{place}.{key}" if place else key)
         elif not isinstance(expected, Maybe):
-            yield Problem(f"{place}.{key}" if place else key, "", missing=True)
+            yield Misfit(f"{place}.{key}" if place else key, "", missing=True)
 
 
 def _soon(value: Any, shape: Any) -> bool:

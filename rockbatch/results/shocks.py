@@ -6,9 +6,9 @@ from typing import Any
 
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import ShockOutcome
 from rockbatch.pier import Pier
 from rockbatch.results.beside_peaks import read_beside
-from rockbatch.simulation.outcome import ShockOutcome
 
 SHOCKS = "shocks.csv"
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SAME_TIME = 0.01
@@ -47,8 +47,8 @@ def agreement(fine: Trial, coarse: Trial, tolerance: float, pier: Pier) -> Agree
         return Agreement.NONE
     if finer.status == "failed":
         moved = abs(finer.theta_max_in_motion - coarser.theta_max_in_motion)  # what comes after it is no result
-        alike = finer.reason == coarser.reason and moved <= tolerance
-        return Agreement.THROUGHOUT if alike and finer.reason in LEFT_ALONE else Agreement.NONE
+        alike = finer.failure == coarser.failure and moved <= tolerance
+        return Agreement.THROUGHOUT if alike and finer.failure in LEFT_ALONE else Agreement.NONE
     greatest, change = windows(fine, coarse)
     if finer.status == "overturned":
         standing = greatest < pier.alpha

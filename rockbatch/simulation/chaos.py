@@ -7,12 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from rockbatch.common.notes import CHAOTIC, OVERTURNS
+from rockbatch.outcome.changes import change_of_devices
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import Pier
 from rockbatch.simulation.agreement import far_below, same_counts, windows
-from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.models import fastest_rate
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Run, Stop, Trial, try_all
 
 CHANGES = {"stronger": 1e-8, "weaker": -1e-8}
@@ -92,11 +91,13 @@ def _with_peak_of(probe: Trial, fine: Trial, outcome: Outcome, tolerance: float,
         known = max(outcome.change_in_motion, within) if within <= tolerance else None
         outcome = outcome.changed(change_in_motion=known)
     ends = probe.outcome.status
-    falls = ends == "overturned" and outcome.status in ("ok", "flight") and OVERTURNS not in outcome.note
+    falls = ends == "overturned" and outcome.status in ("ok", "flight") and not outcome.may_overturn
+    if falls:
+        outcome = outcome.changed(may_overturn=True)
     if outcome.theta_max_error is None:
-        return outcome.noted(f"a motion {changed} {OVERTURNS}" if falls else "")
+        return outcome.noted(f"a motion {changed} overturns the pier" if falls else "")
     moved = abs(probe.outcome.theta_max - outcome.theta_max)
-    does = OVERTURNS if falls else f"moves it by {moved:.1e} rad"
+    does = "overturns the pier" if falls else f"moves it by {moved:.1e} rad"
     if ends == outcome.status and MARGIN * moved <= tolerance:
         greatest, change = windows(probe, fine)
         if far_below(greatest, change, change > tolerance, outcome.theta_max):
@@ -115,8 +116,8 @@ def without_error(outcome: Outcome, reason: str) -> Outcome:
     """Return ``outcome`` with a chaotic peak, of which no error is claimed, and the ``reason``."""
     if outcome.theta_max_error is None:
         return outcome
-    chaos = f"the peak is {CHAOTIC}, {reason}: no error of it is claimed"
-    return outcome.noted(chaos, theta_max_error=None, devices_error=None)
+    chaos = f"the peak is chaotic, {reason}: no error of it is claimed"
+    return outcome.noted(chaos, theta_max_error=None, devices_error=None, chaotic=True)
 
 
 def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier: Pier) -> Outcome:
@@ -125,9 +126,9 @@ def _with_residuals_of(probe: Outcome, outcome: Outcome, tolerance: float, pier:
         return outcome
     if MARGIN * _residuals_apart(probe, outcome, pier) > tolerance * pier.alpha:
         chaos = (
-            f"the residuals are {CHAOTIC}, a motion {CHANGES['stronger']:g} off moves them: no error of them is claimed"
+            f"the residuals are chaotic, a motion {CHANGES['stronger']:g} off moves them: no error of them is claimed"
         )
-        return outcome.noted(chaos, theta_res_error=None, settlement_error=None)
+        return outcome.noted(chaos, theta_res_error=None, settlement_error=None, chaotic=True)
     tilted, sunk = (MARGIN * _apart(probe, outcome, name) for name in ("theta_res", "settlement"))
     settlement_error = None if outcome.settlement_error is None else max(outcome.settlement_error, sunk)
     return outcome.changed(theta_res_error=max(outcome.theta_res_error, tilted), settlement_error=settlement_error)

@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.changes import change_of_devices
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Base, Damper, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, flight_of, settled, windows
-from rockbatch.simulation.changes import change_of_devices
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
 from rockbatch.simulation.models import first_substeps, readings
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
 
 HALVINGS = 8
@@ -82,7 +81,7 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
                 magnified = magnifies(runs[i], fine, coarse, outcome, until)
                 if magnified and extent == Agreement.RESULTS:
                     outcome = without_error(outcome, "other peaks near it follow the step")
-                if magnified or CHAOTIC in outcome.note or residuals_wander(levels[i], tolerance * pier.alpha, pier):
+                if magnified or outcome.chaotic or residuals_wander(levels[i], tolerance * pier.alpha, pier):
                     doubtful[i] = fine
                 outcomes[i] = outcome
                 del levels[i]
@@ -162,13 +161,15 @@ def _noted(fine: Trial, coarse: Trial, extent: Agreement, tolerance: float, peak
     runs that agree on it agree by chance.
     """
     finer, coarser, notes = fine.outcome, coarse.outcome, list[str]()
+    if finer.status != "failed":
+        finer = finer.changed(chaotic=False, may_overturn=False)
     greatest, change = windows(fine, coarse)
     differs = change > tolerance
     if extent < Agreement.THROUGHOUT and differs.any():
         notes.append(f"lesser rotations, up to {greatest[differs].max():.2g} rad, have not settled")
         if differs[: peak + 1].any() and finer.status == "ok":
-            finer = finer.changed(theta_max_error=None, devices_error=None)
-            notes.append(f"some of them before the peak, which is {CHAOTIC}: no error of it is claimed")
+            finer = finer.changed(theta_max_error=None, devices_error=None, chaotic=True)
+            notes.append("some of them before the peak, which is chaotic: no error of it is claimed")
     for name in COUNTS:
         fewer, more = sorted((getattr(coarser, name) or 0, getattr(finer, name) or 0))
         if fewer != more:
@@ -205,4 +206,4 @@ def _not_converged(pier: Pier, levels: Sequence[Trial], tolerance: float, more: 
     reason = (
         f"not settled: halving the step still changed {change}; at {finest.substeps} substeps: {finest.status}{more}"
     )
-    return finest.changed(status="failed", reason=reason, note="", **dict.fromkeys(ERRORS))
+    return finest.changed(status="failed", failure=Failure.NOT_SETTLED, reason=reason, note="", **dict.fromkeys(ERRORS))

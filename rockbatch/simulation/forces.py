@@ -8,17 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import WOULD_SLIDE
 from rockbatch.core import types
 from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.changes import Sized, greatest_change
+from rockbatch.outcome.outcome import PeakForces
+from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force, shape_at
-from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import acceleration_at, block, elements, ground_of, model
-from rockbatch.simulation.outcome import PeakForces
-from rockbatch.simulation.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.simulation.restraints import apart, recorded
 from rockbatch.simulation.runs import Run
 from rockbatch.simulation.starting import start_of
@@ -140,6 +139,7 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
     landings = impacts(events, at_rows(run, events))
     # Yield is located to rounding; a dashpot adds to what the spring bears
     capacity = run.base.eta if isinstance(run.base, YieldingBase) and not run.base.zeta else math.inf
+    hardest, limit = _hardest(run, events, landings), run.base.friction
     peaks = PeakForces(
         base_shear=most.shear,
         normal_force=most.normal,
@@ -155,7 +155,8 @@ def peak_forces(run: Run, rows: np.recarray, least_normal: float) -> tuple[PeakF
         omega_over_p=most.omega / pier.p,
         key_shear=noted.key_shear or None,
         flight_longest=noted.longest_flight or None,
-        **_hardest(run, events, landings),
+        slides=None if limit is None else max(most.friction, hardest.get("impact_friction_demand", 0.0)) > limit,
+        **hardest,
         **_first_uplift(run, events),
     )
     return peaks, _not_followed(run, noted, peaks, least_normal)
@@ -208,11 +209,11 @@ def _not_followed(run: Run, noted: Noted, peaks: PeakForces, least_normal: float
     limit = run.base.friction
     if limit is None:
         return "; ".join(notes)
-    most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
-    if most > limit:
+    if peaks.slides:
+        most = max(peaks.friction_demand, peaks.impact_friction_demand or 0.0)
         time = "at an impact" if noted.slides == NEVER else f"at {noted.slides:.2f} s"
         notes.append(
-            f"{WOULD_SLIDE} {time}: the friction demand reaches {most:.3g}, the interface has {limit:g}; sliding is not followed"
+            f"would slide {time}: the friction demand reaches {most:.3g}, the interface has {limit:g}; sliding is not followed"
         )
     if peaks.key_shear is not None:
         notes.append(

@@ -1,31 +1,22 @@
 """Histories of runs: the rows that the core wrote, with names, units and derived quantities."""
 
-import contextlib
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
-from rockbatch.common.notes import CHAOTIC
 from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock
-from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
+from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
+from rockbatch.outcome.response import EVENT_TYPES, Response
+from rockbatch.pier import Base, ElasticBase, Pier, RigidBase
 from rockbatch.simulation import restraints
-from rockbatch.simulation.compilation import kernel_of
-from rockbatch.simulation.device_work import with_work
-from rockbatch.simulation.error_control import CHANCE
-from rockbatch.simulation.forces import LANDINGS, at_rows, forces_table, impacts_table, peak_forces, with_error
-from rockbatch.simulation.half_cycles import HalfCycles, Path, half_cycles
-from rockbatch.simulation.leaning import Apart, apart, may_lean, with_error_of_rocking, with_rocking
-from rockbatch.simulation.models import acceleration_at, block, flexible_block, ground_of, model, springs
-from rockbatch.simulation.outcome import TERMS, Outcome, Section
-from rockbatch.simulation.response import EVENT_TYPES, Response
-from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
-from rockbatch.simulation.sections import sections_of, with_errors
+from rockbatch.simulation.forces import LANDINGS
+from rockbatch.simulation.models import acceleration_at, block, flexible_block, springs
+from rockbatch.simulation.observing import Observer
+from rockbatch.simulation.recording import Recording
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -44,241 +35,29 @@ _EVENTS = {
 }
 
 
-MOST_ROWS = 10_000_000
-"""Greatest number of rows of a history held in memory, about a gigabyte."""
-
-ROWS_TOGETHER = 150_000
-"""Greatest number of rows of histories that are written side by side, some 16 megabytes."""
-
-SPARE = 1.1
-"""Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
-
-
-def written(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> np.recarray:
-    """Return the history of a run whose outcome is known: a record for each moment (``core.history``).
-
-    Raises ``InputError`` for more than :data:`MOST_ROWS`.
-    """
-    capacity = min(_room(run, outcome, every_step), MOST_ROWS)
-    result, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
-    if result.rows > MOST_ROWS:
-        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
-        raise InputError(f"{run.motion.name}: a history of {result.rows} rows, more than {MOST_ROWS}; {instead}")
-    if result.rows > capacity:
-        result, rows = written_run(run, outcome.substeps, quiet_s, result.rows, every_step=every_step, wait=wait)
-    return rows[: result.rows].view(np.recarray)
-
-
-def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:
-    """Return for how many rows there should be room in a run that ends by ``until`` [s]."""
-    steps = min(outcome.t_end, until) / run.motion.dt * (outcome.substeps if every_step else 1)
-    return int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
-
-
-def written_side_by_side(
-    runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
-) -> Iterator[tuple[int, np.recarray]]:
-    """Yield the number and the history, at samples and events, of each run that is not too long to be held in memory."""
-    ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
-    room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]
-    alike: dict[object, list[int]] = {}
-    for i in sorted(range(len(runs)), key=room.__getitem__):
-        steps = outcomes[i].substeps
-        alike.setdefault(i if runs[i].base.restraints else (kernel_of(runs[i].pier, runs[i].base), steps), []).append(i)
-    for members in alike.values():
-        first = 0
-        for n, i in enumerate(members, 1):
-            if n == len(members) or (n + 1 - first) * room[members[n]] > ROWS_TOGETHER:
-                if stop is not None and stop.is_set:
-                    return
-                yield from _written_together(runs, outcomes, members[first:n], quiet_s, room[i], wait)
-                first = n
-
-
-def _written_together(
-    runs: Sequence[Run], outcomes: Sequence[Outcome], numbers: Sequence[int], quiet_s: float, room: int, wait: bool
-) -> Iterator[tuple[int, np.recarray]]:
-    """Yield the histories of the runs with these ``numbers``, of one kind and step, for which there should be ``room``."""
-    if len(numbers) == 1:
-        with contextlib.suppress(InputError):
-            yield numbers[0], written(runs[numbers[0]], outcomes[numbers[0]], quiet_s, False, wait)
-        return
-    found = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
-    for i, (result, rows) in zip(numbers, found, strict=True):
-        if result.rows > room:
-            with contextlib.suppress(InputError):
-                yield i, written(runs[i], outcomes[i], quiet_s, False, wait)
-        else:
-            yield i, rows[: result.rows].view(np.recarray)
-
-
 def cycles_of(base: Base, rows: np.recarray) -> HalfCycles:
     """Return the half cycles of a run on ``base`` from its history."""
     landed = None if base.on_springs else np.flatnonzero(np.isin(rows.kind, LANDINGS))
     return half_cycles(Path(rows.t, rows.theta, rows.omega), landed)
 
 
-def energies(run: Run, rows: np.recarray) -> Samples:
-    """Return the energy balance [J/kg] at every row of a run: :data:`rockbatch.simulation.outcome.TERMS`, shape (n, 10)."""
-    pier, base = run.pier, run.base
-    ground, dt = ground_of(run.motion), float(run.motion.dt)
-    terms = np.zeros((len(rows), len(TERMS)))
-    balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
-    plain, pulls = restraints.apart(base, rows)
-    if base.on_springs:
-        ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
-    else:
-        ledger_on_rigid_base(model(pier, base), plain, pulls, ground, dt, balance)
-    return restraints.with_devices(pier, base, rows, terms) if base.restraints else terms
-
-
-def rocking_from_lean(
-    runs: Sequence[Run],
-    outcomes: Sequence[Outcome],
-    quiet_s: float,
-    requested: bool = False,
-    wait: bool = True,
-    stop: Stop | None = None,
-) -> list[Outcome]:
-    """Return ``outcomes`` with rocking and lean apart, if ``requested`` or where the peak may be lean; on yielding springs by one
-    more run, and if ``requested`` and the step was chosen by a tolerance by one of twice the step, which gives their error.
-
-    After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
-    quarter of the whole, tells most peaks from lean. Runs that are too long to be written down stay as they are, and all that
-    come after ``stop``.
-    """
-    found, mixed = list(outcomes), list[int]()
-    for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True)):
-        if not outcome.was_run or not (requested or may_lean(outcome)):
-            continue
-        if isinstance(run.base, YieldingBase) and outcome.status != "overturned":
-            mixed.append(i)
-        elif requested:
-            found[i] = outcome.changed(theta_rocking=outcome.theta_max, theta_rocking_error=outcome.theta_max_error)
-    if not requested:
-        early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
-        of_record = _apart(runs, found, early, quiet_s, False, stop)
-        mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
-    for i, parts in (fine := _apart(runs, found, mixed, quiet_s, wait, stop)).items():
-        found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
-    if requested:
-        estimated = [i for i in fine if found[i].theta_max_error is not None and found[i].substeps % 2 == 0]
-        halved = [outcome.changed(substeps=outcome.substeps // 2) for outcome in found]
-        for i, parts in _apart(runs, halved, estimated, quiet_s, wait, stop).items():
-            found[i] = with_error_of_rocking(found[i], fine[i], parts)
-    return found
-
-
-def _apart(
-    runs: Sequence[Run],
-    outcomes: Sequence[Outcome],
-    numbers: Sequence[int],
-    quiet_s: float,
-    wait: bool,
-    stop: Stop | None,
-) -> dict[int, Apart]:
-    """Return rocking and lean of the runs with these ``numbers``, which are on springs."""
-    chosen, their = [runs[i] for i in numbers], [outcomes[i] for i in numbers]
-    parts = {}
-    for j, rows in written_side_by_side(chosen, their, quiet_s, wait, stop):
-        base = chosen[j].base
-        assert base.on_springs
-        parts[numbers[j]] = apart(chosen[j].pier, base, rows)
-    return parts
-
-
-def with_observed(
-    run: Run,
-    outcome: Outcome,
-    quiet_s: float,
-    *,
-    ledger: bool,
-    least_normal: float | None,
-    error: bool,
-    least_stroke: float | None = None,
-    wait: bool = True,
-) -> Outcome:
-    """Return ``outcome`` with what observers make of the run, recorded at every step.
-
-    These are, if ``ledger``, the energy balance at its end, with the greatest residual on the way; and the greatest forces,
-    friction counted while N is above the share ``least_normal`` of the weight, and the work of devices, half cycles from
-    ``least_stroke`` [m] up, unless these are None; with their ``error`` by a run of twice the step unless the run failed or is
-    chaotic.
-    """
-    if not run.base.restraints:
-        least_stroke = None
-    if not ledger and least_normal is None and least_stroke is None:
-        return outcome
-    rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
-    if ledger:
-        terms = energies(run, rows)
-        at_end = dict(zip(TERMS, map(float, terms[-1]), strict=True))
-        outcome = outcome.changed(energies=at_end | {"remainder": float(abs(terms[:, -1]).max())})
-    peaks, note = (None, "") if least_normal is None else peak_forces(run, rows, least_normal)
-    work = None if least_stroke is None else restraints.device_work(run.pier, run.base, rows, least_stroke)
-    outcome, coarse_work = outcome.noted(note), None
-    halves = error and _claims_errors(outcome)
-    if halves and (peaks or work):
-        del rows  # a history of every step may be large
-        rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
-        if peaks and least_normal is not None:
-            peaks, note = with_error(peaks, peak_forces(run, rows, least_normal)[0], run.pier)
-            outcome = outcome.noted(note)
-        if least_stroke is not None:
-            coarse_work = restraints.device_work(run.pier, run.base, rows, least_stroke)
-    if work:
-        outcome = with_work(outcome, work, coarse_work, run.pier, CHANCE)
-    return outcome.changed(forces=peaks)
-
-
-def _claims_errors(outcome: Outcome) -> bool:
-    """Return whether what is observed of a run may claim an error, by a run of twice its step."""
-    return outcome.status != "failed" and outcome.substeps % 2 == 0 and CHAOTIC not in outcome.note
-
-
-def forces_in_sections(
-    run: Run, outcome: Outcome, quiet_s: float, heights: Sequence[float], *, error: bool, wait: bool = True
-) -> list[Section]:
-    """Return the greatest forces in sections of a run whose outcome is known, with their ``error`` as other forces have it."""
-    rows = written(run, outcome, quiet_s, every_step=True, wait=wait)
-    sections = sections_of(run, rows, heights)
-    if not (error and _claims_errors(outcome)):
-        return sections
-    del rows  # a history of every step may be large
-    rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=True, wait=wait)
-    return with_errors(sections, sections_of(run, rows, heights), run.pier, CHANCE)
-
-
 def histories(
-    run: Run,
-    outcome: Outcome,
-    quiet_s: float,
+    recording: Recording,
+    status: str,
     case: str,
     columns: dict[str, float | str],
+    observers: Sequence[Observer] = (),
     *,
-    ledger: bool = False,
-    forces: bool = False,
     polarity: str = "+",
     scale: float = 1.0,
-    wait: bool = True,
 ) -> Response:
-    """Return the histories of a run whose outcome is known, by repeating it with the same steps.
+    """Return the histories of a recorded run that ended with this ``status``, and those that ``observers`` add.
 
-    The motion of ``run`` is scaled and turned already; ``polarity`` and ``scale`` say how.
+    The motion of the run is scaled and turned already; ``polarity`` and ``scale`` say how.
     """
+    run, rows = recording.run, recording.at_samples.rows
     pier, base, motion = run.pier, run.base, run.motion
-    rows = written(run, outcome, quiet_s, every_step=ledger, wait=wait)
-    shown = rows.kind != types.STEP
-    shown[-1] = True  # an overturned pier may fall between samples
-    table = None
-    if ledger:
-        table = pd.DataFrame(energies(run, rows)[shown], columns=list(TERMS))
-        table.insert(0, "t", rows.t[shown])
-    rows = rows[shown]
-    demands = impacts = None
-    if forces:
-        moments = at_rows(run, rows)
-        demands, impacts = forces_table(rows.t, moments, pier.gravity), impacts_table(rows, moments)
+    added: dict[str, Any] = dict(item for observer in observers for item in observer.histories(recording).items())
     devices = restraints.loops(pier, base, rows) if base.restraints else None
     state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
     t = rows.t.copy()
@@ -286,11 +65,21 @@ def histories(
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
     bent = {"deflection": state.pop("deflection")} if base.bends else {}
     history = pd.DataFrame({"t": t, **state, "ag_h": horizontal, "ag_v": vertical, **bent})
-    events = pd.DataFrame(_events(rows, outcome.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
+    events = pd.DataFrame(_events(rows, recording.t_flight), columns=list(EVENT_TYPES)).astype(EVENT_TYPES)
     return Response(
-        motion.name, case, columns, pier, base, outcome.status, history, events, table, polarity, scale, demands, impacts,
-        devices,
-    )  # fmt: skip
+        motion.name,
+        case,
+        columns,
+        pier,
+        base,
+        status,
+        history,
+        events,
+        polarity=polarity,
+        scale=scale,
+        restraints=devices,
+        **added,
+    )
 
 
 def _events(rows: np.recarray, t_flight: float | None) -> list[tuple[float, str, str, int, int]]:

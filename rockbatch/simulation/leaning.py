@@ -1,13 +1,15 @@
 """Rocking and lean of a pier: rotation about where it would rest on its base (THEORY.md, Results of a run)."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from rockbatch.common.notes import LEANS
 from rockbatch.motions.motion import Samples
-from rockbatch.pier import ElasticBase, Pier, tilt_over_residual, vertical_frequency, yield_deflection
-from rockbatch.simulation.outcome import Outcome
+from rockbatch.outcome.outcome import LEANS, Outcome
+from rockbatch.pier import ElasticBase, Pier, YieldingBase, tilt_over_residual, vertical_frequency, yield_deflection
+from rockbatch.simulation.recording import recorded_side_by_side
+from rockbatch.simulation.runs import Run, Stop
 from rockbatch.simulation.starting import start_of
 
 MOSTLY = 0.5
@@ -127,3 +129,40 @@ def with_error_of_rocking(outcome: Outcome, fine: Apart, coarse: Apart) -> Outco
         theta_rocking_error=abs(fine.rocking - coarse.rocking),
         theta_lean_error=None if outcome.theta_lean is None else abs(fine.lean - coarse.lean),
     )
+
+
+def with_lean(
+    runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
+) -> list[Outcome]:
+    """Return ``outcomes`` with rocking and lean apart where the peak is lean, on yielding springs.
+
+    After the record nothing shakes the pier, and it swings no further about its rest: a run to the end of its quiet time, a
+    quarter of the whole, tells most peaks from lean. Runs that are too long to be written down stay as they are, and all that
+    come after ``stop``.
+    """
+    found = list(outcomes)
+    mixed = [i for i, run in enumerate(runs) if isinstance(run.base, YieldingBase) and may_lean(outcomes[i])]
+    early = [i for i in mixed if found[i].t_max <= runs[i].motion.duration + quiet_s]
+    of_record = _apart(runs, found, early, quiet_s, False, stop)
+    mixed = [i for i in mixed if i not in early or (i in of_record and of_record[i].leans)]
+    for i, parts in _apart(runs, found, mixed, quiet_s, wait, stop).items():
+        found[i] = with_rocking(found[i], parts, runs[i].pier.alpha)
+    return found
+
+
+def _apart(
+    runs: Sequence[Run],
+    outcomes: Sequence[Outcome],
+    numbers: Sequence[int],
+    quiet_s: float,
+    wait: bool,
+    stop: Stop | None,
+) -> dict[int, Apart]:
+    """Return rocking and lean of the runs with these ``numbers``, which are on springs."""
+    chosen, their = [runs[i] for i in numbers], [outcomes[i] for i in numbers]
+    parts = {}
+    for j, recording in recorded_side_by_side(chosen, their, quiet_s, wait, stop):
+        base = chosen[j].base
+        assert base.on_springs
+        parts[numbers[j]] = apart(chosen[j].pier, base, recording.rows)
+    return parts

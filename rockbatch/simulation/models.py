@@ -14,10 +14,12 @@ from rockbatch.core.flexure.model import FlexibleBlock
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.model import ELASTIC, IMPACTS, LAWS, Springs
+from rockbatch.core.springs.laws import CODES
+from rockbatch.core.springs.model import IMPACTS, Springs
 from rockbatch.core.system import System
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.pier import (
+    LAWS,
     Base,
     Damper,
     DeckSpring,
@@ -69,6 +71,12 @@ IDLE = Element(
 """An element without force in the middle of the base, from which others differ."""
 
 
+if unknown := set(CODES) ^ {"elastic", *LAWS}:
+    raise TypeError(
+        f"laws of springs stand in one of core/springs/laws.py and pier/laws.py only: {', '.join(sorted(unknown))}"
+    )
+
+
 Line = Any
 """A run as the core takes it, a NamedTuple of its system."""
 
@@ -94,12 +102,14 @@ class Start(NamedTuple):
 def springs(pier: Pier, base: ElasticBase) -> Springs:
     """Return the core's numbers for ``pier`` on springs: plain floats, per unit mass."""
     exponent: float | int | None = None
-    eta, law = 1.0, ELASTIC  # an elastic spring is measured by its static force and deflection
+    eta, law, creep = base.reference_eta, "elastic", 0.0
     if isinstance(base, YieldingBase):
-        eta, law = base.eta, LAWS[base.spring]
+        law = base.spring
         exponent = _exponent(base.n) if base.has_exponent else None
+        creep = 0.0 if base.law.creep is None else float(base.law.creep.exponent(base.n))
     omega_v = vertical_frequency(pier, base)
     deflection, force = float(yield_deflection(pier, base)), float(0.5 * eta * pier.gravity)
+    static = 0.5 * (float(pier.gravity) + prestress(pier, base)) / force
     return Springs(
         half_width=float(pier.half_width),
         height=float(pier.height),
@@ -112,7 +122,9 @@ def springs(pier: Pier, base: ElasticBase) -> Springs:
         impact=IMPACTS[base.impact],
         restitution=float(pier.restitution),
         damping=float((base.zeta or 0.0) * omega_v),
-        law=law,
+        law=CODES[law],
+        level=float(-deflection * base.first_loading.deflection(static)),
+        creep=creep,
         guided=float(base.flight == "guided"),
         rest=float(ROUNDING * pier.gravity * math.sqrt(deflection / force) * math.sqrt(0.5)),
         exponent=exponent,

@@ -26,10 +26,10 @@ from rockbatch.core.observe.peaks import RecordedDevices, recorded_force
 from rockbatch.core.observe.rows import contact_of, state_of
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.device_work import Courses, greatest_of, work_of
+from rockbatch.outcome.outcome import DeviceWork
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
-from rockbatch.simulation.device_work import Courses, greatest_of, work_of
 from rockbatch.simulation.models import elements, model, prestress, springs
-from rockbatch.simulation.outcome import DeviceWork
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9

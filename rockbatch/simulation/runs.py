@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rockbatch.common.notes import LINEARISED, RATCHETS
 from rockbatch.core import types
 from rockbatch.core.clock import ON_ITS_SIDE
 from rockbatch.core.devices.laws import STICKS, Element
@@ -17,6 +16,7 @@ from rockbatch.core.run import NO_ROWS, march
 from rockbatch.core.system import System
 from rockbatch.core.types import Result
 from rockbatch.motions.motion import Motion, Samples
+from rockbatch.outcome.outcome import RELEASED, Failure, Outcome
 from rockbatch.pier import (
     MOST_NEGLECTED,
     Base,
@@ -28,6 +28,7 @@ from rockbatch.pier import (
     vertical_frequency,
     yield_deflection,
 )
+from rockbatch.pier.laws import steady
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
     Line,
@@ -42,7 +43,6 @@ from rockbatch.simulation.models import (
     prestress,
     readings,
 )
-from rockbatch.simulation.outcome import RELEASED, Outcome
 from rockbatch.simulation.restraints import rests_at, rests_on_rigid_base
 from rockbatch.simulation.starting import start_of
 
@@ -50,23 +50,33 @@ MOST_STEPS = 1e8
 """Greatest number of steps of a run, about a quarter of a minute of work."""
 
 _STATUS = {
-    types.SURVIVED: ("ok", ""),
-    types.RESTLESS: ("ok", ""),
-    types.LATE_FLIGHT: ("ok", ""),
-    types.OVERTURNED: ("overturned", ""),
-    types.FLIGHT: ("flight", ""),
-    types.CHATTER: ("failed", "more than 20,000 contact events within one sample; use more substeps"),
-    types.NOT_FINITE: ("failed", "the integration blew up; use more substeps, or look for a spike in the record"),
-    types.UNDECIDED: ("failed", "left alone after the record, the pier stays where it may yet overturn"),
-    types.GROWING: (
-        "failed",
-        f"left alone after the record, {RATCHETS}: yielding springs ratchet on free vibration; "
-        'spring = "epp" and "hardening" do so least',
+    types.SURVIVED: "ok",
+    types.RESTLESS: "ok",
+    types.LATE_FLIGHT: "ok",
+    types.OVERTURNED: "overturned",
+    types.FLIGHT: "flight",
+}
+"""Statuses by those of the core; any other has failed."""
+
+_FAILURES = {
+    types.CHATTER: Failure.CONTACTS,
+    types.NOT_FINITE: Failure.BLEW_UP,
+    types.UNDECIDED: Failure.UNDECIDED,
+    types.GROWING: Failure.RATCHETS,
+}
+
+_REASONS = {
+    Failure.CONTACTS: "more than 20,000 contact events within one sample; use more substeps",
+    Failure.BLEW_UP: "the integration blew up; use more substeps, or look for a spike in the record",
+    Failure.UNDECIDED: "left alone after the record, the pier stays where it may yet overturn",
+    Failure.RATCHETS: (
+        "left alone after the record, the pier leans further and further: yielding springs ratchet on free vibration; "
+        f"spring = {steady('and')} do so least"
     ),
 }
 
-LEFT_ALONE = tuple(_STATUS[code][1] for code in (types.UNDECIDED, types.GROWING))
-"""Reasons of runs that failed because the longest tail did not decide them, which smaller steps do not change."""
+LEFT_ALONE = (Failure.UNDECIDED, Failure.RATCHETS)
+"""Failures of runs that the longest tail did not decide, which smaller steps do not change."""
 
 NOTED_TILT = 1e-4
 """In units of α: change of the residual rotation by dampers and tendons beyond which a note reports it."""
@@ -74,7 +84,7 @@ NOTED_TILT = 1e-4
 _RESTLESS = "left alone after the record for {seconds:.0f} s, the pier has still the energy for a greater rotation"
 _HIGH = "flew up to {height:.2g} mm, more than flight_limit_mm = {limit:g}"
 _LARGE = (
-    "a peak of {theta:.2g} rad by {words}, which neglect {share:.0%} of inertia and righting moment there; "
+    "a peak of {theta:.2g} rad by linearised kinematics, which neglect {share:.0%} of inertia and righting moment there; "
     'kinematics = "finite" does not'
 )
 _LATE_FLIGHT = "flew at {t:.2f} s, when nothing could exceed the peak any more; the run ends there"
@@ -300,6 +310,7 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     least = least_substeps(pier, base, motion.dt)
     if substeps < least:
         return _not_run(
+            Failure.LARGE_STEP,
             f"{substeps} substeps of a sample of {motion.dt:g} s are too few for the springs' frequency: "
             f"the integration would blow up; at least {least}, better {first_substeps(pier, base, motion.dt)}",
             substeps,
@@ -307,7 +318,9 @@ def _refused(run: Run, substeps: int, quiet_s: float) -> Trial | None:
     steps = steps_of(motion, substeps, quiet_s)
     if steps > MOST_STEPS:
         return _not_run(
-            f"would take {steps:.0e} steps, more than {MOST_STEPS:.0e}; shorten the record or quiet_s", substeps
+            Failure.MANY_STEPS,
+            f"would take {steps:.0e} steps, more than {MOST_STEPS:.0e}; shorten the record or quiet_s",
+            substeps,
         )
     return None
 
@@ -322,7 +335,8 @@ _BLANK = Outcome("failed", "", math.nan, math.nan, 0, 0, None, 0.0, 0)
 def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     """Return the Outcome of a run from the core's ``result``."""
     pier, base = run.pier, run.base
-    status, reason = _STATUS[result.status]
+    failure = _FAILURES.get(result.status)
+    status, reason = _STATUS.get(result.status, "failed"), "" if failure is None else _REASONS[failure]
     more: dict[str, Any] = {}
     if base.on_springs:
         more = _of_springs(pier, base, result, survived=status == "ok")
@@ -337,9 +351,12 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
         notes.append(_RESTLESS.format(seconds=result.t_end - run.motion.duration))
     elif result.status == types.LATE_FLIGHT:
         notes.append(_LATE_FLIGHT.format(t=result.t_end))
-    share = neglected(pier, result.theta_max) if base.kinematics == "first-order" else 0.0
-    if share > MOST_NEGLECTED and status != "overturned":
-        notes.append(_LARGE.format(theta=result.theta_max, words=LINEARISED, share=share))
+    beyond_linearised = None
+    if base.kinematics == "first-order":
+        share = neglected(pier, result.theta_max)
+        beyond_linearised = bool(share > MOST_NEGLECTED) and status != "overturned"
+        if beyond_linearised:
+            notes.append(_LARGE.format(theta=result.theta_max, share=share))
     if pier.initial_rotation_rad and result.t_max == 0.0 and status == "ok":
         notes.append(RELEASED)
     if 1000.0 * result.flight_height > base.flight_limit_mm:
@@ -347,6 +364,8 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     return _BLANK.changed(
         status=status,
         reason=reason,
+        failure=failure,
+        beyond_linearised=beyond_linearised,
         theta_max=min(result.theta_max, ON_ITS_SIDE),
         theta_max_in_motion=min(in_motion, ON_ITS_SIDE),
         separations=result.uplifts,
@@ -409,8 +428,8 @@ def _of_springs(pier: Pier, base: ElasticBase, result: Result, survived: bool) -
     return more
 
 
-def _not_run(reason: str, substeps: int) -> Trial:
-    return Trial(Outcome("failed", reason, math.nan, math.nan, 0, 0, None, 0.0, substeps), np.empty(0))
+def _not_run(failure: Failure, reason: str, substeps: int) -> Trial:
+    return Trial(_BLANK.changed(failure=failure, reason=reason, substeps=substeps), np.empty(0))
 
 
 def steps_of(motion: Motion, substeps: int, quiet_s: float) -> float:

@@ -13,11 +13,11 @@ from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
 from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
 from rockbatch.motions.motion import Samples
+from rockbatch.outcome.changes import LEAST, Sized, greatest_change
+from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Pier
 from rockbatch.pier.sections import above
-from rockbatch.simulation.changes import LEAST, Sized, greatest_change
 from rockbatch.simulation.models import ground_of, model
-from rockbatch.simulation.outcome import Section
 from rockbatch.simulation.restraints import apart, deck_pulls
 from rockbatch.simulation.restraints import recorded as recorded_devices
 from rockbatch.simulation.runs import Run

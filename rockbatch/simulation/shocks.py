@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
-from rockbatch.simulation.histories import written
+from rockbatch.outcome.outcome import Outcome, ShockOutcome
 from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
-from rockbatch.simulation.outcome import Outcome, ShockOutcome
 from rockbatch.simulation.runs import Run
 
 LAST_PART = 0.25
@@ -21,25 +21,24 @@ NOT_REACHED = "not reached"
 _AT_ONCE = 1e-9  # s: times of samples are sums, and rounded
 
 
-def by_shock(
-    run: Run, outcome: Outcome, quiet_s: float, *, error: bool = True, wait: bool = True
-) -> list[ShockOutcome]:
-    """Return what each shock of the motion of ``run`` does, by repeating the run with the steps of its ``outcome``.
+class OfShocks(NamedTuple):
+    """What each shock of a run does, without errors, and the greatest |θ| [rad] and its time [s] of each by the rows alone."""
 
-    With ``error`` it is repeated with twice the step, too. Raises ``InputError`` if the history is too long to be held in memory.
-    """
-    shocks = run.motion.shocks
-    if outcome.status == "failed":
-        return [ShockOutcome("failed")] * len(shocks)
-    quiet_s = max(quiet_s, shocks[-1].until - shocks[-1].end)
-    fine = _read(run, outcome, written(run, outcome, quiet_s, every_step=False, wait=wait))
-    if not error or outcome.substeps % 2:
-        return fine
-    rows = written(run, outcome.changed(substeps=outcome.substeps // 2), quiet_s, every_step=False, wait=wait)
-    coarse = _peaks(run.motion, rows)
+    outcomes: list[ShockOutcome]
+    peaks: list[tuple[float, float]]
+
+
+def of_shocks(run: Run, outcome: Outcome, rows: np.recarray) -> OfShocks:
+    """Return what each shock of a run does by its ``rows``, which go on until a pause after the last."""
+    peaks = _peaks(run.motion, rows)
+    return OfShocks(_read(run, outcome, rows, list(peaks)), peaks)
+
+
+def with_error(fine: OfShocks, coarse: OfShocks) -> list[ShockOutcome]:
+    """Return what each shock does with errors, by what halving the step from ``coarse`` changed."""
     return [
         replace(finer, theta_max_error=abs(finer.theta_max - theta) if finer.status == "ok" else math.nan)
-        for finer, (theta, _) in zip(fine, coarse, strict=True)
+        for finer, (theta, _) in zip(fine.outcomes, coarse.peaks, strict=True)
     ]
 
 
@@ -57,10 +56,9 @@ def _peak(rows: np.recarray, start: float, end: float) -> tuple[float, float]:
     return greatest_swing(inside.t, inside.theta, inside.omega, inside.theta)
 
 
-def _read(run: Run, outcome: Outcome, rows: np.recarray) -> list[ShockOutcome]:
-    """Return what each shock does, without errors, by the ``rows`` of the run."""
+def _read(run: Run, outcome: Outcome, rows: np.recarray, peaks: list[tuple[float, float]]) -> list[ShockOutcome]:
+    """Return what each shock does, without errors, by the ``rows`` of the run, and the ``peaks`` in them."""
     shocks = run.motion.shocks
-    peaks = _peaks(run.motion, rows)
     of_run = max(i for i, shock in enumerate(shocks) if shock.start <= outcome.t_max + _AT_ONCE)
     peaks[of_run] = outcome.theta_max, outcome.t_max  # of all steps, not only of rows
     ended = outcome.t_end if outcome.status in ("overturned", "flight") else math.inf

@@ -11,20 +11,11 @@ from functools import lru_cache
 import numpy as np
 
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, Element
-from rockbatch.pier import Base, ElasticBase, Pier, YieldingBase
+from rockbatch.pier import Base, ElasticBase, Pier
+from rockbatch.pier.first_loading import steel
 from rockbatch.simulation.models import Start, elements, prestress, springs
 
 _STANDING = Start()
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-
-_STRAIGHT = 50.0
-"""w beyond which a Bouc–Wen spring yields by 1/n for each unit of w, to rounding."""
-
-_DAMPER_EXPONENT = 5.0
-
-Curve = Callable[[float], tuple[float, float]]
-"""Deflection over δ_y and force over F_y on first loading, by a parameter that grows from 0 with both."""
 
 
 @lru_cache(maxsize=4096)
@@ -46,20 +37,19 @@ def start_of(pier: Pier, base: Base) -> Start:
 def _on_springs(pier: Pier, base: ElasticBase) -> Start:
     """Return the vertical equilibrium of a pier on springs at its initial rotation: one equation for the pressed spring."""
     m, theta, laws = springs(pier, base), pier.initial_rotation_rad, elements(pier, base)
-    curve, delta, side = _curve(base), m.yield_deflection, math.copysign(1.0, theta)
+    curve, delta, side = base.first_loading, m.yield_deflection, math.copysign(1.0, theta)
     static = 0.5 * (m.gravity + prestress(pier, base)) / m.yield_force
-    level = -delta * _solved(curve, 1, static)[0]
+    level = m.level
     tilt, drop, by_v = abs(theta), 0.0, 1.0
     if m.finite is not None:
         tilt, drop = math.sin(abs(theta)), m.height * (1.0 - math.cos(theta))
         by_v = 1.0 / math.cos(0.5 * theta)
     rise = m.half_width * tilt
 
-    def state(parameter: float) -> tuple[float, float, float]:
-        """Return v [m], and the forces over F_y of the pressed and of the lifted spring."""
-        deflection, pressed = curve(parameter)
+    def state(deflection: float) -> tuple[float, float, float]:
+        """Return v [m], and the forces over F_y of the spring that is pressed to ``deflection``/δ_y and of the lifted one."""
         v = -delta * deflection + rise - drop
-        return v, pressed, max(static - (v + rise + drop - level) / delta, 0.0)
+        return v, float(curve.force(np.array([deflection]))[0]), max(static - (v + rise + drop - level) / delta, 0.0)
 
     def devices(v: float) -> list[tuple[float, float]]:
         up = v - level + drop
@@ -70,8 +60,8 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
             for law in laws
         ]
 
-    def excess(parameter: float) -> float:
-        v, pressed, lifted = state(parameter)
+    def excess(deflection: float) -> float:
+        v, pressed, lifted = state(deflection)
         pull = by_v * sum(force for (force, _), law in zip(devices(v), laws, strict=True) if law.height == 0.0)
         return m.yield_force * (pressed + lifted) - m.gravity - pull
 
@@ -90,22 +80,11 @@ def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:
     if law.kind == FRICTION:
         return math.copysign(law.strength, elongation) if elongation else 0.0, 0.0
     if law.kind == HYSTERETIC:
-        z = math.copysign(_solved(_braced(law.give), 0, abs(elongation) * law.stiffness)[1], elongation)
+        z = math.copysign(float(steel(law.give).force(np.array([abs(elongation) * law.stiffness]))[0]), elongation)
         return law.strength * z, z
     if law.kind == CONTACT:
         return max(law.stiffness * (elongation - law.start), 0.0), 0.0
     return law.stiffness * elongation if law.kind == SPRING else 0.0, 0.0  # viscous
-
-
-def _braced(give: float) -> Curve:
-    """Return the curve of a hysteretic damper with its brace, which gives by ``give`` times its yield deflection at its force."""
-    steel = _bouc_wen(_DAMPER_EXPONENT)
-
-    def curve(w: float) -> tuple[float, float]:
-        deflection, z = steel(w)
-        return deflection + give * z, z
-
-    return curve
 
 
 def _on_deck(law: Element, theta: float, finite: bool) -> float:
@@ -116,37 +95,8 @@ def _on_deck(law: Element, theta: float, finite: bool) -> float:
     return law.way * (law.height * math.sin(theta) + swing * (1.0 - math.cos(theta)))
 
 
-def _curve(base: ElasticBase) -> Curve:
-    """Return the curve of first loading of the springs of ``base``."""
-    if not isinstance(base, YieldingBase):
-        return lambda deflection: (deflection, deflection)
-    if base.has_exponent:
-        return _bouc_wen(base.n)
-    return lambda deflection: (deflection, min(deflection, 1.0))
-
-
-def _bouc_wen(n: float) -> Curve:
-    """Return the curve of a Bouc–Wen spring: ∫ dz/(1 − zⁿ) over z = 1 − e⁻ʷ is ∫ e⁻ʷ/(1 − zⁿ) dw, whose integrand is smooth."""
-
-    def curve(w: float) -> tuple[float, float]:
-        curved = min(w, _STRAIGHT)
-        parts = max(1, math.ceil(curved / 0.5))
-        half = 0.5 * curved / parts
-        points = half * (2.0 * np.arange(parts)[:, None] + 1.0 + _NODES)
-        deficit = np.exp(-points)  # 1 − z
-        stiffness = -np.expm1(n * np.log1p(-deficit)) if w > 0.0 else np.ones_like(points)  # 1 − zⁿ
-        return float(half * (deficit / stiffness @ _WEIGHTS).sum()) + (w - curved) / n, -math.expm1(-w)
-
-    return curve
-
-
-def _solved(curve: Curve, which: int, value: float) -> tuple[float, float]:
-    """Return the point of a curve whose deflection (``which`` = 0) or force (1) is ``value``."""
-    return curve(_root(lambda parameter: curve(parameter)[which] - value))
-
-
 def _root(rising: Callable[[float], float]) -> float:
-    """Return the parameter above 0 at which a rising function becomes 0: doubled until it is above, then between."""
+    """Return the deflection above 0 at which a rising function becomes 0: doubled until it is above, then between."""
     from scipy.optimize import brentq
 
     low, high = 0.0, 1.0

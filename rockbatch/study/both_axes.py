@@ -8,14 +8,14 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, refuse
 from rockbatch.common.showing import shown
 from rockbatch.motions import MotionSet
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.pier import Base, Pier, Restraint, offsets, problems
 from rockbatch.study.piers import with_width
 from rockbatch.study.spec import Case, MotionSpec
-from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile, in_table
 
 KEY = "other_width_m"
 
@@ -73,11 +73,16 @@ def _across(table: Table, case: Case) -> list[Case]:
     try:
         pier = with_width(case.columns, width, confirmed | (pier_table.confirmed if pier_table else set()))
         base = across(case.pier, case.base, pier)
-        if wrong := problems(pier, base):
-            raise InputError(*(f"{KEY} = {width:g}: across the axis {problem}" for problem in wrong))
+        refuse(problems(pier, base))
     except InputError as error:
         for problem in error.problems:
-            table.complain(problem.replace("width_m", KEY) if KEY not in problem else problem, KEY)
+            if problem.key == "width_m":
+                problem = replace(problem, key=KEY, confirm=problem.confirm and KEY)
+            else:
+                problem = replace(
+                    problem, key=KEY, text=f"{KEY} = {width:g}: across the axis {problem}", confirm="", named=False
+                )
+            table.complain(in_table(problem), KEY)
         return []
     return [replace(case, name=_name(case), pier=pier, base=base, across_of=case.name)]
 

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from functools import partial
 from typing import Any, NamedTuple
 
-from rockbatch.common.errors import remedy
+from rockbatch.common.errors import Problem
 from rockbatch.common.showing import shown
 from rockbatch.common.units import rounded_up
 from rockbatch.pier import (
@@ -21,9 +20,11 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, enough_eta, wrong_blow
+from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.pier.block import unlikely_mass
+from rockbatch.pier.laws import meanings
 from rockbatch.pier.plausibility import wrong_device
+from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
@@ -31,8 +32,8 @@ from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
 from rockbatch.study.spec import Case
 from rockbatch.toml.kinds import KindError, Other, choice, positive, text, within
-from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, in_another_unit, names
-from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.meant import names
+from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
@@ -91,9 +92,7 @@ BASE_KEYS = {
     "yield_kN": Key(positive, "4.0e4",
         "Yield force F_y of one support, if the mass is given; or give `eta`.", many=True, only=_YIELDS),
     "spring": Key(choice(*WORDS["spring"], called=_CALLED["spring"]), '"bouc-wen"',
-        'Law of the supports: "bouc-wen", smooth, as in the paper; "epp", elastic and then perfectly plastic; or '
-        '"hardening", loaded at first as "bouc-wen", and elastic below the greatest force borne so far.', many=True,
-        only=_YIELDS),
+        f"Law of the supports: {meanings()}.", many=True, only=_YIELDS),
     "n": Key(within(BOUNDS["n"]), "5",
         "Bouc–Wen exponent, of hardening springs too: the larger, the sharper the corner between elastic and plastic.", many=True,
         only=_YIELDS | {"spring": WITH_EXPONENT}),
@@ -141,12 +140,12 @@ CASE = Section(("case",), (
     "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity", "zeta": "damping dampingratio xi",
     ("restitution", "epsilon"): "cor e r coefficientofrestitution", "friction": "mu mus coefficientoffriction",
     "spring": "law hysteresis material springs springlaw springtype", "eta": "fs factorofsafety safetyfactor",
-    "n": "exponent boucwenn", Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight w", "name": "id label title",
-}), clashes=(
+    "n": "exponent boucwenn", "name": "id label title",
+}), instead=names({("mass_t", "the weight in kN over 9.81"): "weight w"}), clashes=(
     Clash(("beta", "stiffness_kN_m"), "beta and stiffness_kN_m are given, which fix the same; keep one", at="stiffness_kN_m"),
     Clash(("eta", "yield_kN"), "eta and yield_kN are given, which fix the same; keep one", at="yield_kN"),
-    Clash(("epsilon", "zeta"), f"epsilon = {{value}}: {EPSILON_AND_ZETA}"),
-    Clash(("impact", "zeta"), f"impact = {{value}}: {EPSILON_AND_ZETA}"),
+    Clash(("epsilon", "zeta"), EPSILON_AND_ZETA, shown=True),
+    Clash(("impact", "zeta"), EPSILON_AND_ZETA, shown=True),
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
@@ -208,9 +207,9 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
             of_base.pop(name, None)
     base, wrong = _base(case.base, of_base, pier)
     wrong += problems(pier, base)
-    of_devices = {problem for device in devices for problem in wrong_device(pier, device)}
+    of_devices = [problem for device in devices for problem in wrong_device(pier, device)]
     for problem in wrong:
-        if problem not in of_devices and not (any_pier and problem.startswith("beta")):
+        if problem not in of_devices and not (any_pier and problem.key == "beta"):
             _complain(case.table, chosen, problem, pier, base)
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
@@ -229,12 +228,12 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     return Case(case.name, pier, base, pier_values | applying)
 
 
-def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[str]]:
+def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[Problem]]:
     """Return the base, and what is impossible about β and η that follow from K [kN/m] and F_y [kN] by the mass of the pier.
 
     Where β or η is impossible, or missing, which is noted already, a possible value lets the rest be checked.
     """
-    arguments, wrong = dict(values), []
+    arguments, wrong = dict(values), list[Problem]()
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
     kind = _BASES[name]
     if stiffness and pier.mass_t:
@@ -295,10 +294,9 @@ def _case(table: Table) -> _Read:
     return _Read(table, name or base, base, devices, grid + of_devices)
 
 
-def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base) -> None:
-    """Place a problem of the structure, "key = …", at that key or at the one it was derived from, with its limit."""
-    name = problem.split(" = ")[0]
-    source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(name, "")
+def _complain(table: Table, chosen: Chosen, problem: Problem, pier: Pier, base: Base) -> None:
+    """Place a problem of the structure at its key, or at the one from which its value was derived, with its limit."""
+    source = {"beta": "stiffness_kN_m", "eta": "yield_kN"}.get(problem.key, "")
     mass = pier.mass_t
     if source in chosen and mass is not None:
         strength = f"yield_kN above {rounded_up(0.5 * enough_eta(pier, base) * mass * pier.gravity):.4g}"
@@ -308,7 +306,8 @@ def _complain(table: Table, chosen: Chosen, problem: str, pier: Pier, base: Base
             remedies["beta"] = f"{strength}, or {stiffness}"
         weighing = f"mass_t = {mass:g}" if "mass_t" in chosen else f"the {mass:g} t of [pier]"
         derived = f"{source} = {chosen[source].value:g} with {weighing}"
-        problem = f"{derived} means {problem}; write {remedies[name]}"
+        text = f"{derived} means {problem}; write {remedies[problem.key]}"
+        problem = replace(problem, key=source, text=text, named=False)
     complain_where_due(table, chosen, problem)
 
 
@@ -316,11 +315,9 @@ def _complain_unless_usual(table: Table, chosen: Chosen, pier: Pier) -> None:
     """Note an implausible mass, stiffness, yield force or area of a support under this pier, unless they are confirmed."""
     if "mass_t" in chosen:
         for problem in unlikely_mass(pier, table.confirmed):
-            table.complain_about(chosen["mass_t"], f"{problem} in this table")
+            table.complain_about(chosen["mass_t"], in_table(problem))
     for name, usual in SUPPORTS.items():
         if name not in chosen or name in table.confirmed:
             continue
-        value = float(chosen[name].value)
-        if doubt := usual.doubt(pier, name, value):
-            other = in_another_unit(name, value, partial(usual.holds, pier))
-            table.complain_about(chosen[name], f"{doubt}{other}; {remedy(name)} in this table")
+        for problem in usual.doubts(pier, name, float(chosen[name].value)):
+            table.complain_about(chosen[name], in_table(problem))

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
 from rockbatch.pier import beta_of, eta_of, in_kilonewtons, problems
 from rockbatch.study.cases import CASE
@@ -90,7 +90,7 @@ def impossible(case: Case, values: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return what is impossible about the case with other values: a sentence each, and the name of the input it is about."""
     try:
         changed = varied(case, values)
-        wrong: Sequence[str] = problems(changed.pier, changed.base)
+        wrong: Sequence[Problem] = problems(changed.pier, changed.base)
     except InputError as error:
         wrong = error.problems
     return [in_words(problem, values) for problem in wrong]

@@ -5,7 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
-from rockbatch.toml.reader import Setting, Table
+from rockbatch.common.errors import Problem
+from rockbatch.toml.reader import Setting, Table, in_table
 from rockbatch.toml.section import Key
 
 Chosen = dict[str, Setting]
@@ -54,10 +55,9 @@ def too_many(number: int, what: str) -> str:
     )
 
 
-def complain_where_due(table: Table, chosen: Chosen, problem: str) -> None:
-    """Note a problem that begins with a key, "key = …", at that key, or else for the table."""
-    name = problem.split(" = ")[0]
-    if name in chosen:
-        table.complain_about(chosen[name], problem)
+def complain_where_due(table: Table, chosen: Chosen, problem: Problem) -> None:
+    """Note a problem at its key, or else for the table."""
+    if problem.key in chosen:
+        table.complain_about(chosen[problem.key], in_table(problem))
     else:
-        table.complain(problem)
+        table.complain(in_table(problem))

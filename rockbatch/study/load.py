@@ -10,9 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rockbatch.checks.rule_choices import implausible, unmet
+from rockbatch.checks.rule_files import SUITE, read_checks
+from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
@@ -20,15 +23,12 @@ from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
-from rockbatch.quantities.catalogue import BROUGHT, COLUMNS
+from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.study.rule_choices import implausible, unmet
-from rockbatch.study.rule_files import SUITE, read_checks
-from rockbatch.study.rules import CHECK, Rule
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
@@ -82,7 +82,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
         "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
     "both_laws": Key(boolean, "true",
         "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two more "
-        "runs or more; of others it is not a range."),
+        "runs or more; of others it is not a range. A check of a settlement, which takes the worse, has it found too."),
     "intensity": Key(boolean, "true",
         "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
@@ -142,7 +142,7 @@ class Study(Shown):
 
     ``path`` and ``text`` are the file and its text, ``varied`` the names of the keys that were lists, ``checks`` the
     rules that its results are held against, ``count`` what counts as one record of its suite, one of
-    :data:`rockbatch.study.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
+    :data:`rockbatch.checks.rules.COUNTS`, ``check_files`` the paths and texts of the files that its [suite] names for checks.
     ``lined`` is False if the text was made of tables, so that messages give no lines.
 
     Examples
@@ -318,6 +318,8 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
         _complain_without_forces(file)
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
+    if any(DEMANDS[rule.demand].other_law for rule in checks.rules):
+        output = replace(output, both_laws=True)
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -344,13 +346,15 @@ def given_study(study: str | os.PathLike[str] | Study, motions: Motions = None) 
     return study if motions is None else study.with_(motions=motions)
 
 
-def _unfit(cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule) -> Iterator[str]:
+def _unfit(
+    cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
+) -> Iterator[Problem]:
     """Return the choices of a check that the study lacks, and limits that are implausible for its piers, if these are known."""
     yield from unmet(
         rule,
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
-        other_law=output.both_laws or not any(case.base.ratchets for case in cases),
+        other_law=True,  # a check that takes it brings it
         output=[key for key in BROUGHT if getattr(output, key) or not _brings(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
@@ -419,7 +423,7 @@ def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Outp
         try:
             section_heights(pier, output.requested_sections)
         except InputError as error:
-            wrong |= dict.fromkeys(error.problems)
+            wrong |= dict.fromkeys(error.messages)
     for problem in wrong:
         file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
 

@@ -3,10 +3,11 @@
 import os
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.common.showing import shown
 from rockbatch.common.units import GRAVITY, Bounds, Usual
 from rockbatch.motions import Motion, MotionSet, kinds
@@ -32,7 +33,7 @@ from rockbatch.toml.kinds import (
     within,
 )
 from rockbatch.toml.meant import names
-from rockbatch.toml.reader import Table, TomlFile, nearby
+from rockbatch.toml.reader import Table, TomlFile, in_table, nearby
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 
@@ -298,11 +299,13 @@ def _check_pulse(table: Table, spec: PulseSpec) -> None:
         spec.motion(GRAVITY)
     except InputError as error:
         for problem in error.problems:
-            symbol, message = problem.split(" ", 1)
-            name = next((key for key in (symbol, f"{symbol}_s", f"{symbol}_g") if key in table.data), "name")
-            table.complain(f"{name} {message}", name)
+            key = next(
+                (key for key in (problem.key, f"{problem.key}_s", f"{problem.key}_g") if key in table.data), "name"
+            )
+            table.complain(replace(problem, key=key), key)
     else:
         doubts = unlikely(abs(spec.amplitude_g), spec.period_s, spec.dt_s)
         for name, key in (("amplitude", "amplitude_g"), ("dt", "dt_s")):
             if name in doubts and key not in table.confirmed:
-                table.complain(f"{key} = {doubts[name]}; {remedy(key)} in this table", key)
+                doubt = Problem(key, float(getattr(spec, key)), doubts[name], confirm=key, kind=Unusual)
+                table.complain(in_table(doubt), key)

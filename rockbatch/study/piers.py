@@ -4,12 +4,12 @@ from collections.abc import Callable, Collection
 from dataclasses import asdict, replace
 from typing import Any
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, refuse
 from rockbatch.pier import Part, Pier
 from rockbatch.pier.sizes import BOUNDS, USUAL, unlikely_deck, unlikely_inertia
 from rockbatch.study.lists import Grid, complain_where_due, too_many
 from rockbatch.toml.kinds import Whole, not_negative, positive, within
-from rockbatch.toml.meant import OF_WEIGHT, WEIGHT, Times, names
+from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
@@ -60,14 +60,15 @@ PIER = Section(("pier",), (
         usual=USUAL["initial_rotation_rad"]),
     **CONFIRM,
 }, required=True, homes=(Pier,), also=names({
-    Times("mass_t", WEIGHT, OF_WEIGHT, "force"): "weight selfweight w",
-    Times("deck_mass_t", WEIGHT, OF_WEIGHT, "force"): "deckweight superstructureweight",
     "deck_mass_t": "superstructuremass superstructure topmass tributarymass", "width_m": "diameter breadth basewidth",
-    Times("width_m", 2.0, "twice the half"): "halfwidth", Times("height_m", 2.0, "twice the half"): "halfheight",
-    "size_m": "r0 r radius halfdiagonal", Times("size_m", 0.5, "half the diagonal"): "diagonal",
+    "size_m": "r0 r radius halfdiagonal",
     "flexural_period_s": "period t1 fundamentalperiod naturalperiod", "gravity": "g", "alpha": "alfa", "p": "frequencyparameter",
     "mu": "shapefactor", "columns": "ncolumns numberofcolumns", "initial_rotation_rad": "theta0 initialtilt initialangle",
 }), instead=names({
+    ("mass_t", "the weight in kN over 9.81"): "weight selfweight w",
+    ("deck_mass_t", "the weight in kN over 9.81"): "deckweight superstructureweight",
+    ("width_m", "twice the half"): "halfwidth", ("height_m", "twice the half"): "halfheight",
+    ("size_m", "half the diagonal"): "diagonal",
     "write alpha = atan(width/height), in radians": "slenderness slendernessratio aspectratio",
     "write mu = M R0²/I0, or a [[pier.part]] with its inertia_t_m2": "inertia i0 momentofinertia",
     "units stand in the names of keys; leave it out": "unit units",
@@ -163,8 +164,7 @@ def read_piers(file: TomlFile) -> tuple[list[tuple[Pier, Values]], tuple[str, ..
             )
         except InputError as error:
             for problem in error.problems:
-                place = " in this table" if "write confirm" in problem else ""
-                complain_where_due(table, chosen, problem + place)
+                complain_where_due(table, chosen, problem)
         else:
             of_pier = asdict(replace(pier, parts=None))  # their own keys say them
             del of_pier["confirm"]
@@ -223,12 +223,10 @@ def _of_parts(values: dict[str, Any], parts: int, common: dict[str, Any]) -> Pie
     deck = None
     if "deck_mass_t" in values:
         wrong = unlikely_deck(sum(part.mass_t for part in all_of_them), values["deck_mass_t"], common["confirm"])
-        if wrong:
-            raise InputError(*wrong)
+        refuse(wrong)
         deck = values["deck_height_m"]
         inertia = values.get("deck_inertia_t_m2", 0.0)
-        if wrong := unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]):
-            raise InputError(*wrong)
+        refuse(unlikely_inertia(values["deck_mass_t"], inertia, deck, common["confirm"]))
         all_of_them.append(Part(values["deck_mass_t"], deck, inertia, 0.0))
     return Pier.of_parts(values["width_m"], all_of_them, deck_height_m=deck, **common)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from rockbatch.common.errors import Problem
 from rockbatch.common.showing import shown
 from rockbatch.pier import Damper, Pier, Restraint, fields_of
 from rockbatch.study.restraint_keys import FIELD_OF, IN_KN, KEYS_OF, RESTRAINTS
@@ -112,14 +113,13 @@ def why_none(name: str, cases: Iterable[Case]) -> str:
     return f"no {what} of that number has it"
 
 
-def in_words(problem: str, values: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a problem, "eta = …" or "damper: f = …", in terms of the input that it is about, and the input's name."""
-    subject, _, message = problem.partition(": ")
-    mine = [name for name in values if name.startswith(subject)]
-    symbol = (message if mine else problem).partition(" = ")[0]
-    if name_of_symbol := next((name for name in mine if name.endswith(f".{symbol}")), ""):
-        return message.replace(symbol, name_of_symbol, 1), name_of_symbol
+def in_words(problem: Problem, values: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a problem of a base or of a device in terms of the input that it is about, and the input's name."""
+    symbol = problem.key
+    mine = [name for name in values if problem.place and name.startswith(problem.place)]
+    if name := next((name for name in mine if name.endswith(f".{symbol}")), ""):
+        return str(replace(problem, key=name, place="")), name
     symbols = IN_KILONEWTONS | {name: FIELD_OF[name.partition(".")[2]].replace("lam", "lambda") for name in mine}
     fitting = [name for name in mine or values if symbols.get(name) == symbol]
     name = next(iter(fitting or mine), symbol)
-    return (problem if name == symbol else f"{name} = {values[name]:g} means {problem}"), name
+    return (str(problem) if name == symbol else f"{name} = {values[name]:g} means {problem}"), name

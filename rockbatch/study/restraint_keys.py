@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import InputError, Problem, Unusual
 from rockbatch.pier import DeckSpring, Pier, Restraint, Stop, doubt, fields_of
 from rockbatch.pier.dampers import DAMPERS
 from rockbatch.pier.devices import BOUNDS
@@ -13,8 +13,8 @@ from rockbatch.pier.restraints import KINDS
 from rockbatch.study.lists import Chosen, Grid
 from rockbatch.study.piers import has_mass
 from rockbatch.toml.kinds import Choice, choice, not_negative, number, positive, within
-from rockbatch.toml.meant import in_another_unit, names
-from rockbatch.toml.reader import Table
+from rockbatch.toml.meant import names
+from rockbatch.toml.reader import Table, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 _MIDDLE = names({0.0: "centre center middle axis central"})
@@ -180,15 +180,15 @@ class Device:
             self._complain_unless_usual(pier, chosen, device)
         return device
 
-    def _complain(self, chosen: Chosen, problems: Iterable[str]) -> None:
+    def _complain(self, chosen: Chosen, problems: Iterable[Problem]) -> None:
         """Note what is impossible about it, each problem at its key."""
         values = self.values(chosen)
         keys = {FIELD_OF.get(key, key): key for key in values}
-        for problem in (problem.partition(": ")[2] for problem in problems):
-            symbol = problem.partition(" = ")[0]
-            key = keys.get("lam" if symbol == "lambda" else symbol, "")
-            if key and key != symbol:
-                problem = f"{key} = {values[key].value:g} means {problem}; check the unit"
+        for problem in (replace(problem, place="") for problem in problems):
+            key = keys.get("lam" if problem.key == "lambda" else problem.key, "")
+            if key and key != problem.key:
+                text = f"{key} = {values[key].value:g} means {problem}; check the unit"
+                problem = replace(problem, key=key, text=text, named=False)
             self.table.complain(problem, key or next(iter(values)))
 
     def _complain_unless_usual(self, pier: Pier, chosen: Chosen, device: Restraint) -> None:
@@ -198,19 +198,8 @@ class Device:
         doubts = doubt(pier, device)
         if doubts is not None and doubts.name in keys:
             key = keys[doubts.name]
-            value = float(values[key].value)
-            field, unit = fields_of(pier).get(key, (key, 1.0))
-
-            def fits(other: float) -> bool:
-                changed: dict[str, Any] = {field: other / unit}
-                try:
-                    return doubt(pier, replace(device, **changed)) is None
-                except InputError:
-                    return False
-
-            other = in_another_unit(key, value, fits)
-            message = f"{key} = {value:g}: {doubts.meaning}{other}; {remedy(key)} in [[case.{self.what}]]"
-            self.table.complain_about(values[key], message)
+            problem = Problem(key, float(values[key].value), doubts.meaning, confirm=key, kind=Unusual)
+            self.table.complain_about(values[key], in_table(problem, f"[[case.{self.what}]]"))
 
 
 def read_devices(case: Table) -> tuple[list[Device], Grid]:

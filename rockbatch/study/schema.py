@@ -12,12 +12,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from rockbatch.checks.rule_files import SUITE
+from rockbatch.checks.rule_files import TOP as CHECKS_TOP
+from rockbatch.checks.rules import CHECK
 from rockbatch.common.analyses import doors, from_analysis
 from rockbatch.motions import manifest
 from rockbatch.study import load
-from rockbatch.study.rule_files import SUITE
-from rockbatch.study.rule_files import TOP as CHECKS_TOP
-from rockbatch.study.rules import CHECK
 from rockbatch.toml.kinds import Schema
 from rockbatch.toml.section import Section, options
 

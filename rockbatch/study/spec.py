@@ -122,7 +122,7 @@ class Output:
     forces: bool = False
     rocking: bool = False
     least_normal_share: float = LEAST_NORMAL_SHARE
-    both_laws: bool = True
+    both_laws: bool = False
     intensity: bool = False
     sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     sa_pairs: tuple[str, ...] = ()

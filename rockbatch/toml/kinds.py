@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from rockbatch.common.files import legible
 from rockbatch.common.showing import shown
 from rockbatch.common.units import LEAST, MOST, Bounds, of_percent
-from rockbatch.toml.meant import plain, words_meant
+from rockbatch.toml.meant import word_meant
 
 _SHORT = 100  # characters of what is expected beside a suggestion
 
@@ -26,12 +26,11 @@ class KindError(ValueError):
         super().__init__(expected)
         self.meant, self.whole = meant, whole
 
-    def advice(self, meant: str = "") -> str:
-        """Return what was probably meant, by itself or by ``meant``, and what was expected if that is short."""
-        meant = self.meant or meant
-        if not meant or self.whole:
+    def advice(self) -> str:
+        """Return what was probably meant, and what was expected if that is short."""
+        if not self.meant or self.whole:
             return str(self) if self.whole else f"expected {self}"
-        return f"did you mean {meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
+        return f"did you mean {self.meant}?" + (f" expected {self}" if len(str(self)) < _SHORT else "")
 
 
 class Kind(Protocol):
@@ -134,14 +133,11 @@ class Text:
         return {"type": "string", "pattern": r"\S"}
 
 
-_YES, _NO = frozenset(("true", "yes", "on", "1", "y")), frozenset(("false", "no", "off", "0", "n"))
-
-
 @dataclass(frozen=True)
 class Choice:
     """One of a few words, numbers or truth values; ``also`` is a kind whose values are accepted beside them.
 
-    ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.words_meant`
+    ``called`` has other names of the words, letters and digits in lower case, as :func:`rockbatch.toml.meant.word_meant`
     takes them. ``listed_by`` is the command that lists many options, in place of the list in messages.
     """
 
@@ -166,12 +162,7 @@ class Choice:
 
     def _meant(self, value: Any) -> list[Any]:
         words = [option for option in self.options if isinstance(option, str)]
-        meant: list[Any] = words_meant(value, words, self.called) if isinstance(value, str) else []
-        meant = meant or [option for option in self.options if str(option) == value]
-        word = "" if isinstance(value, float | list | dict) else plain(str(value))
-        if not meant and any(option is True for option in self.options) and word in _YES | _NO:
-            return [word in _YES]
-        return meant
+        return word_meant(value, words, self.called) if isinstance(value, str) else []
 
     def schema(self) -> Schema:
         if self.options == (True, False):

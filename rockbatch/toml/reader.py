@@ -2,7 +2,6 @@
 
 import io
 import os
-import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -10,14 +9,25 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import (
+    BadSyntax,
+    Contradiction,
+    InputError,
+    MissingKey,
+    NotFound,
+    OutOfRange,
+    Problem,
+    UnknownKey,
+    Unusual,
+    WrongType,
+    refuse,
+)
 from rockbatch.common.files import opened_input
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
-from rockbatch.toml.kinds import Choice, KindError, Number, Other, Whole
+from rockbatch.toml.kinds import Choice, KindError, Other
 from rockbatch.toml.lines import KeyPath, TooDeepError, key_lines
-from rockbatch.toml.meant import Meant, number_meant, similar
-from rockbatch.toml.section import CONFIRM, Key, Section, elsewhere, home, options
+from rockbatch.toml.section import CONFIRM, Key, Section, home, options
 from rockbatch.toml.slips import syntax_error
 
 LARGEST = 4 * 2**20
@@ -48,8 +58,8 @@ class TomlFile:
     """Tables that the file may have, outer ones before inner, for what is said of keys that stand elsewhere."""
     misspelt: set[KeyPath] = field(default_factory=set)
     """Keys and tables that are probably there under a name that is not known."""
-    problems: list[tuple[int, str]] = field(default_factory=list)
-    """The first ones, ``MOST_REPORTED`` at most: line and message."""
+    problems: list[tuple[int, Problem]] = field(default_factory=list)
+    """The first ones, ``MOST_REPORTED`` at most, with their lines."""
 
     @classmethod
     def read(cls, path: Path, sections: Sequence[Section] = ()) -> "TomlFile":
@@ -63,7 +73,7 @@ class TomlFile:
             with io.BufferedReader(opened_input(path)) as opened:
                 content = opened.read(LARGEST + 1)
         except OSError as error:
-            raise InputError(_unreadable(path, error)) from None
+            raise _unreadable(path, error) from None
         if len(content) > LARGEST:
             raise InputError(
                 f"{path}: larger than {LARGEST // 2**20} MiB, which no study, manifest or table of a spectrum is"
@@ -72,7 +82,7 @@ class TomlFile:
             return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             line = content.count(b"\n", 0, error.start) + 1
-            raise InputError(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
+            raise BadSyntax(f"{path}:{line}: not UTF-8 text; save the file in the encoding UTF-8") from None
 
     @classmethod
     def parse(cls, path: Path, text: str, sections: Sequence[Section] = (), *, lined: bool = True) -> "TomlFile":
@@ -84,30 +94,35 @@ class TomlFile:
         try:
             lines = key_lines(text) if lined else {}
         except TooDeepError as error:
-            raise InputError(f"{path}: {error}") from None
+            raise BadSyntax(f"{path}: {error}") from None
         except ValueError:
             pass  # the parser tells better what is wrong, and gets no further
         try:
             return cls(path, text, tomllib.loads(text), lines, sections)
         except (ValueError, RecursionError) as error:
-            raise InputError(syntax_error(path, text, str(error), sections)) from None
+            raise BadSyntax(syntax_error(path, text, str(error))) from None
 
-    def complain(self, key_path: KeyPath, message: str) -> None:
-        """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts."""
+    def complain(self, key_path: KeyPath, message: str | Problem, label: str = "") -> None:
+        """Note a mistake about the value at ``key_path``; one that is missing counts where its table starts.
+
+        ``label`` names the table. A ``message`` that is a problem already keeps its kind, and its text under the key of the file.
+        """
         if self.is_full:
             return
         places = (key_path[:n] for n in range(len(key_path), 0, -1))
         line = next((self.lines[place] for place in places if place in self.lines), 0)
-        problem = (line, f"{self.path}:{line}: {message}" if line else f"{self.path}: {message}")
+        place = f"{self.path}:{line}" if line else f"{self.path}"
+        text, key = f"{label}: {message}" if label else str(message), ".".join(map(str, key_path))
+        kind = message.kind if isinstance(message, Problem) else None
+        problem = (line, Problem(key, self.value(key_path), text, place, kind=kind, named=False))
         if problem not in self.problems:
             self.problems.append(problem)
 
     def adopt(self, other: "TomlFile", key_path: KeyPath) -> None:
         """Note the mistakes of another file, whose name stands at ``key_path``."""
         line = self.lines.get(key_path, 0)
-        self.problems += [(line, message) for _, message in sorted(other.problems)][
-            : MOST_REPORTED - len(self.problems)
-        ]
+        in_order = sorted(other.problems, key=lambda problem: (problem[0], str(problem[1])))
+        self.problems += [(line, problem) for _, problem in in_order][: MOST_REPORTED - len(self.problems)]
 
     @property
     def is_full(self) -> bool:
@@ -120,11 +135,11 @@ class TomlFile:
 
     def finish(self) -> None:
         """Raise :class:`InputError` with all mistakes, in the order of the file, if there are any."""
-        in_order = [message for _, message in sorted(self.problems, key=lambda problem: problem[0])]
+        in_order = [problem for _, problem in sorted(self.problems, key=lambda problem: problem[0])]
         if self.is_full:
-            in_order.append(f"{self.path}: {MOST_REPORTED} mistakes are reported at once; there may be more")
-        if in_order:
-            raise InputError(*in_order)
+            more = f"{MOST_REPORTED} mistakes are reported at once; there may be more"
+            in_order.append(Problem("", None, more, f"{self.path}"))
+        refuse(in_order)
 
     def table(self, *key_path: str | int, required: str = "") -> "Table | None":
         """Return the table ``[key_path]``, or None; ``required`` says what to write if it is missing."""
@@ -135,7 +150,7 @@ class TomlFile:
         if value is not None:
             self.complain(key_path, f"{name}: expected one table; write [{name}] on a line of its own, once")
         elif required and key_path not in self.misspelt:
-            self.complain(key_path, f"[{name}] is missing; write {required}")
+            self.complain(key_path, _of(MissingKey, f"[{name}] is missing; write {required}"))
         return None
 
     def has(self, key_path: KeyPath) -> bool:
@@ -164,7 +179,7 @@ class TomlFile:
             if isinstance(node, dict):
                 node = node.get(str(part))
             else:
-                node = node[part] if isinstance(node, list) and isinstance(part, int) else None
+                node = node[part] if isinstance(node, list) and isinstance(part, int) and part < len(node) else None
         return node
 
 
@@ -177,11 +192,11 @@ class Table:
     label: str
     data: dict[str, Any]
 
-    def complain(self, message: str, *key: str | int) -> None:
+    def complain(self, message: str | Problem, *key: str | int) -> None:
         """Note a mistake about this table, or a key or list element of it."""
-        self.file.complain((*self.key_path, *key), f"{self.label}: {message}" if self.label else message)
+        self.file.complain((*self.key_path, *key), message, self.label)
 
-    def complain_about(self, setting: Setting, message: str) -> None:
+    def complain_about(self, setting: Setting, message: str | Problem) -> None:
         """Note a mistake about one value."""
         self.complain(message, *setting.key_path[len(self.key_path) :])
 
@@ -232,11 +247,11 @@ class Table:
                 break
             if name not in keys:
                 if name in unfit:
-                    self.complain(f"{name} = {shown(value)}: {unfit[name]}", name)
+                    self.complain(_of(Contradiction, f"{name} = {shown(value)}: {unfit[name]}"), name)
                 elif name not in other:
                     self._unknown(name, keys, other)
             elif reason := self._not_applying(keys, name):
-                self.complain(f"{name} = {shown(value)}: {reason}", name)
+                self.complain(_of(Contradiction, f"{name} = {shown(value)}: {reason}"), name)
             elif settings := self._checked(name, keys[name], value):
                 usable[name] = settings
         self._check_missing(keys)
@@ -258,11 +273,13 @@ class Table:
             if self.requires(keys, name) and not self.has(name):
                 few = isinstance(key.kind, Choice) and not key.kind.listed_by
                 choices = f"; {name} is {key.kind.words}" if few else ""
-                self.complain(f"{name} is missing; write for example {name} = {key.example}{choices}")
+                message = f"{name} is missing; write for example {name} = {key.example}{choices}"
+                self.complain(_of(MissingKey, message))
         for clash in keys.clashes if isinstance(keys, Section) else ():
             if all(map(self.has, clash.given)) and not any(map(self.has, clash.lacking)):
-                value = shown(self.data.get(clash.given[0]))
-                self.complain(clash.message.replace("{value}", value), clash.at or clash.given[0])
+                first = clash.given[0]
+                named = f"{first} = {shown(self.data.get(first))}: " if clash.shown else ""
+                self.complain(_of(Contradiction, f"{named}{clash.message}"), clash.at or first)
 
     def _not_applying(self, keys: Mapping[str, Key], name: str) -> str:
         """Return why a key does not apply beside the values of others; empty if it does, or they are not known."""
@@ -289,11 +306,11 @@ class Table:
                 if shown(setting.value) not in present:
                     instead = f"write one of {', '.join(present)}" if present else "leave it out"
                     message = f"confirm = {shown(setting.value)}: this table has no such key; {instead}"
-                    self.complain_about(setting, message)
+                    self.complain_about(setting, _of(UnknownKey, message))
         for name in (name for name in usable if name not in self.confirmed):
             for setting in usable[name]:
-                if doubt := keys[name].doubt(name, setting.value):
-                    self.complain_about(setting, f"{doubt}; {remedy(name)} in this table")
+                for problem in keys[name].doubts(name, setting.value):
+                    self.complain_about(setting, in_table(problem))
 
     def _checked(self, name: str, key: Key, value: Any) -> list[Setting]:
         """Return the usable values of a key with their places, of a range both ends or none; note the others."""
@@ -345,15 +362,15 @@ class Table:
             self._wrong(name, key, whole, KindError("one value, not a list"))
 
     def _wrong(self, name: str, key: Key, setting: Setting, wrong: KindError) -> None:
-        meant = wrong.meant or " or ".join(_values_meant(name, key, setting.value))
-        example = "" if meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
-        self.complain_about(setting, f"{name} = {shown(setting.value)}: {wrong.advice(meant)}{example}")
+        example = "" if wrong.meant or wrong.whole or options(key) else f"; write for example {name} = {key.example}"
+        message = f"{name} = {shown(setting.value)}: {wrong.advice()}{example}"
+        self.complain_about(setting, _of(OutOfRange if wrong.whole else WrongType, message))
 
     def _unknown(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> None:
         section = not self.key_path and isinstance(self.data[name], dict | list)
         complaint = "unknown section" if section else "unknown key"
         written = name if name.isidentifier() and len(name) <= _LONGEST else shown(name)
-        self.complain(f"{written}: {complaint}; {self._instead(name, keys, other)}", name)
+        self.complain(_of(UnknownKey, f"{written}: {complaint}; {self._instead(name, keys, other)}"), name)
 
     def _instead(self, name: str, keys: Mapping[str, Key], other: Iterable[str]) -> str:
         """Return what to write instead of an unknown key: another of this table first, then the table where it belongs."""
@@ -365,56 +382,40 @@ class Table:
             known += other if place else ()
         else:
             known = list(other)
-        if advice := own.advice(name):
-            self._mark_misspelt([word for word in re.findall(r"(\w+) = ", advice) if word in known][:1])
-            return advice
-        absent = [key for key in known if key not in self.data]
-        if meant := own.known_as(name, absent) or own.known_as(name, known):
-            self._mark_misspelt([meant.key])
-            return _renamed(meant, self.data[name])
-        if belongs := home(self.file.sections, name, self.data[name], place):
+        meant, advice = own.advice(name)
+        if not advice:
+            meant = own.known_as(name, [key for key in known if key not in self.data]) or own.known_as(name, known)
+        if meant and meant not in self.data:
+            self.file.misspelt.add((*self.key_path, meant))
+        if advice or meant:
+            return advice or f"did you mean {meant}?"
+        if not isinstance(self.data[name], dict | list) and (belongs := home(self.file.sections, name, place)):
             return f"it belongs under {belongs}"
-        if not isinstance(self.data[name], dict | list) and (
-            there := elsewhere(self.file.sections, name, self.data[name], place)
+        if inner := next(
+            (section for section in self.file.sections if len(section.at) > 1 and section.at[-1] == name), None
         ):
-            return f"did you mean {there}?"
-        near = similar(name, {key: keys[key].unit if key in keys else "" for key in known})
-        self._mark_misspelt(near)
-        return f"did you mean {' or '.join(near)}?" if near else "write one of " + ", ".join(known)
-
-    def _mark_misspelt(self, names: Iterable[str]) -> None:
-        self.file.misspelt.update((*self.key_path, name) for name in names if name not in self.data)
+            return f"write {inner.header}"
+        return f"write one of {', '.join(known)}"
 
 
-def _renamed(meant: Meant, value: Any) -> str:
-    """Return the advice to write another key, with the value in its unit."""
-    values = value if isinstance(value, list) else [value]
-    why = f" ({meant.words})" if meant.words else ""
-    if meant.factor == 1.0 or not all(type(number) in (int, float) for number in values):
-        return f"did you mean {meant.key}?{why}"
-    converted = [f"{number * meant.factor:.6g}" for number in values]
-    written = f"[{', '.join(converted)}]" if isinstance(value, list) else converted[0]
-    return f"write {meant.key} = {written}{why}"
+def _of(kind: type[InputError], message: str) -> Problem:
+    """Return a message as a problem of a kind; where it stands, the file says."""
+    return Problem("", None, message, kind=kind)
 
 
-def _values_meant(name: str, key: Key, value: Any) -> list[str]:
-    """Return the values that a number in quotes, or in a list of its own, means for a key, as TOML writes them."""
-    if isinstance(value, list) and len(value) == 1 and not key.pair and key.accepts(value[0]):
-        return [shown(value[0])]
-    if not (isinstance(value, str) and isinstance(key.kind, Number | Whole)):
-        return []
-    meant = number_meant(name, key.unit, value)
-    return [number for number in meant if key.accepts(tomllib.loads(f"x = {number}")["x"])]
+def in_table(problem: Problem, table: str = "this table") -> Problem:
+    """Return an unusual value as a table of a file says it, in which it is confirmed."""
+    return _of(Unusual, f"{problem} in {table}") if problem.confirm else problem
 
 
-def _unreadable(path: Path, error: OSError) -> str:
+def _unreadable(path: Path, error: OSError) -> InputError:
     if isinstance(error, FileNotFoundError):
-        return f"{path}: no such file{nearby(path, str(path))}"
+        return NotFound(f"{path}: no such file{nearby(path, str(path))}")
     if path.is_dir():
         inside = sorted(path.glob("*.toml"))[:3]
         hint = f"did you mean {' or '.join(map(str, inside))}?" if inside else "give a study file, such as pier.toml"
-        return f"{path}: a folder; {hint}"
-    return f"{path}: cannot be read: {error.strerror or error}"
+        return NotFound(f"{path}: a folder; {hint}")
+    return NotFound(f"{path}: cannot be read: {error.strerror or error}")
 
 
 def nearby(path: Path, written: str) -> str:

@@ -3,14 +3,14 @@
 From them follow the reader (:mod:`reader`), the JSON schemas, the reference in the documentation and the messages.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, NamedTuple
 
+from rockbatch.common.errors import Problem
 from rockbatch.common.units import Usual
-from rockbatch.toml.kinds import Choice, Kind, KindError, Number, text
-from rockbatch.toml.meant import Also, Meant, in_another_unit, known_as, plain, quantity_of
+from rockbatch.toml.kinds import Choice, Kind, text
+from rockbatch.toml.meant import Also, known_as, without_unit
 
 
 @dataclass(frozen=True)
@@ -56,26 +56,9 @@ class Key:
         """Return whether it has to be written whatever the other keys are."""
         return self.required and not self.only
 
-    @property
-    def unit(self) -> str:
-        """Return the unit of its value as names of keys have it, "rad_s", if its kind says it; else empty."""
-        bounds = self.kind.bounds if isinstance(self.kind, Number) else None
-        written = re.match(r" \[(.+?)\]", bounds.unit) if bounds else None
-        return written[1].replace("/", "_").replace("²", "2") if written else ""
-
-    def doubt(self, name: str, value: Any) -> str:
-        """Return what is odd about a value, with its ``name`` and the unit in which it would be usual; empty if nothing is."""
-        if self.usual is None or self.usual.holds(value):
-            return ""
-        return self.usual.doubt(name, value) + in_another_unit(name, value, self.usual.holds)
-
-    def accepts(self, value: Any) -> bool:
-        """Return whether it takes the value, or one of a list."""
-        try:
-            self.kind(value[0] if isinstance(value, list) and value and (self.many or self.pair) else value)
-        except KindError:
-            return False
-        return True
+    def doubts(self, name: str, value: Any) -> list[Problem]:
+        """Return the problem of a value of the key ``name`` that is unusual, and has to be confirmed."""
+        return [] if self.usual is None else self.usual.doubts(name, value)
 
 
 def options(key: Key) -> tuple[Any, ...]:
@@ -86,13 +69,14 @@ def options(key: Key) -> tuple[Any, ...]:
 class Clash(NamedTuple):
     """Keys that do not go together: wrong where all of ``given`` are written and none of ``lacking`` is.
 
-    ``message`` may show the value of the first key as {value}; it stands at the key ``at``, or at that first one.
+    ``message`` stands at the key ``at``, or at the first one, which is ``shown`` before it, with its value.
     """
 
     given: tuple[str, ...]
     message: str
     lacking: tuple[str, ...] = ()
     at: str = ""
+    shown: bool = False
 
 
 CONFIRM = {
@@ -126,8 +110,8 @@ class Section(Mapping[str, Key]):
         Whether the same table may go with a number, too: damper_2.
     also : mapping of str to Also
         Other names of its keys, letters and digits in lower case; a unit may follow them in a file.
-    instead : mapping of str to str
-        Names in the same form for which there is no key, or for which the value has to change, and what to write.
+    instead : mapping of str to str, or to a pair
+        Names in the same form for which there is no key, and what to write; or the key of which the value has to change, and how.
     """
 
     at: tuple[str, ...]
@@ -141,7 +125,7 @@ class Section(Mapping[str, Key]):
     free: str = ""
     numbered: bool = False
     also: Mapping[str, Also] = field(default_factory=dict)
-    instead: Mapping[str, str] = field(default_factory=dict)
+    instead: Mapping[str, str | tuple[str, str]] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Key:
         return self.keys_read[name]
@@ -158,14 +142,14 @@ class Section(Mapping[str, Key]):
         name = ".".join(self.at)
         return (f"[[{name}]]" if self.many else f"[{name}]") if name else ""
 
-    def known_as(self, name: str, names: Iterable[str]) -> Meant | None:
+    def known_as(self, name: str, names: Iterable[str]) -> str:
         """Return which of ``names``, keys of it or of other tables, a name means; see :func:`rockbatch.toml.meant.known_as`."""
-        return known_as(name, {key: self[key].unit if key in self else "" for key in names}, self.also)
+        return known_as(name, names, self.also)
 
-    def advice(self, name: str) -> str:
-        """Return what to write instead of a name for which there is no key; empty if nothing is known about it."""
-        stem, _, _ = quantity_of(name)
-        return self.instead.get(plain(name)) or self.instead.get(plain(stem), "")
+    def advice(self, name: str) -> tuple[str, str]:
+        """Return the key to write instead of an unknown name, if there is one, and the advice; both empty if none is known."""
+        advice = next(filter(None, map(self.instead.get, without_unit(name))), "")
+        return ("", advice) if isinstance(advice, str) else (advice[0], f"write {advice[0]}, {advice[1]}")
 
     def default(self, name: str) -> Any:
         """Return the value of a key that is not written; None if there is none, or it follows from others."""
@@ -177,33 +161,14 @@ class Section(Mapping[str, Key]):
 
 
 _GENERAL = {
-    "at", "columns", "count", "damping", "dt", "f", "file", "gamma", "kind", "n", "nu", "offset", "path", "period_s", "polarity",
-    "records", "reason", "scale", "side", "source", "type", "unit",
+    "at", "columns", "confirm", "count", "damping", "dt", "f", "file", "gamma", "kind", "n", "name", "nu", "offset", "path",
+    "period_s", "polarity", "reason", "records", "scale", "side", "source", "type", "unit",
 }  # fmt: skip
 """Names that mean something else in tables that do not belong together."""
 
 
-def home(sections: Iterable[Section], name: str, value: Any, place: tuple[str, ...]) -> str:
-    """Return where a key or an inner table of this name belongs that takes the value, for one at ``place``; else empty."""
-    headers: dict[str, None] = {}
-    outer: dict[tuple[str, ...], Section] = {}
-    for section in sections:
-        outer[section.at] = section
-        if len(section.at) > 1 and section.at[-1] == name and isinstance(value, dict | list):
-            above = outer[section.at[:-1]]
-            return f"{'its ' if above.many else ''}{above.header}: write {section.header}"
-        related = section.at[: len(place)] == place[: len(section.at)]
-        repeated = section.free and headers  # a reference repeats the keys of cases
-        known = section.at and name in section and not repeated and name not in ("name", "confirm")
-        if known and (related or name not in _GENERAL) and section[name].accepts(value):
-            headers[section.header] = None
-    return " or ".join(headers)
-
-
-def elsewhere(sections: Iterable[Section], name: str, value: Any, place: tuple[str, ...]) -> str:
-    """Return the key, and its table, that is also called ``name`` and takes the value, for one at ``place``; else empty."""
-    for section in sections:
-        key = section.known_as(name, section) if section.at and section.at != place else None
-        if key and plain(key.key) != plain(name) and section[key.key].accepts(value):
-            return f"{key.key}, under {section.header}"
-    return ""
+def home(sections: Iterable[Section], name: str, place: tuple[str, ...]) -> str:
+    """Return the headers of the other tables than that at ``place`` that have a key of this name, if it is not a general one."""
+    others = (section for section in sections if section.at and section.at != place)
+    headers = dict.fromkeys(section.header for section in others if name in section and not section.free)
+    return "" if name in _GENERAL else " or ".join(headers)

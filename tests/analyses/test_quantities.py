@@ -8,6 +8,7 @@ import pytest
 from report_page import Page
 from studies import RIGID, SINE, study_text, write_study
 
+import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.reporting.markup import number
 
@@ -67,8 +68,10 @@ def interval(low, high, form):
     return f"{low:{form}} – {'∞' if high is None or high != high else format(high, form)}"
 
 
-def test_a_release_test(tmp_path, capsys):
-    printed, page, out = made(tmp_path, capsys, RELEASE, "release")
+def test_a_release_test(tmp_path):
+    out = tmp_path / "out"
+    rb.release(write_study(tmp_path, RELEASE), out)
+    page = Page((out / "analyses.html").read_text(encoding="utf-8"))
     (fit,) = pd.read_csv(out / "release.csv").to_dict("records")
     value, bounds = f"{fit['value']:.4g}", f"{fit['low']:.4g} to {fit['high']:.4g} (95%)"
     scatter, over = f"{fit['scatter']:.2g}", f"{fit['over_housner']:.3f}"
@@ -79,17 +82,14 @@ def test_a_release_test(tmp_path, capsys):
     words = (
         f"rigid: restitution = {value} (95 %: {ends}), Housner's is {housner}; it scatters by ±{scatter} from impact to"
     )
-    assert words in printed
     assert words in page.text
-    assert fit["remark"] in printed
     assert fit["remark"] in page.text
     times = {"impact": "d", "t_measured_s": ".4f", "t_computed_s": ".4f"}
     amplitudes = {"amplitude_measured_rad": ".5f", "amplitude_computed_rad": ".5f"}
     apparent = {"restitution_measured": ".3f", "restitution_computed": ".3f"}
     assert rows[3] == ["impact", *["measured", "computed"] * 3]
     expected = texts_of(pd.read_csv(out / "release_impacts.csv"), times | amplitudes | apparent)
-    agree(printed, rows[4:], expected, 0)
-    assert [plain(line) for line in printed.splitlines()][2:4] == [" ".join(row) for row in (rows[2][1:], rows[3])]
+    assert [[plain(cell) for cell in cells] for cells in rows[4:]] == expected
 
 
 def test_a_sensitivity(tmp_path, capsys):

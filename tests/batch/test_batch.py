@@ -15,9 +15,10 @@ import rockbatch.batch.compiling
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import study_digests
 from rockbatch.batch.execution import execute_runs
-from rockbatch.batch.groups import NOTHING_MORE, groups, outcomes_of
+from rockbatch.batch.groups import groups, outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import Listener
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.core.kernel import entry
@@ -125,7 +126,7 @@ class Heard(Listener):
 
 def test_rows_come_in_the_order_of_the_study(study):
     table = rb.run(study)
-    assert list(table.columns) == [*names(FIXED), "beta", *names(TRAILING), "mirror_of", "settlement_other_law_m"]
+    assert list(table.columns) == [*names(FIXED), "beta", *names(TRAILING), "mirror_of"]
     assert len(table) == 2 * 2 * 2 * 3
     first = table.loc[:5, ["record", "polarity", "scale", "case", "beta"]].astype(object).where(table.notna(), None)
     cases = (("rigid", None), ("pads", 30.0), ("pads", 50.0))
@@ -227,14 +228,14 @@ class StopAfter(Stop):
 def test_a_group_that_is_stopped_anywhere_runs_no_further_and_what_it_returns_is_whole(study):
     """Once it is set, it is looked at no more than twice for each run."""
     loaded, runs = plan_of(study)
-    chosen, output = [runs[i] for i in (0, 1, 2, 7)], Output(rocking=True, forces=True)
+    chosen, observers = [runs[i] for i in (0, 1, 2, 7)], observers_of(Output(rocking=True, forces=True))
     unstopped = StopAfter(10**6)
-    whole = outcomes_of(chosen, loaded.numerics, output, unstopped)
+    whole = outcomes_of(chosen, loaded.numerics, observers, unstopped)
     assert None not in whole
     looks = 10**6 - unstopped.looks
     for number in range(looks):
         stop = StopAfter(number)
-        found = outcomes_of(chosen, loaded.numerics, output, stop)
+        found = outcomes_of(chosen, loaded.numerics, observers, stop)
         assert None in found
         assert all(outcome is None or repr(outcome) == repr(full) for outcome, full in zip(found, whole, strict=True))
         assert stop.looks >= -2 * len(chosen)
@@ -247,9 +248,9 @@ def test_only_runs_that_are_wanted_and_not_in_the_journal_are_carried_out(study,
     simulated = []
 
     class Watched(Threads):
-        def outcomes(self, runs, numerics, output=NOTHING_MORE):
+        def outcomes(self, runs, numerics, observers=()):
             simulated.append(len(runs))
-            return super().outcomes(runs, numerics, output)
+            return super().outcomes(runs, numerics, observers)
 
     calls = []
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:

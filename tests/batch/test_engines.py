@@ -24,9 +24,10 @@ import rockbatch.batch.threads
 from rockbatch.batch.dask import Dask, Records, _result_of, simulate
 from rockbatch.batch.digests import program
 from rockbatch.batch.execution import execute_runs
-from rockbatch.batch.groups import NOTHING_MORE, outcomes_of
+from rockbatch.batch.groups import outcomes_of
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.listening import silent
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
@@ -65,7 +66,7 @@ def runs(study):
 def table(folder, study, runs, engine, progress=silent):
     """Bytes of peaks.csv as an engine carries out the runs."""
     with engine, Journal(folder / "peaks.csv.part", columns(study), {}, fresh=True) as journal:
-        execute_runs(runs, study.numerics, journal, engine, study.output, progress=progress)
+        execute_runs(runs, study.numerics, journal, engine, observers_of(study.output), progress=progress)
         journal.write_in_order(folder / "peaks.csv")
     return (folder / "peaks.csv").read_bytes()
 
@@ -455,7 +456,7 @@ def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study
     client = Notebook()
     records = Records(client)
     for first in range(0, RUNS, 7):
-        records.submit(runs[first : first + 7], study.numerics, study.output)
+        records.submit(runs[first : first + 7], study.numerics, observers_of(study.output))
     sent = [given for function, given in client.tasks if function is not simulate]
     assert [motion.name for (motion,) in sent] == ["one-sine", "one-cosine"]
     groups = [given for function, given in client.tasks if function is simulate]
@@ -465,15 +466,15 @@ def test_each_record_is_sent_once_whatever_its_scales_polarities_and_cases(study
 def test_a_worker_rebuilds_the_very_runs(study, runs):
     ours = [*runs[:12], *runs[-12:]]
     client = Notebook()
-    Records(client).submit(ours, study.numerics, study.output)
+    Records(client).submit(ours, study.numerics, observers_of(study.output))
     (_, (futures, members, *rest)) = client.tasks[-1]
     motions = [client.tasks[int(future.split()[1]) - 1][1][0] for future in futures]
-    assert simulate(motions, members, *rest) == outcomes_of(ours, study.numerics, study.output)
+    assert simulate(motions, members, *rest) == outcomes_of(ours, study.numerics, observers_of(study.output))
 
 
 def test_a_worker_with_other_kernels_refuses(study):
     with pytest.raises(InputError, match=rf"{program()}, not 0123\): install the same everywhere"):
-        simulate([], [], study.numerics, NOTHING_MORE, "0123")
+        simulate([], [], study.numerics, (), "0123")
 
 
 def test_workers_that_die_and_come_again_are_waited_for_while_there_is_patience(monkeypatch):

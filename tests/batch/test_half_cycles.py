@@ -5,9 +5,9 @@ import pytest
 from studies import study_text, write_study
 
 import rockbatch as rb
-from rockbatch.batch.repeated import HALF_CYCLES
 from rockbatch.common.files import read_table
-from rockbatch.simulation.half_cycles import HALF_CYCLE_COLUMNS
+from rockbatch.observers.half_cycles import TABLE as HALF_CYCLES
+from rockbatch.outcome.half_cycles import HALF_CYCLE_COLUMNS
 from rockbatch.study.load import OUTPUT
 
 pytestmark = pytest.mark.usefixtures("no_report")

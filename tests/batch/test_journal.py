@@ -333,3 +333,17 @@ def test_memory_holds_where_the_rows_are_and_not_the_rows(path):
     finally:
         tracemalloc.stop()
     assert peak < 2 * 16 * many + 4 * 600 * group
+
+
+def test_cells_beside_a_row_outlast_the_process_and_are_not_in_the_table(path):
+    beside = {"beside": ("first", "second")}
+    kept = {0: ROWS[0] | {"first": "eJw="}, 1: ROWS[1] | {"second": "a/+"}}
+    interrupted(path, kept, **beside)
+    with Journal(path, COLUMNS, DIGEST, **beside) as journal:
+        assert journal.cells_beside(0) == {"first": "eJw=", "second": ""}
+        assert journal.cells_beside(1) == {"first": "", "second": "a/+"}
+        assert journal.cells_beside(7) == {}
+        journal.add_all({number: row for number, row in ROWS.items() if number > 1})
+        journal.write_in_order(path.with_name("peaks.csv"), [{"reason": "of no run"}])
+        assert journal.cells_beside(1) == {"first": "", "second": "a/+"}
+    assert path.with_name("peaks.csv").read_bytes() == TABLE + b",,of no run\n"

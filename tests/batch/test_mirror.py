@@ -11,14 +11,14 @@ from studies import COSINE, PADS, SINE, study_text
 
 import rockbatch as rb
 from rockbatch.batch.execution import execute_runs, to_simulate
-from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.journal import Journal
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan, simulations
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
+from rockbatch.quantities.rows import simulated
 from rockbatch.results.columns import columns, row
-from rockbatch.results.rows import simulated
 from rockbatch.results.suite_statistics import suite
 from rockbatch.simulation import run_to_tolerance
 from rockbatch.study import load_study
@@ -61,9 +61,9 @@ class Watched(Threads):
         super().__init__(1)
         object.__setattr__(self, "simulated", [])
 
-    def outcomes(self, runs, numerics, output=NOTHING_MORE):
+    def outcomes(self, runs, numerics, observers=()):
         self.simulated.extend((run.record.name, run.polarity, run.scale, run.case.columns["beta"]) for run in runs)
-        return super().outcomes(runs, numerics, output)
+        return super().outcomes(runs, numerics, observers)
 
 
 def carried_out(path, folder, among=None):
@@ -71,7 +71,14 @@ def carried_out(path, folder, among=None):
     loaded = load_study(path)
     engine = Watched()
     with Journal(folder / "peaks.csv.part", columns(loaded), {}) as journal:
-        execute_runs(Plan(loaded, ground_motions(loaded)), loaded.numerics, journal, engine, loaded.output, among=among)
+        execute_runs(
+            Plan(loaded, ground_motions(loaded)),
+            loaded.numerics,
+            journal,
+            engine,
+            observers_of(loaded.output),
+            among=among,
+        )
         return engine.simulated, dict(journal.rows())
 
 
@@ -107,7 +114,8 @@ def test_a_mirrored_outcome_is_that_of_a_simulation_of_the_reversed_motion(base,
     back = run_to_tolerance(PIER, base, replace(motion, horizontal=-motion.horizontal), 1e-4, 2.0)
     mirrored = asdict(there.mirrored())
     exact = (
-        "status", "reason", "note", "impacts", "separations", "substeps", "settlement_other_law", "energies", "theta_max_is"
+        "status", "reason", "note", "impacts", "separations", "substeps", "settlement_other_law", "energies", "theta_max_is",
+        "failure",
     )  # fmt: skip
     for name, value in asdict(back).items():
         if "not settled" in there.note and name in ("impacts", "separations", "flights", "note"):
@@ -165,10 +173,10 @@ def test_a_journal_that_has_lost_one_of_two_mirror_images_gets_that_one_again(st
     _, whole = carried_out(study(), tmp_path / "whole")
     with Journal(tmp_path / "peaks.csv.part", columns(loaded), {}) as journal:
         for kept in (range(lost), range(lost + 1, len(runs))):
-            execute_runs(runs, loaded.numerics, journal, Threads(1), loaded.output, among=kept)
+            execute_runs(runs, loaded.numerics, journal, Threads(1), observers_of(loaded.output), among=kept)
         assert list(to_simulate(runs, range(len(runs)), journal)) == [0]
         engine = Watched()
-        execute_runs(runs, loaded.numerics, journal, engine, loaded.output)
+        execute_runs(runs, loaded.numerics, journal, engine, observers_of(loaded.output))
         assert len(engine.simulated) == 1
         assert journal[lost] == whole[lost]
 

@@ -15,9 +15,9 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch.batch.groups
 import rockbatch.batch.threads
-from rockbatch.batch.running import _ranges as ranges
 from rockbatch.commands.cli import main
 from rockbatch.common.files import only_writer
+from rockbatch.workflow.running import _ranges as ranges
 
 pytestmark = pytest.mark.usefixtures("no_report")
 
@@ -403,7 +403,7 @@ def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when
 
 def test_results_of_other_peaks_never_stand_beside_new_ones(study, finished, monkeypatch):
     """Killed between the table and what belongs to it, there is the table alone, and its journal."""
-    import rockbatch.batch.finishing as finishing
+    from rockbatch.batch.preparing import cost_of_finished
 
     out = finished
     command = ["run", str(study), "--out", str(out)]
@@ -414,7 +414,7 @@ def test_results_of_other_peaks_never_stand_beside_new_ones(study, finished, mon
         patch.setattr("rockbatch.batch.finishing.write_info", stopped)
         assert main(command) == 130
     assert sorted(file.name for file in out.iterdir() if file.suffix != ".lock") == ["peaks.csv", "peaks.csv.part"]
-    assert finishing.cost_of_finished(out, {}) is None
+    assert cost_of_finished(out, {}) is None
     assert main(command) == 0
     assert json.loads((out / "run.json").read_text())["kept"] == SIMULATED
 

@@ -8,7 +8,8 @@ from studies import COSINE, PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.commands.cli import main
-from rockbatch.results.sections import MEANING, SECTIONS
+from rockbatch.quantities.demands import OF_SECTIONS
+from rockbatch.results.sections import SECTIONS
 
 pytestmark = pytest.mark.usefixtures("no_report")
 
@@ -30,7 +31,7 @@ def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_
     main(["run", str(path), "--out", str(out), "--jobs", "2"])
     results, study = rb.open_results(out), rb.load_study(path)
     table = results.sections
-    assert list(table)[-len(MEANING) :] == list(MEANING)
+    assert list(table)[-len(OF_SECTIONS) :] == list(OF_SECTIONS)
     runs = table.groupby(["record", "case"], sort=False)
     assert (len(runs), len(table), set(table["polarity"])) == (4, 12, {"+"})  # none of mirror images
     assert table["height_m"].tolist() == 4 * [0.0, 7.0, 14.0]
@@ -39,7 +40,7 @@ def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_
         case = next(case for case in study.cases if case.name == name)
         response = rb.simulate(case.pier, case.base, pulse.motion(9.81), sections=3)
         expected = response.sections
-        pd.testing.assert_frame_equal(rows[list(MEANING)].reset_index(drop=True), expected, rtol=1e-9, atol=1e-9)
+        pd.testing.assert_frame_equal(rows[list(OF_SECTIONS)].reset_index(drop=True), expected, rtol=1e-9, atol=1e-9)
 
     assert [response.pier for response in results.responses] == [case.pier for case in study.cases]  # with its parts
     checks = rb.check(results)
@@ -67,7 +68,7 @@ def test_a_fixed_step_has_no_error_and_a_pier_without_a_mass_no_forces_in_kilone
     motion = rb.pulse("sine", name="sine", amplitude=4.0, period=0.5, dt=0.01, duration=1.0)
     table = rb.simulate(block, rb.RigidBase(), motion, sections=[7.0], substeps=8).sections
     assert table.loc[0, "section_moment_m2_s2"] > 0.0
-    assert table[[name for name in MEANING if name.endswith(("kN", "kNm", "error"))]].isna().all(axis=None)
+    assert table[[name for name in OF_SECTIONS if name.endswith(("kN", "kNm", "error"))]].isna().all(axis=None)
     assert rb.simulate(block, rb.RigidBase(), motion).sections is None
 
 
@@ -108,6 +109,6 @@ def test_parts_with_their_lengths_have_sections(tmp_path):
 
 def test_the_page_of_columns_lists_those_of_sections():
     """To put it right: write what is missing into docs/columns.md."""
-    rows = [f"| {name} | {meaning} |\n" for name, meaning in MEANING.items()]
+    rows = [f"| {name} | {meaning} |\n" for name, meaning in OF_SECTIONS.items()]
     columns = (Path(rb.__file__).parents[1] / "docs/columns.md").read_text(encoding="utf-8")
     assert "| column | meaning |\n| --- | --- |\n" + "".join(rows) in columns

@@ -223,7 +223,7 @@ def test_a_demand_of_forces_is_refused_where_nobody_asked_for_them():
     demands = [name for name, demand in DEMANDS.items() if demand.needs == "forces"]
     with pytest.raises(InputError) as caught:
         judge([Rule(demand, demand, 100.0) for demand in demands], runs([0.3]), [case()])
-    for demand, problem in zip(demands, caught.value.problems, strict=True):
+    for demand, problem in zip(demands, caught.value.messages, strict=True):
         assert f'demand = "{demand}": there is no column of forces; write forces = true under' in problem
 
 

@@ -12,7 +12,6 @@ from studies import SINE, study_text, write_study
 
 from rockbatch.checks import Rule, as_table, judge
 from rockbatch.checks.answer import answer
-from rockbatch.checks.checking import verdicts
 from rockbatch.checks.omissions import BENDING, IMPULSES, LANDINGS, LANDINGS_OF_FRAME, MODES, OMISSIONS
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.verdicts import read_verdicts, write_verdicts
@@ -20,6 +19,7 @@ from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.pier import Damper, ElasticBase, Part, Pier, RigidBase, Stop, YieldingBase
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.results.checking import verdicts
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case
 

@@ -10,7 +10,7 @@ from report_page import Page
 from studies import write_study
 
 import rockbatch as rb
-from rockbatch.batch.running import described
+from rockbatch.batch.preparing import described
 from rockbatch.commands.cli import main
 from rockbatch.study.suite import ground_motions
 

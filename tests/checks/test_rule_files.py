@@ -16,13 +16,13 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, write_verdicts
-from rockbatch.checks.checking import verdicts
+from rockbatch.checks.rule_files import CHECK, load_rules
 from rockbatch.commands import check
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.quantities.catalogue import DEMANDS, listed
 from rockbatch.reporting import write_report
-from rockbatch.study.rule_files import CHECK, load_rules
+from rockbatch.results.checking import verdicts
 
 pytestmark = pytest.mark.usefixtures("no_report")
 
@@ -53,7 +53,7 @@ def rules_file(path, text):
 def problems(path):
     with pytest.raises(InputError) as caught:
         load_rules(path)
-    return caught.value.problems
+    return caught.value.messages
 
 
 # Rules in TOML
@@ -146,7 +146,7 @@ def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
     path.write_text((STUDY + MARGIN).replace("at_most", "at_mots").replace("eta = 2.5", "eta = 0.5"), encoding="utf-8")
     with pytest.raises(InputError) as caught:
         rb.load_study(path)
-    eta, key = caught.value.problems
+    eta, key = caught.value.messages
     assert "eta = 0.5" in eta
     assert re.search(r'pier.toml:23: \[\[check\]\] "margin": at_mots: unknown key; did you mean at_most\?', key)
 
@@ -154,13 +154,20 @@ def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
 def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_is_run(tmp_path):
     """There with its line; by ``rockbatch check`` it would come after hours of work."""
     text = (MARGIN + 'case = "pad"\nscale = 2\n').replace("theta_max_over_alpha", "settlement_m")
-    path = rules_file(tmp_path / "pier.toml", STUDY + text + "other_law = true\n[output]\nboth_laws = false\n")
+    path = rules_file(tmp_path / "pier.toml", STUDY + text)
     with pytest.raises(InputError) as caught:
         rb.load_study(path)
-    told = [problem.removeprefix(f"{path}:") for problem in caught.value.problems]
-    assert [problem[:2] for problem in told] == ["26", "27", "28"]
-    parts = ('did you mean "pads"?', "scaled by 1 only", "both_laws = true")
+    told = [problem.removeprefix(f"{path}:") for problem in caught.value.messages]
+    assert [problem[:2] for problem in told] == ["26", "27"]
+    parts = ('did you mean "pads"?', "scaled by 1 only")
     assert all(part in problem for problem, part in zip(told, parts, strict=True))
+
+
+@pytest.mark.parametrize("demand", ["settlement_m", "toe_settlement_m", "theta_max_over_alpha"])
+def test_a_check_of_a_settlement_has_it_found_by_the_other_law_too(tmp_path, demand):
+    text = MARGIN.replace("theta_max_over_alpha", demand) + "[output]\nboth_laws = false\n"
+    study = rb.load_study(rules_file(tmp_path / "pier.toml", STUDY + text))
+    assert study.output.both_laws == (demand != "theta_max_over_alpha")
 
 
 def test_a_polarity_of_a_check_is_refused_with_the_reason(tmp_path):
@@ -535,7 +542,7 @@ def test_checks_after_the_last_mistake_that_is_reported_are_not_made(tmp_path):
     path.write_text("[[check]]\nwrong = 1\n" * 300 + "[[check]]\n", encoding="utf-8")
     with pytest.raises(InputError) as error:
         load_rules(path)
-    assert len(error.value.problems) < 300
+    assert len(error.value.messages) < 300
 
 
 # A file of checks that [suite] of a study names
@@ -600,5 +607,5 @@ def test_mistakes_of_the_file_of_checks_are_reported_with_those_of_the_study(tmp
     study.write_text("titel = 'x'\n" + study.read_text(encoding="utf-8"), encoding="utf-8")
     with pytest.raises(InputError) as error:
         rb.load_study(study)
-    assert any("titel: unknown key" in problem for problem in error.value.problems)
-    assert any(said in problem for problem in error.value.problems), error.value.problems
+    assert any("titel: unknown key" in problem for problem in error.value.messages)
+    assert any(said in problem for problem in error.value.messages), error.value.messages

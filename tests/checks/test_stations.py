@@ -12,11 +12,11 @@ from studies import PADS, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.checks import Rule, judge, read_verdicts
-from rockbatch.checks.checking import verdicts
+from rockbatch.checks.rule_files import load_rules
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.quantities.statistics import STATISTICS
-from rockbatch.study.rule_files import load_rules
+from rockbatch.results.checking import verdicts
 
 pytestmark = pytest.mark.usefixtures("no_report")
 
@@ -247,7 +247,7 @@ def test_any_statistic_can_ask_for_more_records():
 def test_what_makes_no_sense_is_refused(asked, problem):
     with pytest.raises(InputError) as caught:
         Rule(**({"name": "check", "demand": "theta_max_over_alpha", "at_most": 0.5} | asked))
-    assert any(problem in each for each in caught.value.problems)
+    assert any(problem in each for each in caught.value.messages)
 
 
 CHECK = '[[check]]\nname = "peak"\ndemand = "theta_max_over_alpha"\nstatistic = "mean"\nat_most = 0.5\nreason = "r"\n'

@@ -14,12 +14,12 @@ from studies import SINE, study_text, write_study
 import rockbatch as rb
 from rockbatch.checks import read_verdicts, wording
 from rockbatch.checks.answer import answer
-from rockbatch.checks.checking import verdicts as rb_verdicts
 from rockbatch.checks.scorecard import scorecard
 from rockbatch.checks.suite_target import suite_verdicts
 from rockbatch.checks.verdicts import FAIL, NOT_DECIDED, PASS
 from rockbatch.commands.cli import main
 from rockbatch.motions.design_spectra import TableSpectrum
+from rockbatch.results.checking import verdicts as rb_verdicts
 from rockbatch.results.run_json import describe
 from rockbatch.study import load_study
 from rockbatch.study.suite import ground_motions

@@ -35,9 +35,9 @@ from rockbatch.core.block.model import Rocking, Stance
 from rockbatch.core.history import MOMENT
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import Pier, RigidBase
-from rockbatch.simulation.outcome import TERMS
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.simulation import Run
-from rockbatch.simulation.histories import energies
+from rockbatch.observers.energy_balance.observe import energies
 rows = np.zeros(2, [(name, "f8") for name in (*MOMENT, *Rocking._fields, *Stance._fields)]).view(np.recarray)
 rows.t, rows.theta, rows.omega, rows.right = (0.0, 0.01), 0.1, 0.2, 1.0
 motion = Motion("push", 0.01, np.full(50, -3.0))

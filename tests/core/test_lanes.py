@@ -9,8 +9,8 @@ from core_samples import EVERY_KIND, FIG5, hard_case, hard_seeds
 
 from rockbatch.core.ground import later
 from rockbatch.core.rk4 import rk4
-from rockbatch.core.springs.laws import kept_sign
-from rockbatch.core.springs.model import BOUC_WEN, EPP, Contact, State
+from rockbatch.core.springs.laws import CODES, kept_sign
+from rockbatch.core.springs.model import Contact, State
 from rockbatch.core.springs.reversal import Pivot, corrected, pivot_accelerations, pivots, reversal
 from rockbatch.core.system import rates
 from rockbatch.core.table import LANES
@@ -103,7 +103,7 @@ def test_a_step_across_a_reversal_is_corrected_to_the_next_order(begin, until, a
     end = fine(start, contact, t, h)
     truth = fine(at_turn, contact._replace(left_yields=1.0 - contact.left_yields), turn, after * h)
     k = rates(MODEL, start, contact, ground)
-    signs = kept_sign(BOUC_WEN, 1.0, contact.left_yields), 0.0
+    signs = kept_sign(CODES["bouc-wen"], 1.0, contact.left_yields), 0.0
     given = zip(
         signs, pivots(MODEL, start), pivot_accelerations(MODEL, start, k), pivots(MODEL, end), end[4:], strict=True
     )
@@ -115,8 +115,9 @@ def test_a_step_across_a_reversal_is_corrected_to_the_next_order(begin, until, a
 
 
 def test_two_reversals_in_one_step_and_sharp_ones_are_left_to_the_search():
-    sign = kept_sign(BOUC_WEN, 1.0, 0.0)
-    assert (sign, kept_sign(BOUC_WEN, 1.0, 1.0), kept_sign(EPP, 1.0, 0.0), kept_sign(EPP, 1.0, 1.0)) == (1, -1, 0, -1)
+    sign = kept_sign(CODES["bouc-wen"], 1.0, 0.0)
+    assert (sign, kept_sign(CODES["bouc-wen"], 1.0, 1.0)) == (1, -1)
+    assert (kept_sign(CODES["epp"], 1.0, 0.0), kept_sign(CODES["epp"], 1.0, 1.0)) == (0, -1)
     # w = 0.001 (1 − 8 s + 8 s²) dips to −0.001 and is back; the way between is −1/3 of that of 0.001
     dipping = reversal(MODEL, sign, Pivot(0.0, 1e-3), -0.8, Pivot(-1e-5 / 3.0, 1e-3), -0.5, 0.01)
     steady = reversal(MODEL, sign, Pivot(0.0, 1e-3), 0.0, Pivot(1e-5, 1e-3), -0.5, 0.01)

@@ -8,8 +8,8 @@ from studies import PADS, RIGID, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.core.observe.ledger import Energies
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.quantities.catalogue import OTHER_LAW
-from rockbatch.simulation.outcome import TERMS
 
 PIER = rb.Pier(0.2, 1.0)
 T = np.arange(0, 8.001, 0.01)
@@ -109,7 +109,7 @@ def test_a_study_that_asks_gets_the_ledger_and_the_other_law_as_columns(tmp_path
 
 
 def test_a_study_that_does_without_has_no_such_columns(tmp_path):
-    path = write_study(tmp_path, STUDY + "[output]\nboth_laws = false\n")
+    path = write_study(tmp_path, STUDY)
     assert not [name for name in rb.run(path).columns if "energy" in name or "other_law" in name]
 
 

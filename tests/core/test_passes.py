@@ -15,8 +15,8 @@ from rockbatch.core.clock import EVENTFUL
 from rockbatch.core.rk4 import rk4
 from rockbatch.core.run import Settings
 from rockbatch.core.springs import lanes as spring_lanes
-from rockbatch.core.springs.laws import kept_sign, may_yield
-from rockbatch.core.springs.model import BOUC_WEN, ELASTIC, EPP, HARDENING, Contact, SpringTraits, State, Supports
+from rockbatch.core.springs.laws import CODES, kept_sign, may_yield
+from rockbatch.core.springs.model import Contact, SpringTraits, State, Supports
 from rockbatch.core.springs.passing import correct_reversals
 from rockbatch.core.springs.recovery import lag, top
 from rockbatch.core.springs.reversal import pivots
@@ -53,13 +53,12 @@ def lane_of(part, i, kind):
     return kind(*(float(part[name][i]) for name in kind._fields))
 
 
-LAWS = {"elastic": ELASTIC, "bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
 SLOW_PIERS = {
     "finite": {"finite": True},
     "damped": {"damped": True, "damping": 3.0, "epsilon": 1.0},
     "finite-damped": {"finite": True, "damped": True, "damping": 0.5, "epsilon": 1.0},
 }
-PIERS = {name: {"law": law} for name, law in LAWS.items()}
+PIERS = {name: {"law": law} for name, law in CODES.items()}
 
 
 def random_lanes(rng, m):
@@ -75,11 +74,11 @@ def random_lanes(rng, m):
     lane.now.v_rate[:], lane.now.omega[:] = speeds.mean(axis=0), (speeds[0] - speeds[1]) / (2.0 * m.half_width)
     for side, speed in zip(("left", "right"), speeds, strict=True):
         on = rng.integers(0, 2, LANES)
-        lane.contact[side][:], lane.contact[f"{side}_yields"][:] = on, on * (speed < 0.0) * (m.law == BOUC_WEN)
+        lane.contact[side][:], lane.contact[f"{side}_yields"][:] = on, on * (speed < 0.0) * (m.law == CODES["bouc-wen"])
         z = -rng.uniform(0.0, 0.02, LANES)
         lane.now[f"z_{side}"][:] = z if m.damped else on * z
         lane.supports[side][:] = -rng.uniform(0.0, 0.02 * soft, LANES)
-        lane.supports[f"yield_{side}"][:] = z - rng.uniform(0.0, 0.02, LANES) if m.law == HARDENING else -1.0
+        lane.supports[f"yield_{side}"][:] = z - rng.uniform(0.0, 0.02, LANES) if m.law == CODES["hardening"] else -1.0
     lane.ground.horizontal[:], lane.ground.vertical[:] = rng.normal(0.0, 20.0, (2, LANES))
     return lanes
 

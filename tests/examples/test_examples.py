@@ -10,11 +10,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from rockbatch.checks.rule_files import load_rules
 from rockbatch.commands.cli import main
 from rockbatch.commands.example_studies import FIRST, copy, examples
 from rockbatch.common.errors import InputError
 from rockbatch.study import load_study
-from rockbatch.study.rule_files import load_rules
 from rockbatch.study.suite import ground_motions
 
 CHECKOUT = Path(__file__).parents[2]

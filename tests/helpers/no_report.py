@@ -17,5 +17,5 @@ def _written(directory: Path, **_: Any) -> Path:
 @pytest.fixture
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let ``rockbatch run`` and ``rockbatch check`` write run.json once more in place of their report."""
-    for module in ("batch.finishing", "commands.check"):
+    for module in ("workflow.running", "commands.check"):
         monkeypatch.setattr(f"rockbatch.{module}.write_report", _written)

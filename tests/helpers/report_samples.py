@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rockbatch.outcome.response import Response
 from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, YieldingBase
 from rockbatch.quantities.catalogue import FIXED, TRAILING, names
-from rockbatch.simulation.response import Response
 
 COLUMNS = names((*FIXED, *TRAILING))
 FIG7 = [

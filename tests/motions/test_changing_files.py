@@ -76,7 +76,7 @@ def test_runs_use_what_was_read_whatever_becomes_of_the_files(tmp_path, monkeypa
     flat = {"alpha": 0.02, "p": 1.0}  # so that it rocks
     study = write_study(tmp_path, study_text(pier=flat, motions={"path": "records"}, pulses=(), cases=(RIGID,)))
     monkeypatch.setattr(
-        "rockbatch.batch.finishing.write_report", lambda *_, **__: tmp_path
+        "rockbatch.workflow.running.write_report", lambda *_, **__: tmp_path
     )  # takes longer than the runs
     before = rb.run(study)
     plain = running.ground_motions

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from motion_files import at2_text, wiggle
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions import ReadOptions, Unusable, read_motions
 from rockbatch.motions.formats import RecordFile, read_record, table
 from rockbatch.motions.formats.column_header import Column
@@ -298,7 +298,7 @@ def test_a_small_text_file_reads_the_same_in_latin_1_and_utf_8_with_a_mark(tmp_p
 def test_all_impossible_options_are_one_error():
     with pytest.raises(InputError) as caught:
         ReadOptions(unit="furlongs", dt=-1.0, columns=("time", "-"), sensitivity=0.0)
-    assert len(caught.value.problems) == 4
+    assert len(caught.value.messages) == 4
 
 
 @settings(max_examples=80, deadline=1000, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -330,7 +330,7 @@ def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, w
         try:
             header, numbers = table.read_table(text, wrapped)
         except InputError as error:
-            return type(error), error.problems
+            return type(error), error.messages
         return header, numbers.shape, numbers.tobytes()
 
     with pytest.MonkeyPatch.context() as patch:
@@ -429,7 +429,7 @@ def test_decimal_commas_are_read_between_tabs_and_commas_between_columns_too(tmp
     assert one(tmp_path).horizontal == pytest.approx(EW / 100, abs=6e-7)
 
 
-@pytest.mark.parametrize(("words", "kind"), [(3, InputError), (300, NoRecordError)])
+@pytest.mark.parametrize(("words", "kind"), [(3, InputError), (300, NoRecord)])
 def test_a_text_with_some_numbers_in_it_is_no_record_and_a_table_that_is_damaged_is_one(words, kind):
     rows = [f"{t:.3f} {value:.4f}" for t, value in zip(T, EW, strict=True)]
     text = "\n".join([*rows[:30], *["more words, and 3 of them"] * words, *rows[30:], ""])

@@ -11,10 +11,10 @@ from motion_files import RECORDS, at2_text, needs_records, wiggle, write_at2
 from national_files import csmnc_text
 from waveform_files import COUNTS, START, trace, write_mseed
 
+from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.manifest_draft import draft
-from rockbatch.motions.motion import Problem
 
 
 def title(component: str, station: str = "STA", event: str = "Somewhere, 1/17/1994") -> str:
@@ -150,7 +150,7 @@ def test_of_two_files_that_claim_one_component_with_other_samples_none_is_used_u
     write_at2(tmp_path, "a_part2.AT2", strong, title=title("0"))
     found = read_motions(tmp_path)
     assert not found.motions
-    assert {unusable.problem for unusable in found.unusable} == {Problem.CONTRADICTION}
+    assert {unusable.kind for unusable in found.unusable} == {Contradiction}
     for unusable in found.unusable:
         assert "a_part1.AT2" in unusable.reason
         assert "a_part2.AT2" in unusable.reason

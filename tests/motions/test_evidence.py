@@ -6,9 +6,9 @@ from agency_files import knet_text
 from motion_files import wiggle, write_at2
 from waveform_files import channel_xml, station_xml, trace, write_mseed
 
+from rockbatch.common.errors import Contradiction
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
-from rockbatch.motions.motion import Problem
 
 SHAKES = {"a": 1, "b": 2, "c": 3}
 """Seeds of three series that do not resemble each other."""
@@ -51,7 +51,7 @@ def held(folder, **options) -> list[str]:
     """Return why the files of a folder are held back, of which none may be used."""
     found = read_motions(folder, **options)
     assert not found.motions
-    assert {unusable.problem for unusable in found.unusable} == {Problem.CONTRADICTION}
+    assert {unusable.kind for unusable in found.unusable} == {Contradiction}
     return [unusable.reason for unusable in found.unusable]
 
 

@@ -62,7 +62,7 @@ def test_there_are_50_stations_with_two_components_each():
 def test_unknown_stations_azimuths_and_missing_paths_are_one_error(tmp_path):
     with pytest.raises(InputError) as caught:
         read_motions(tmp_path / "missing", fema=[("SLY", 0), ("SYL", 400)])
-    path, station, azimuth = caught.value.problems
+    path, station, azimuth = caught.value.messages
     assert "no such file" in path
     assert 'did you mean "NORTHR/SYL"' in station
     assert "ERZIKAN/ERZ (821)" in station

@@ -262,8 +262,8 @@ def test_all_missing_paths_are_one_error_with_suggestions(tmp_path):
     (tmp_path / "records").mkdir()
     with pytest.raises(InputError) as caught:
         read_motions([tmp_path / "recods", tmp_path / "nowhere"])
-    assert len(caught.value.problems) == 2
-    assert f"did you mean {tmp_path / 'records'}?" in caught.value.problems[0]
+    assert len(caught.value.messages) == 2
+    assert f"did you mean {tmp_path / 'records'}?" in caught.value.messages[0]
 
 
 def test_an_empty_folder_is_an_empty_set(tmp_path):

@@ -216,7 +216,7 @@ def read_damaged_manifests(folder: Path, name: str, inputs: int, seed: int) -> C
             with bounds(SECONDS, MEGABYTES):
                 found = read_motions(folder)
         except InputError as error:
-            problems = error.problems
+            problems = error.messages
             refused += 1
         else:
             sources = {one.source.partition(" ")[0] for one in (*found.motions, *found.unusable, *found.left_out)}

@@ -23,15 +23,15 @@ def problems(folder, name: str, text: str | bytes) -> list[str]:
     (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
     with bounds(3, 800), pytest.raises(InputError) as caught:
         read_motions(folder)
-    assert all(problem.startswith(str(folder / name)) for problem in caught.value.problems)
-    return [problem[:400] for problem in caught.value.problems]
+    assert all(problem.startswith(str(folder / name)) for problem in caught.value.messages)
+    return [problem[:400] for problem in caught.value.messages]
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         (RECORD + "scale =" + " " * 200_000 + "x", "not valid TOML"),
-        (RECORD + "\n" * 200_000 + "scale =" + " \t" * 100_000 + "\n", "the value is missing"),
+        (RECORD + "\n" * 200_000 + "scale =" + " \t" * 100_000 + "\n", "invalid value"),
         (".".join("a" * 60_000) + " = 1", "more than 32 deep"),
         ("[" + ".".join("a" * 60_000) + "]", "more than 32 deep"),
         ("[[" + ".".join("a" * 60_000) + "]]\nx = [", "more than 32 deep"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from motion_files import wiggle
 
-from rockbatch.common.errors import UnstatedError
+from rockbatch.common.errors import Unstated
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import ReadOptions, read_motions
 from rockbatch.motions.formats import read_record
@@ -249,8 +249,8 @@ def test_a_step_without_its_record_is_no_statement(tmp_path):
 # Advice
 
 
-def advised_of(text: str, name: str = "x.txt") -> UnstatedError:
-    with pytest.raises(UnstatedError) as error:
+def advised_of(text: str, name: str = "x.txt") -> Unstated:
+    with pytest.raises(Unstated) as error:
         read_record(RecordFile(Path(name), name, text.encode()))
     return error.value
 

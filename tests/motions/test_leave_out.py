@@ -65,7 +65,7 @@ def test_a_record_that_could_be_used_is_left_out_and_one_of_a_manifest_counts_as
 def test_a_name_that_matches_nothing_is_refused_with_the_one_that_was_meant(folder):
     with pytest.raises(InputError) as caught:
         read_motions(folder, leave_out=["RSN9_C_D001", "RSN9*", "nobody"])
-    first, second = caught.value.problems
+    first, second = caught.value.messages
     assert '"RSN9_C_D001"' in first
     assert 'did you mean "RSN9_C_D0' in first
     assert '"nobody"' in second

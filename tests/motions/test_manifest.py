@@ -35,7 +35,7 @@ def motions_of(folder, **options):
 def problems_of(folder) -> list[str]:
     with pytest.raises(InputError) as caught:
         read_motions(folder)
-    return [problem.removeprefix(str(folder) + "/") for problem in caught.value.problems]
+    return [problem.removeprefix(str(folder) + "/") for problem in caught.value.messages]
 
 
 def test_it_adds_what_files_do_not_say_and_overrides_what_they_say(tmp_path):

@@ -90,8 +90,8 @@ def test_every_shape_may_last_exactly_as_long_as_the_motion(shape):
 def test_all_mistakes_come_at_once():
     with pytest.raises(InputError) as caught:
         pulse("sine", name=" ", amplitude=float("nan"), period=-1.0, dt=0.0, duration=float("inf"), gamma=2.0)
-    text = "\n".join(caught.value.problems)
-    for word in ("period = -1", "dt = 0", "duration = inf", "amplitude = nan", "gamma and nu", "name is empty"):
+    text = "\n".join(caught.value.messages)
+    for word in ("period = -1", "dt = 0", "duration = inf", "amplitude = nan", "gamma and nu", "name = "):
         assert word in text
 
 
@@ -100,7 +100,7 @@ def test_all_mistakes_come_at_once():
     [
         ({"shape": "cosin"}, 'did you mean "cosine"'),
         ({"shape": "sine", "duration": 0.4}, "the pulse lasts 0.5 s"),
-        ({"shape": "sine", "dt": 0.5}, "dt = 0.5 s: must be below the period"),
+        ({"shape": "sine", "dt": 0.5}, "dt = 0.5: must be below the period"),
         ({"shape": "mavroeidis-papageorgiou"}, "number of oscillations"),
         ({"shape": "mavroeidis-papageorgiou", "gamma": 1.0, "nu": 0.0}, "above 1"),
         ({"shape": "ricker", "nu": 1.0}, "gamma and nu have no meaning"),
@@ -112,7 +112,7 @@ def test_a_mistake_says_what_to_write(wrong, message):
 
 
 def test_an_amplitude_that_only_a_wrong_unit_explains_is_refused_as_typed_and_in_g():
-    with pytest.raises(InputError, match=re.escape("amplitude = 40 m/s², 4.08 g: more than 3 g")):
+    with pytest.raises(InputError, match=re.escape("amplitude = 40: 4.08 g are more than 3 g")):
         make("sine", amplitude=40.0)
     confirmed = make("sine", amplitude=40.0, confirm=["amplitude"])
     assert confirmed.pga == pytest.approx(40.0, rel=1e-6)
@@ -132,5 +132,7 @@ def test_the_length_of_each_shape_is_known_from_its_period():
 
 @pytest.mark.parametrize("nu", [None, np.nan, np.inf])
 def test_a_phase_that_is_no_number_is_refused(nu):
-    with pytest.raises(InputError, match=f"nu = {nu}: a mavroeidis-papageorgiou pulse needs its phase"):
+    with pytest.raises(
+        InputError, match=f"nu{'' if nu is None else f' = {nu}'}: a mavroeidis-papageorgiou pulse needs its phase"
+    ):
         make("mavroeidis-papageorgiou", gamma=1.5, nu=nu)

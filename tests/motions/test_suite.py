@@ -167,8 +167,8 @@ def test_one_bad_record_costs_itself_and_a_strict_study_everything(tmp_path):
     assert ([m.name for m in found.motions], [u.name for u in found.unusable]) == (["good"], ["high"])
     with pytest.raises(InputError) as caught:
         ground_motions(study_of(tmp_path, "strict = true\n"))
-    assert "high.AT2: PGA 5" in caught.value.problems[0]
-    assert "1 of the records cannot be used" in caught.value.problems[-1]
+    assert "high.AT2: PGA 5" in caught.value.messages[0]
+    assert "1 of the records cannot be used" in caught.value.messages[-1]
     assert len(ground_motions(study_of(tmp_path, 'strict = true\nconfirm_pga = "hi*"\n')).motions) == 2
 
 
@@ -200,7 +200,7 @@ def test_a_required_vertical_costs_a_record_that_has_none_and_a_strict_study_eve
     assert refused.reason.startswith("X 1994, lacks, 000 has no vertical component, and the study requires it")
     with pytest.raises(InputError) as caught:
         ground_motions(study_of(tmp_path, 'vertical = "required"\nstrict = true\n'))
-    assert caught.value.problems[0].startswith("lacks000.AT2: X 1994, lacks, 000 has no vertical component")
+    assert caught.value.messages[0].startswith("lacks000.AT2: X 1994, lacks, 000 has no vertical component")
 
 
 def test_a_vertical_that_does_not_last_over_the_peak_is_none(tmp_path):

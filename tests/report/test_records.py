@@ -13,7 +13,7 @@ from rockbatch.commands.cli import main
 from rockbatch.motions import LeftOut, MotionSet, Unusable
 from rockbatch.motions.motion import Finding
 from rockbatch.motions.origin import Origin
-from rockbatch.reporting.records import page, write_records
+from rockbatch.workflow.records import page, write_records
 
 
 def motion(name, pga_g, **values):
@@ -105,7 +105,7 @@ def test_hostile_names_are_words_on_the_page_of_records(tmp_path, width):
 
 def test_a_page_of_many_records_stays_small():
     samples = np.random.default_rng(2).normal(size=20_000)
-    text = page(MotionSet([rb.Motion(f"m{i}", 0.005, samples * (1 + i)) for i in range(20)]), "t", "a")
+    text = page(MotionSet([rb.Motion(f"m{i}", 0.005, samples * (1 + i)) for i in range(4)]), "t", "a")
     empty = page(MotionSet(), "t", "a")
-    assert (len(text) - len(empty)) / 20 < 8_000
-    assert len(re.findall("<svg class=.plot", text)) == 40
+    assert (len(text) - len(empty)) / 4 < 8_000
+    assert len(re.findall("<svg class=.plot", text)) == 8

@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from jinja2 import Environment
 from report_page import Page, dot_rows, figures, svg_texts
 from report_samples import FIG7, FOUNDATIONS, case_entry, response, three_piers, write_results
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.figures.description import COLOURS, SHAPES, marks_of, thin
 from rockbatch.pier import Pier, RigidBase, YieldingBase, yield_deflection
-from rockbatch.reporting import templates, write_report
+from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
 from rockbatch.reporting.markup import escape, tag
 from rockbatch.reporting.svg import curve
@@ -401,31 +400,6 @@ def test_of_many_cases_under_one_motion_the_worst_are_drawn_and_the_number_of_th
     assert "The 2 cases with the smallest rotations are left out." in Page(text).text
 
 
-@pytest.mark.parametrize(("folder", "compiled"), [("", [1, 0]), ("missing", [1, 1])])
-def test_templates_are_compiled_once_where_modules_are_kept(tmp_path, monkeypatch, folder, compiled):
-    monkeypatch.setattr(sys, "dont_write_bytecode", False)
-    monkeypatch.setattr(templates, "cache_from_source", lambda file: str(tmp_path / folder / "templates.pyc"))
-    compilations = []
-    original = Environment.compile
-    monkeypatch.setattr(Environment, "compile", lambda *a, **k: compilations.append(1) or original(*a, **k))
-    counts = []
-    for _ in compiled:
-        compilations.clear()
-        templates._environment.__wrapped__().get_template("reporting/sections/notes.html")
-        counts.append(len(compilations))
-    assert counts == compiled
-
-
-def test_templates_are_compiled_anew_by_another_jinja(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "dont_write_bytecode", False)
-    monkeypatch.setattr(templates, "cache_from_source", lambda file: str(tmp_path / "templates.pyc"))
-    for version in ("3.1.6", "99.0"):
-        (tmp_path / "__init__.py").write_text(version)
-        monkeypatch.setattr("jinja2.__file__", str(tmp_path / "__init__.py"))
-        templates._environment.__wrapped__().get_template("reporting/sections/notes.html")
-    assert len(list(tmp_path.glob("*.jinja"))) == 2
-
-
 def test_a_page_holds_the_table_once_whatever_the_number_of_runs(tmp_path):
     write_results(tmp_path)
     finished = read(tmp_path)
@@ -513,7 +487,7 @@ def test_sections_come_in_the_order_in_which_they_are_asked_for(drawn):
 def test_all_that_is_wrong_with_a_folder_is_said_at_once(tmp_path):
     with pytest.raises(InputError) as caught:
         write_report(tmp_path)
-    assert [problem.split(":")[0] for problem in caught.value.problems] == [
+    assert [problem.split(":")[0] for problem in caught.value.messages] == [
         str(tmp_path / "run.json"), str(tmp_path / "peaks.csv"),
     ]  # fmt: skip
 
@@ -523,7 +497,7 @@ def test_all_that_is_wrong_with_a_folder_is_said_at_once(tmp_path):
     (tmp_path / "run.json").write_text(json.dumps(document), encoding="utf-8")
     with pytest.raises(InputError) as caught:
         write_report(tmp_path)
-    missing, cell = caught.value.problems
+    missing, cell = caught.value.messages
     assert "has no machine" in missing
     assert cell == f'{tmp_path / "peaks.csv"}:3: t_max_s = "soon": expected a number or nothing'
 
@@ -596,7 +570,7 @@ def test_every_line_of_a_damaged_table_is_reported_at_once(tmp_path):
     with pytest.raises(InputError) as caught:
         write_report(tmp_path)
     columns = len(path.read_text(encoding="utf-8").split("\n", 1)[0].split(","))
-    assert list(caught.value.problems) == [
+    assert list(caught.value.messages) == [
         f'{path}:3: impacts = "2.5": expected a whole number or nothing',
         f'{path}:24: settlement_m = "x": expected a number or nothing',
         f"{path}:32: 2 cells: expected {columns}, as in the first line",

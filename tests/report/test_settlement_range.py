@@ -12,7 +12,7 @@ LIMIT = {"name": "settlement", "demand": "settlement_m", "reason": "bearings"}
 def test_settlement_is_a_range_in_the_report_on_the_terminal_and_in_checks(tmp_path, capsys):
     """Set a limit between both laws: the pier fails by the larger settlement, and the verdict says both."""
     cases = (PADS | {"eta": 2.2, "epsilon": 0.1},)
-    run = rb.run(write_study(tmp_path, study_text(cases=cases))).iloc[0]
+    run = rb.run(write_study(tmp_path, study_text(cases=cases, output={"both_laws": True}))).iloc[0]
     low, high = sorted((run["settlement_m"], run["settlement_other_law_m"]))
     assert high > low + 1e-3
     check = LIMIT | {"at_most": 0.5 * (low + high)}
@@ -24,6 +24,13 @@ def test_settlement_is_a_range_in_the_report_on_the_terminal_and_in_checks(tmp_p
     cells = [cell for row in page.tables["peaks"] for cell in row]
     assert f"{1000 * low:.2f}\u00a0–\u00a0{1000 * high:.2f}" in cells
     assert f"the worse of two spring laws counts: {high:.4g} by that of the case, {low:.4g} by the other" in page.text
+
+
+def test_without_a_check_or_a_wish_for_the_other_law_the_page_says_by_which_law_it_is(tmp_path):
+    path, out = write_study(tmp_path, study_text(cases=(PADS | {"eta": 2.2, "epsilon": 0.1},))), tmp_path / "out"
+    assert "settlement_other_law_m" not in rb.run(path, out)
+    text = Page((out / "report.html").read_text(encoding="utf-8")).text
+    assert "Settlement and residual rotation are by the Bouc–Wen law alone; [output] both_laws = true" in text
 
 
 def test_springs_that_do_not_creep_have_one_settlement_and_no_warning(tmp_path, capsys):

@@ -110,9 +110,9 @@ def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
 
 def test_pulses_and_distances_are_counted(asked, tmp_path):
     info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
-    kinds = [record["pulse"] for record in info["records"]]
+    pulses = [record for record in info["records"] if record["pulse_period_s"] is not None]
     page = page_of(asked, target)
-    assert f"{kinds.count('yes')} of 6 horizontal components" in page.text
+    assert f"{len(pulses)} of 6 horizontal components" in page.text
     assert "No distance from the source is known" in page.text
     for record, distance in zip(info["records"], (5.0, 15.0, 40.0, None, None, None), strict=True):
         record["distance_km"] = distance
@@ -173,7 +173,7 @@ def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds
 def test_components_of_one_station_count_as_one_and_those_without_a_station_each_by_itself(asked, tmp_path):
     info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
     for record, station, pulse in zip(info["records"], ("S", "S", None, None, None, "T"), "yynnnn", strict=True):
-        record |= {"station": station, "pulse": {"y": "yes", "n": "no"}[pulse]}
+        record |= {"station": station, "pulse_period_s": {"y": 2.0, "n": None}[pulse]}
     (tmp_path / "run.json").write_text(json.dumps(info), encoding="utf-8")
     (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
     assert "pulse-like, at 1 of 5 stations" in " ".join(page_of(tmp_path, target).text.split())

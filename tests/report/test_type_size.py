@@ -11,7 +11,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.figures.description import Look
-from rockbatch.simulation.figures import ON_PAGE, PEAK, QUANTITIES, Drawn, History, together
+from rockbatch.outcome.figures import ON_PAGE, PEAK, QUANTITIES, Drawn, History, together
 
 STUDY = study_text(
     title="Every picture",

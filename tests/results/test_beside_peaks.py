@@ -6,8 +6,8 @@ import pandas as pd
 import pytest
 
 from rockbatch.common.errors import InputError
+from rockbatch.quantities.rows import as_in_peaks, simulated, with_case
 from rockbatch.results.beside_peaks import NAMING, case_key, read_beside
-from rockbatch.results.rows import as_in_peaks, simulated, with_case
 
 COLUMNS = ["height_m", "force_kN", "words"]
 TABLE = pd.DataFrame([{name: "x" for name in NAMING} | {"beta": 40.0, "height_m": 1.5, "force_kN": -2.0, "words": "w"}])

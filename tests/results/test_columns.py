@@ -18,11 +18,13 @@ import rockbatch as rb
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError, MissingColumns
 from rockbatch.motions.scaling import Target
+from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import THOUSAND
 from rockbatch.quantities.catalogue import (
     COLUMNS,
     DEMANDS,
+    FACTS,
     FIXED,
     OPTIONAL,
     TRAILING,
@@ -35,7 +37,6 @@ from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe
-from rockbatch.simulation.outcome import TERMS, Outcome
 from rockbatch.study.suite import ground_motions
 
 PAGE = Path(rb.__file__).parents[1] / "docs/columns.md"
@@ -60,6 +61,7 @@ duration_s = 2.0
 ledger = true
 forces = true
 rocking = true
+both_laws = true
 devices_work = true
 
 [[case]]
@@ -144,8 +146,10 @@ def test_every_number_of_an_outcome_has_its_column():
     of_functions = {"energies", "forces", "device_work"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     of_functions |= {"top_drift_max"}  # top_drift_m where the shaft bends
+    of_functions |= {"failure"}  # as a plain text
     of_functions |= {"change_in_motion"}  # the error of the peak in motion where that is not theta_max
-    assert {field.name for field in fields(Outcome)} - taken == of_functions
+    beside = {"tables"}  # in files of their own
+    assert {field.name for field in fields(Outcome)} - taken == of_functions | beside
 
 
 def test_every_term_of_the_energy_ledger_has_its_column():
@@ -202,7 +206,7 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
     of_devices = (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"])  # it has no device
-    unasked = (*of_devices, COLUMNS["landing_force_kN"])
+    unasked = (*of_devices, COLUMNS["landing_force_kN"], COLUMNS["slides"])
     asked = [column for column in OPTIONAL if column not in unasked and column.bases != BENDING]
     assert list(table) == [*names(FIXED), *study.varied, *names(TRAILING), *names(asked)]
 
@@ -231,9 +235,10 @@ def test_demands_read_columns_of_the_table_only():
 UNSHOWN = {
     "mirror_of", "theta_max_in_motion_over_alpha", "theta_max_in_motion_error", "station", "impacts", "separations", "flight_s",
     "flights", "flight_duration_s", "substeps", "t_end_s", "residual_s", "theta_res_error", "theta_res_drift_per_s",
-    "settlement_drift_m_s", "settlement_error_m", "top_drift_error_m", "dissipated_left_J_kg", "dissipated_right_J_kg",
+    "settlement_drift_m_s", "settlement_error_m", "top_drift_error_m", "dissipated_left_J_kg", "dissipated_right_J_kg", "failure",
+    *FACTS,
 }  # fmt: skip
-"""Columns that stand in peaks.csv alone: counts, times and details of the method."""
+"""Columns that stand in peaks.csv alone: counts, times, details of the method, and what the remarks say in words."""
 
 
 def test_the_page_shows_columns_with_their_names_and_meanings(tmp_path):

@@ -17,8 +17,10 @@ import rockbatch as rb
 from rockbatch.batch.execution import execute_runs
 from rockbatch.batch.journal import Journal
 from rockbatch.batch.kept_histories import keep_histories, to_keep, worst
+from rockbatch.batch.observers import observers_of
 from rockbatch.batch.plan import Plan
 from rockbatch.batch.threads import Threads
+from rockbatch.outcome.outcome import TERMS
 from rockbatch.results import histories_file
 from rockbatch.results.columns import columns
 from rockbatch.results.histories_file import FORMAT, UNITS, Responses, history_bytes, seal, write
@@ -26,7 +28,7 @@ from rockbatch.results.reading import read_saved
 from rockbatch.results.run_json import describe, write_info
 from rockbatch.simulation import Run, run_to_tolerance
 from rockbatch.simulation.histories import histories
-from rockbatch.simulation.outcome import TERMS
+from rockbatch.simulation.recording import recorded
 from rockbatch.study.suite import ground_motions
 
 STUDY = study_text(
@@ -55,7 +57,7 @@ def carried_out(folder, text=STUDY):
     motions = ground_motions(study)
     runs = Plan(study, motions)
     with Journal(folder / "peaks.csv.part", columns(study), {}) as journal:
-        execute_runs(runs, study.numerics, journal, Threads(1), study.output)
+        execute_runs(runs, study.numerics, journal, Threads(1), observers_of(study.output))
         journal.write_in_order(folder / "peaks.csv")
     info = {"rockbatch": "0.1.0", "created": CREATED, "versions": {"python": "3.11.2", "numpy": "2.3.1"}}
     info |= {"command": [], "machine": "", "runs": len(runs), "jobs": 1, "wall_s": 1.0, **describe(study, motions)}
@@ -184,7 +186,8 @@ def test_the_history_of_an_overturned_pier_ends_where_it_fell(tmp_path):
     """On its side, at π/2; not at the sample before."""
     strong = rb.pulse("sine", name="strong", amplitude=3 * 9.81, period=2.0, dt=0.05, duration=10.0)
     outcome = run_to_tolerance(PIER, rb.RigidBase(), strong, 1e-4)
-    response = histories(Run(PIER, rb.RigidBase(), strong), outcome, 2.0, "rigid", {})
+    recording = recorded(Run(PIER, rb.RigidBase(), strong), outcome, 2.0, every_step=False)
+    response = histories(recording, outcome.status, "rigid", {})
     assert response.status == "overturned"
     assert response.t[-1] == outcome.t_end
     assert abs(response.theta[-2]) < outcome.theta_max <= abs(response.theta[-1])
@@ -397,10 +400,10 @@ def test_runs_that_were_refused_have_no_history(tmp_path):
 def test_a_history_too_long_for_memory_is_reported_and_the_others_are_there(tmp_path, monkeypatch):
     saved, study, runs = carried_out(tmp_path, FEW)
     saved.peaks.loc[1, "substeps"] = 1_000  # of its ledger, a hundred thousand rows and more
-    monkeypatch.setattr("rockbatch.simulation.histories.MOST_ROWS", 100_000)
+    monkeypatch.setattr("rockbatch.simulation.recording.MOST_ROWS", 100_000)
     with pytest.raises(rb.InputError, match=r"one-sine: a history of \d+ rows, more than 100000;") as error:
         keep_histories(saved, study, runs)
-    assert len(error.value.problems) == 1
+    assert len(error.value.messages) == 1
     assert len(rb.open_results(tmp_path).responses) == len(runs) - 1
 
 
@@ -491,7 +494,7 @@ def damaged(folder, change):
     change(folder / "histories.h5")
     with pytest.raises(rb.InputError) as error:
         Responses(folder / "histories.h5", INFO)[0]
-    (problem,) = error.value.problems
+    (problem,) = error.value.messages
     assert problem.startswith(f"{folder / 'histories.h5'}: ")
     return problem
 

@@ -32,11 +32,11 @@ def test_runs_without_the_compiler_are_announced_before_the_first(monkeypatch):
         def say(self, text):
             said.append(text)
 
-    monkeypatch.setattr(compiling, "_tasks", lambda study: [])
-    compiling.make_ready(None, Hearing())
+    monkeypatch.setattr(compiling, "_tasks", lambda study, observers: [])
+    compiling.make_ready(None, Hearing(), ())
     assert said == []
     monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
-    compiling.make_ready(None, Hearing())
+    compiling.make_ready(None, Hearing(), ())
     (only,) = said
     assert "NUMBA_DISABLE_JIT is set" in only
     assert "a thousand times as long" in only

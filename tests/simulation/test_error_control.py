@@ -11,10 +11,11 @@ import pytest
 from core_samples import FIG5, TOWER, broadband, hard_case, pulse
 
 from rockbatch import simulation
-from rockbatch.common.notes import OVERTURNS
 from rockbatch.core.clock import WINDOWS
 from rockbatch.core.devices.laws import HYSTERETIC, MAXWELL, VISCOUS
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.changes import Sized, greatest_change
+from rockbatch.outcome.outcome import Failure, Outcome
 from rockbatch.pier import Damper, DeckSpring, ElasticBase, Part, Pier, RigidBase, Tendon, YieldingBase
 from rockbatch.pier.bending import mode_of
 from rockbatch.simulation import (
@@ -29,9 +30,7 @@ from rockbatch.simulation import (
     run_to_tolerance,
 )
 from rockbatch.simulation.agreement import windows
-from rockbatch.simulation.changes import Sized, greatest_change
 from rockbatch.simulation.models import _vibration, elements, fastest_rate, readings
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import LEFT_ALONE, Trial
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
@@ -179,10 +178,11 @@ SENSITIVE = [ok(0.1, windows=[0.08, 0.1]), ok(0.1, windows=[0.08 + 9e-6, 0.1])]
 def test_no_error_is_claimed_of_a_peak_that_either_sign_of_a_change_moves(monkeypatch, side):
     """Of a peak of 1.04 α a motion 10⁻⁸ stronger told nothing, and one 10⁻⁸ weaker overturned the pier."""
     fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5}
-    for probe, words in ((fallen, OVERTURNS), (ok(0.1 + 0.6e-4 * FIG5.alpha), "moves it by 1.2e-05 rad")):
+    for probe, words in ((fallen, "overturns the pier"), (ok(0.1 + 0.6e-4 * FIG5.alpha), "moves it by 1.2e-05 rad")):
         scripted(monkeypatch, *SENSITIVE, **{side: probe})
         outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
         assert (outcome.status, outcome.theta_max_error) == ("ok", None)
+        assert (outcome.chaotic, outcome.may_overturn) == (True, probe is fallen)
         assert f"the peak is chaotic, a motion 1e-08 {side} {words}" in outcome.note
 
 
@@ -194,7 +194,8 @@ def test_overturning_under_a_changed_motion_is_noted_though_the_error_was_withdr
     scripted(monkeypatch, *(SENSITIVE if moved else wanders), stronger=moved, weaker=fallen)
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert (outcome.status, outcome.theta_max_error) == ("ok", None)
-    assert f"a motion 1e-08 weaker {OVERTURNS}" in outcome.note
+    assert (outcome.chaotic, outcome.may_overturn) == (True, True)
+    assert "a motion 1e-08 weaker overturns the pier" in outcome.note
 
 
 def test_no_error_is_claimed_of_a_peak_to_which_a_later_one_may_rise(monkeypatch):
@@ -213,7 +214,7 @@ def test_twice_what_a_changed_motion_moves_is_claimed_at_least(monkeypatch):
     scripted(monkeypatch, *SENSITIVE, **probes)
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert outcome.theta_max_error == pytest.approx(6e-6)
-    assert outcome.note == ""
+    assert (outcome.chaotic, outcome.may_overturn, outcome.note) == (False, False, "")
 
 
 def test_a_run_that_does_not_magnify_the_errors_of_its_steps_is_not_run_again(monkeypatch):
@@ -235,6 +236,7 @@ def test_a_peak_whose_rivals_follow_the_step_has_no_error_if_the_run_magnifies(m
     scripted(monkeypatch, *(ok(0.1, t_max=1.0 + (i % 2), windows=[0.08 + 9e-6 * (i % 2), 0.1]) for i in range(9)))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert (outcome.status, outcome.theta_max_error) == ("ok", None)
+    assert outcome.chaotic
     assert "follow the step" in outcome.note
 
 
@@ -254,6 +256,7 @@ def test_residuals_that_a_changed_motion_moves_have_no_error_and_the_peak_keeps_
         outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
         assert (outcome.theta_res_error, outcome.settlement_error) == (None, None)
         assert outcome.theta_max_error == error_control.ROUNDING * FIG5.alpha
+        assert outcome.chaotic
         assert "the residuals are chaotic" in outcome.note
     scripted(monkeypatch, *trials, stronger=ok(0.1, 5, theta_res=0.001 + 1e-7, settlement=0.01 - 1e-6))
     outcome = run_to_tolerance(FIG5, ON_SPRINGS, SINE, 1e-4)
@@ -325,9 +328,10 @@ def test_the_time_of_flight_has_to_agree(monkeypatch):
 
 
 def test_what_left_alone_is_not_decided_is_no_matter_of_the_step(monkeypatch):
-    leans = ok(0.1) | {"status": "failed", "reason": LEFT_ALONE[1]}
+    leans = ok(0.1) | {"status": "failed", "failure": LEFT_ALONE[1]}
     asked = scripted(monkeypatch, leans)
-    assert run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4).reason == LEFT_ALONE[1]
+    outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
+    assert (outcome.failure, outcome.chaotic) == (LEFT_ALONE[1], None)
     assert len(asked) == 2
 
 
@@ -587,9 +591,9 @@ def extent(first, second, tolerance=1e-4):
         ({"status": "flight", "t_flight": 1.0}, {"t_flight": 1.006}, {"t_flight": 1.004}),
         ({"status": "overturned", "t_end": 3.0}, {"t_end": 3.006}, {"t_end": 3.004}),
         ({"status": "overturned", "windows": [0.1, 1.5]}, {"windows": [0.1041, 0.7]}, {"windows": [0.1039, 0.7]}),
-        ({"status": "failed", "reason": LEFT_ALONE[0]}, {"reason": LEFT_ALONE[1]}, {}),
+        ({"status": "failed", "failure": LEFT_ALONE[0]}, {"failure": LEFT_ALONE[1]}, {}),
         (
-            {"status": "failed", "reason": LEFT_ALONE[0]},
+            {"status": "failed", "failure": LEFT_ALONE[0]},
             {"theta_max_in_motion": 0.10011},
             {"theta_max_in_motion": 0.10009},
         ),
@@ -601,7 +605,7 @@ def test_two_runs_agree_in_times_to_a_hundredth_of_1_over_p_and_in_how_they_end(
     assert extent(first, first) == extent(first, first | together) == "THROUGHOUT"
     of_one_that_stood = {"t_max": "RESULTS", "windows": "APART"}.get(next(iter(apart)), "NONE")
     assert extent(first, first | apart) == (of_one_that_stood if first["status"] == "ok" else "NONE")
-    unsettled = first | {"status": "failed", "reason": "not settled"}
+    unsettled = first | {"status": "failed", "failure": Failure.NOT_SETTLED}
     assert extent(unsettled, unsettled) == "NONE"
 
 
@@ -635,7 +639,11 @@ def test_a_probe_raises_the_errors_that_it_shows_to_be_too_small_or_withdraws_th
         2.0 * 0.002 / 0.202
     )
     assert probed({}).devices_error is None
-    for status, words in (("flight", "ends it in flight"), ("failed", "is not decided"), ("overturned", OVERTURNS)):
+    for status, words in (
+        ("flight", "ends it in flight"),
+        ("failed", "is not decided"),
+        ("overturned", "overturns the pier"),
+    ):
         found = probed({"status": status})
         assert (found.theta_max_error, f"a motion 1e-08 stronger {words}" in found.note) == (None, True)
     assert probed({}, theta_max_error=None).note == ""

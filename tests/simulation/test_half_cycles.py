@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockbatch.simulation.half_cycles import Path, _peak, half_cycles
+from rockbatch.outcome.half_cycles import Path, _peak, half_cycles
 
 
 def test_an_oscillation_passes_upright_and_turns_where_its_cosine_does():

@@ -8,7 +8,7 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.figures.description import Look, Points, Polyline, Rule, Words, sign_of
-from rockbatch.simulation.figures import MOST_LANES, Drawn, History, of_one, reduced, together
+from rockbatch.outcome.figures import MOST_LANES, Drawn, History, of_one, reduced, together
 
 PIER = rb.Pier(0.2, 1.0)
 PULSE = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=6.0)
@@ -111,10 +111,10 @@ def test_energy_starts_at_zero_and_is_kept_between_impacts_of_elastic_springs():
 def test_an_impossible_pier_is_refused_with_the_limit():
     with pytest.raises(rb.InputError, match="beta must be above") as error:
         rb.simulate(PIER, rb.YieldingBase(beta=3, eta=2.0), PULSE)
-    assert len(error.value.problems) == 1
+    assert len(error.value.messages) == 1
     with pytest.raises(rb.InputError) as error:
         rb.YieldingBase(beta=3, eta=0.9, epsilon=2)
-    assert len(error.value.problems) == 2
+    assert len(error.value.messages) == 2
 
 
 def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):

@@ -39,7 +39,7 @@ def peak_of_history(run, substeps, until):
 
 def test_a_run_that_fails_after_its_motion_has_the_peak_until_then_within_its_error(failed, motion):
     assert failed.status == "failed"
-    assert "further and further" in failed.reason
+    assert failed.failure == "ratchets"
     assert failed.t_max > motion.duration
     assert 0.0 < failed.theta_max_in_motion < failed.theta_max
     fine = run_fixed(PIER, SOFT, motion, 16 * failed.substeps, wait=False).theta_max_in_motion

@@ -9,19 +9,22 @@ from studies import study_text, write_study
 
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.observers import observers_of
 from rockbatch.checks.judging import judge
 from rockbatch.commands.summary import summary, warnings
 from rockbatch.common.errors import InputError
 from rockbatch.core.types import SAMPLE
 from rockbatch.motions import Motion
+from rockbatch.observers.rocking.observe import Rocking
 from rockbatch.pier import ElasticBase, Pier, YieldingBase
 from rockbatch.reporting.sections.peaks import outcome
 from rockbatch.results.columns import StudyRun, as_table, row
 from rockbatch.results.run_json import describe_case
 from rockbatch.simulation import Run, Stop, run_all_to_tolerance, run_fixed, run_to_tolerance
-from rockbatch.simulation.histories import rocking_from_lean, written
-from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed
+from rockbatch.simulation.leaning import PARTS, greatest_swing, lean_of, unstressed, with_lean
 from rockbatch.simulation.models import readings
+from rockbatch.simulation.observing import observed
+from rockbatch.simulation.recording import recorded
 from rockbatch.study import Case, Numerics, Output, load_study
 
 PIER = Pier(alpha=0.2, p=1.0)
@@ -38,7 +41,7 @@ def pulse_and_vibration(vertical):
 
 def outcome_of(base, motion, **output):
     planned = StudyRun(motion, "+", 1.0, Case("case", PIER, base, {}))
-    (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), Output(both_laws=False, **output))
+    (outcome,) = outcomes_of([planned], Numerics(tolerance=1e-4), observers_of(Output(**output)))
     return outcome
 
 
@@ -54,7 +57,7 @@ def test_where_a_pier_would_rest_at_the_end_is_the_residual_rotation_of_its_row(
     """The core reads that by itself, from the supports' positions: a mean over the time between two readings after the record."""
     motion = pulse_and_vibration(0.3)
     outcome = run_to_tolerance(PIER, base, motion, 1e-4)
-    rows = written(Run(PIER, base, motion), outcome, 2.0, every_step=False)
+    rows = recorded(Run(PIER, base, motion), outcome, 2.0, every_step=False).rows
     samples = lean_of(PIER, base, rows)[rows.kind == SAMPLE]
     first, wait = round(outcome.t_read / motion.dt), readings(PIER, base, motion.dt)[1]
     assert samples[first : first + max(wait, 1)].mean() == pytest.approx(outcome.theta_res, rel=1e-9)
@@ -102,7 +105,7 @@ def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_con
     motion = pulse_and_vibration(0.5)
     outcome = outcome_of(PADS, motion, rocking=True)
     fine = run_fixed(PIER, PADS, motion, 4 * outcome.substeps)
-    fine = rocking_from_lean([Run(PIER, PADS, motion)], [fine], 2.0, requested=True)[0]
+    (fine,) = observed([Run(PIER, PADS, motion)], [fine], [Rocking()], 2.0, error=True)
     assert 0.0 < outcome.theta_rocking_error < 1e-3 * outcome.theta_rocking
     assert abs(outcome.theta_rocking - fine.theta_rocking) <= outcome.theta_rocking_error
     assert abs(outcome.theta_lean - fine.theta_lean) <= outcome.theta_lean_error < 1e-2 * outcome.theta_lean
@@ -150,8 +153,12 @@ def test_many_runs_are_classified_as_one_is(requested):
         for dt in (0.01, 0.008)
     ]
     outcomes = run_all_to_tolerance(runs, 1e-4, 2.0, Stop())
-    found = rocking_from_lean(runs, outcomes, 2.0, requested)
-    assert found == [rocking_from_lean([run], [o], 2.0, requested)[0] for run, o in zip(runs, outcomes, strict=True)]
+
+    def classified(runs, outcomes):
+        return observed(runs, outcomes, [Rocking()], 2.0, error=True) if requested else with_lean(runs, outcomes, 2.0)
+
+    found = classified(runs, outcomes)
+    assert found == [classified([run], [outcome])[0] for run, outcome in zip(runs, outcomes, strict=True)]
     apart = sum(each.theta_rocking is not None for each in found)
     assert apart == len(runs) if requested else 0 < apart < len(runs)
 

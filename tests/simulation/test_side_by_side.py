@@ -5,8 +5,8 @@ import pytest
 
 from rockbatch.motions import Motion
 from rockbatch.pier import Damper, ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.simulation import Run, Stop, histories, run_all_fixed
-from rockbatch.simulation.histories import written, written_side_by_side
+from rockbatch.simulation import Run, Stop, recording, run_all_fixed
+from rockbatch.simulation.recording import recorded, recorded_side_by_side
 
 PIER = Pier(0.2, 1.0)
 BASES = (
@@ -30,10 +30,14 @@ def runs():
     return found, outcomes
 
 
+def rows_of(*given, **more):
+    return {i: found.rows for i, found in recorded_side_by_side(*given, **more)}
+
+
 def same(runs, outcomes, together, wait=True):
     """Return whether histories written ``together`` are, to the bit, those of runs by themselves."""
     alone = {
-        i: written(run, outcome, 1.0, every_step=False, wait=wait)
+        i: recorded(run, outcome, 1.0, every_step=False, wait=wait).rows
         for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
     }
     return sorted(together) == sorted(alone) and all(
@@ -41,35 +45,35 @@ def same(runs, outcomes, together, wait=True):
     )
 
 
-@pytest.mark.parametrize("room", [histories.ROWS_TOGETHER, 2000, 1], ids=["all", "a few", "one"])
+@pytest.mark.parametrize("room", [recording.ROWS_TOGETHER, 2000, 1], ids=["all", "a few", "one"])
 def test_histories_written_side_by_side_are_those_written_alone(runs, room, monkeypatch):
     """Whatever finds room together; pivots land and lift off in all of them, and the springs' velocities turn."""
-    monkeypatch.setattr(histories, "ROWS_TOGETHER", room)
-    assert same(*runs, dict(written_side_by_side(*runs, 1.0)))
+    monkeypatch.setattr(recording, "ROWS_TOGETHER", room)
+    assert same(*runs, rows_of(*runs, 1.0))
 
 
 def test_those_that_end_with_their_quiet_time_are_those_written_alone(runs):
-    assert same(*runs, dict(written_side_by_side(*runs, 1.0, wait=False)), wait=False)
+    assert same(*runs, rows_of(*runs, 1.0, wait=False), wait=False)
 
 
 def test_a_history_that_finds_no_room_beside_others_is_written_alone(runs, monkeypatch):
-    expected = dict(written_side_by_side(*runs, 1.0))
-    monkeypatch.setattr(histories, "_room", lambda *_, **__: 50)
-    found = dict(written_side_by_side(*runs, 1.0))
+    expected = rows_of(*runs, 1.0)
+    monkeypatch.setattr(recording, "_room", lambda *_, **__: 50)
+    found = rows_of(*runs, 1.0)
     assert min(map(len, found.values())) > 50
     assert {i: rows.tobytes() for i, rows in found.items()} == {i: rows.tobytes() for i, rows in expected.items()}
 
 
 def test_histories_that_are_too_long_are_left_out_and_a_stop_leaves_out_the_rest(runs, monkeypatch):
-    lengths = {i: len(rows) for i, rows in written_side_by_side(*runs, 1.0)}
+    lengths = {i: len(rows) for i, rows in rows_of(*runs, 1.0).items()}
     most = int(np.median(list(lengths.values())))
-    monkeypatch.setattr(histories, "MOST_ROWS", most)
-    monkeypatch.setattr(histories, "ROWS_TOGETHER", 1)
-    assert {i for i, _ in written_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
-    monkeypatch.setattr(histories, "ROWS_TOGETHER", 150_000)
+    monkeypatch.setattr(recording, "MOST_ROWS", most)
+    monkeypatch.setattr(recording, "ROWS_TOGETHER", 1)
+    assert {i for i, _ in recorded_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
+    monkeypatch.setattr(recording, "ROWS_TOGETHER", 150_000)
     # That one is too long shows only once it is written beside others
-    monkeypatch.setattr(histories, "_room", lambda *_, **__: 50)
-    assert {i for i, _ in written_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
+    monkeypatch.setattr(recording, "_room", lambda *_, **__: 50)
+    assert {i for i, _ in recorded_side_by_side(*runs, 1.0)} == {i for i, rows in lengths.items() if rows <= most}
     stop = Stop()
     stop.set()
-    assert list(written_side_by_side(*runs, 1.0, stop=stop)) == []
+    assert list(recorded_side_by_side(*runs, 1.0, stop=stop)) == []

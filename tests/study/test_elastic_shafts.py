@@ -20,7 +20,7 @@ def messages(tmp_path, **tables):
     """Return what is said of a study that cannot be run."""
     with pytest.raises(rb.InputError) as error:
         rb.load_study(write_study(tmp_path, study_text(**{"pier": SHAFT} | tables)))
-    return "\n".join(error.value.problems)
+    return "\n".join(error.value.messages)
 
 
 @pytest.mark.parametrize(

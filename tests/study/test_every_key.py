@@ -163,7 +163,7 @@ def motions(tables):
     try:
         found = ground_motions(of_study)
     except InputError as error:
-        return error.problems
+        return error.messages
     used = [(motion.name, motion.dt, motion.horizontal.tolist(), motion.vertical is None) for motion in found]
     vertical = [None if motion.vertical is None else motion.vertical.tolist() for motion in found]
     return [used, vertical, sorted(file.name for file in (*found.unusable, *found.left_out))]
@@ -475,8 +475,7 @@ USES: dict[str, dict[str, Use]] = {
             whole_folder,
         ),
         **uses(
-            study(case=SOFT | {"base": "yielding", "eta": 2.5}, check=[SETTLES], output={}), ("output",), {"both_laws": False},
-            is_taken,
+            study(case=SOFT | {"base": "yielding", "eta": 2.5}, output={}), ("output",), {"both_laws": True}, whole_folder,
         ),
         **uses(study(output={}), ("output",), {
             "histories": "none", "ledger": True, "forces": True, "intensity": True, "half_cycles": True, "sections": 3,

@@ -32,7 +32,7 @@ def pier4():
 def problems(change, *args, **more):
     with pytest.raises(rb.InputError) as caught:
         change(*args, **more)
-    return list(caught.value.problems)
+    return list(caught.value.messages)
 
 
 def facts(study):

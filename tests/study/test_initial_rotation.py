@@ -16,7 +16,7 @@ STILL = {"still_s": 5.0}
 def problems_of(tmp_path, **tables) -> list[str]:
     with pytest.raises(InputError) as error:
         load_study(write_study(tmp_path, study_text(**tables)))
-    return error.value.problems
+    return error.value.messages
 
 
 def test_a_list_of_rotations_is_a_pier_for_each(tmp_path):

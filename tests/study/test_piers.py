@@ -42,7 +42,7 @@ def study_of(folder, pier, *rest):
 def problems_of(folder, pier, *rest):
     with pytest.raises(InputError) as caught:
         study_of(folder, pier, *rest)
-    return [problem.removeprefix(f"{folder / 'study.toml'}:") for problem in caught.value.problems]
+    return [problem.removeprefix(f"{folder / 'study.toml'}:") for problem in caught.value.messages]
 
 
 @pytest.mark.parametrize(
@@ -361,7 +361,7 @@ def test_ranges_in_kilonewtons_are_held_against_the_pier(tmp_path, pier, ranges,
     study = study_of(tmp_path, pier, RIGID, pads, ranges)
     with pytest.raises(InputError) as caught:
         read_sensitivity(study)
-    assert any(said in problem for problem in caught.value.problems), caught.value.problems
+    assert any(said in problem for problem in caught.value.messages), caught.value.messages
 
 
 def test_spectra_keep_stiffness_and_mass_on_piers_of_every_size(tmp_path):

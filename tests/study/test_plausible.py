@@ -83,7 +83,7 @@ def problems_of(path):
     try:
         load_study(path)
     except InputError as error:
-        return error.problems
+        return error.messages
     return ()
 
 
@@ -159,7 +159,7 @@ def test_a_limit_is_odd_only_where_it_is_so_for_all_its_cases(tmp_path):
 def test_values_that_cannot_be_confirmed_or_met_are_reported(tmp_path, part, old, new, said):
     with pytest.raises(InputError) as caught:
         load_study(written(tmp_path, **{part: PARTS[part].replace(old, new)}))
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert problem.endswith(said)
 
 
@@ -310,8 +310,8 @@ def test_a_motion_in_gal_is_refused_where_it_is_run():
 @pytest.mark.parametrize(
     ("old", "new", "key", "said"),
     [
-        ("amplitude_g = 0.2", "amplitude_g = 4", "amplitude_g", "amplitude_g = 4 g: more than 3 g, where pulses of near-fault"),
-        ("dt_s = 0.01", "dt_s = 0.8", "dt_s", "dt_s = 0.8 s: 1.2 samples in a period of 1 s, which miss the pulse's peak"),
+        ("amplitude_g = 0.2", "amplitude_g = 4", "amplitude_g", "amplitude_g = 4: 4 g are more than 3 g, where pulses"),
+        ("dt_s = 0.01", "dt_s = 0.8", "dt_s", "dt_s = 0.8: 1.2 samples in a period of 1 s, which miss the pulse's peak"),
     ],
 )  # fmt: skip
 def test_a_pulse_that_is_none_is_refused(tmp_path, old, new, key, said):

@@ -1,4 +1,4 @@
-"""Values a thousand times too small or too large: refused until they are confirmed, with what to write instead."""
+"""Values a thousand times too small or too large: refused until they are confirmed."""
 
 import pytest
 from studies import SINE, study_text, write_study
@@ -27,60 +27,60 @@ TABLES = {  # by the table that is varied: all that is usual
 }  # fmt: skip
 PIERS = ("pier", "deck", "held", "size", "p")
 NOTHING = "as good as nothing"
-SMALL = [  # table, key, value as written, what is said of it, and what to write
-    ("pier", "width_m", 0.008, "less than 0.01 m", "0.008 km are width_m = 8"),
-    ("pier", "height_m", 0.03, "less than 0.05 m", "0.03 km are height_m = 30"),
-    ("pier", "mass_t", 3.0, "of 3 t would have 0.0016 t/m³", ""),
-    ("pier", "flexural_period_s", 6e-4, "less than 0.02 s", ""),
-    ("pier", "top_m", 0.0315, "less than 0.05 m", "0.0315 km are top_m = 31.5"),
-    ("deck", "deck_inertia_t_m2", 12.0, "of a mass of 1000 t at 0.11 m from its axis", ""),
-    ("held", "initial_rotation_rad", 5e-5, "less than 0.0001 rad", ""),
-    ("size", "size_m", 0.02, "less than 0.1 m", "0.02 km are size_m = 20"),
-    ("p", "p", 0.02, "less than 0.1 rad/s", ""),
-    ("springs", "area_m2", 0.006, "presses 2.5e+06 kPa", ""),
-    ("springs", "flight_limit_mm", 0.02, "less than 0.1 mm", "0.02 m are flight_limit_mm = 20"),
-    ("friction", "force_kN", 0.45, NOTHING, "0.45 MN are force_kN = 450"),
-    ("hysteretic", "force_kN", 0.45, NOTHING, "0.45 MN are force_kN = 450"),
-    ("hysteretic", "yield_mm", 0.005, "the damper yields at 0.005 mm", "0.005 m are yield_mm = 5"),
-    ("viscous", "coefficient_kN_s_m", 0.9, NOTHING, "0.9 MN s/m are coefficient_kN_s_m = 900"),
-    ("viscous", "brace_kN_m", 200.0, "1.4 % of the pier's weight at a rotation of α", "200 MN/m are brace_kN_m = 200000"),
-    ("tendon", "prestress_kN", 5.0, NOTHING, "5 MN are prestress_kN = 5000"),
-    ("tendon", "stiffness_kN_m", 40.0, NOTHING, "40 MN/m are stiffness_kN_m = 40000"),
-    ("stop", "gap_mm", 0.1, "it is met after 0.1 mm already", "0.1 m are gap_mm = 100"),
-    ("stop", "stiffness_kN_m", 500.0, NOTHING, "500 MN/m are stiffness_kN_m = 500000"),
-    ("deck_spring", "gap_mm", 0.05, "it is met after 0.05 mm already", "0.05 m are gap_mm = 50"),
-    ("deck_spring", "stiffness_kN_m", 50.0, NOTHING, "50 MN/m are stiffness_kN_m = 50000"),
-    ("deck_spring", "height_m", 0.0315, "0.00105 times the height", "0.0315 km are height_m = 31.5"),
-    ("tendon psi", "psi", 0.0, "with no prestress and no stiffness the tendon is not there", ""),
-    ("stop lambda", "lambda", 0.0, "with no stiffness the stop is not there", ""),
-    ("deck_spring lambda", "lambda", 0.0, "with no stiffness the spring is not there", ""),
+SMALL = [  # table, key, value as written, and what is said of it
+    ("pier", "width_m", 0.008, "less than 0.01 m"),
+    ("pier", "height_m", 0.03, "less than 0.05 m"),
+    ("pier", "mass_t", 3.0, "of 3 t would have 0.0016 t/m³"),
+    ("pier", "flexural_period_s", 6e-4, "less than 0.02 s"),
+    ("pier", "top_m", 0.0315, "less than 0.05 m"),
+    ("deck", "deck_inertia_t_m2", 12.0, "of a mass of 1000 t at 0.11 m from its axis"),
+    ("held", "initial_rotation_rad", 5e-5, "less than 0.0001 rad"),
+    ("size", "size_m", 0.02, "less than 0.1 m"),
+    ("p", "p", 0.02, "less than 0.1 rad/s"),
+    ("springs", "area_m2", 0.006, "presses 2.5e+06 kPa"),
+    ("springs", "flight_limit_mm", 0.02, "less than 0.1 mm"),
+    ("friction", "force_kN", 0.45, NOTHING),
+    ("hysteretic", "force_kN", 0.45, NOTHING),
+    ("hysteretic", "yield_mm", 0.005, "the damper yields at 0.005 mm"),
+    ("viscous", "coefficient_kN_s_m", 0.9, NOTHING),
+    ("viscous", "brace_kN_m", 200.0, "1.4 % of the pier's weight at a rotation of α"),
+    ("tendon", "prestress_kN", 5.0, NOTHING),
+    ("tendon", "stiffness_kN_m", 40.0, NOTHING),
+    ("stop", "gap_mm", 0.1, "it is met after 0.1 mm already"),
+    ("stop", "stiffness_kN_m", 500.0, NOTHING),
+    ("deck_spring", "gap_mm", 0.05, "it is met after 0.05 mm already"),
+    ("deck_spring", "stiffness_kN_m", 50.0, NOTHING),
+    ("deck_spring", "height_m", 0.0315, "0.00105 times the height"),
+    ("tendon psi", "psi", 0.0, "with no prestress and no stiffness the tendon is not there"),
+    ("stop lambda", "lambda", 0.0, "with no stiffness the stop is not there"),
+    ("deck_spring lambda", "lambda", 0.0, "with no stiffness the spring is not there"),
 ]  # fmt: skip
 LARGE = [
-    ("pier", "width_m", 8000.0, "more than 400 m: the highest bridge piers", "8000 mm are width_m = 8"),
-    ("pier", "height_m", 30e3, "more than 400 m", "30000 mm are height_m = 30"),
-    ("pier", "mass_t", 3e6, "more than 1e+06 t: the heaviest", "3e+06 kg are mass_t = 3000"),
-    ("pier", "flexural_period_s", 600.0, "more than 10 s", "600 ms are flexural_period_s = 0.6"),
-    ("deck", "deck_inertia_t_m2", 12e6 * 30, "at 6e+02 m from its axis", ""),
-    ("size", "size_m", 20e3, "more than 400 m", "20000 mm are size_m = 20"),
-    ("p", "p", 400.0, "more than 30 rad/s", ""),
-    ("springs", "stiffness_kN_m", 2e9, "in by 0.0074 mm only, where sound rock", "2e+09 N/m are stiffness_kN_m = 2e+06"),
-    ("springs", "yield_kN", 4e7, "2.72e+03 times what the support carries", "4e+07 N are yield_kN = 40000"),
-    ("springs", "area_m2", 6000.0, "presses 2.5 kPa", "6000 cm² are area_m2 = 0.6"),
-    ("springs", "flight_limit_mm", 20e3, "more than 10000 mm", ""),
-    ("ratios", "beta", 40e3, 'ground that does not give is base = "rigid"', ""),
-    ("ratios", "eta", 2500.0, 'without a limit base = "elastic"', ""),
-    ("friction", "force_kN", 45e3, "one damper has 1.53 times the pier's weight", "45000 N are force_kN = 45"),
-    ("hysteretic", "yield_mm", 5e3, "the damper yields at 5e+03 mm", ""),
-    ("viscous", "coefficient_kN_s_m", 9e5, "has the force of the pier's weight", "900000 N s/m are coefficient_kN_s_m = 900"),
-    ("viscous", "brace_kN_m", 2e8, "leave out one that is rigid", "2e+08 N/m are brace_kN_m = 200000"),
-    ("damper nu", "nu", 4000.0, "one damper has the force of the pier's weight", ""),
-    ("tendon", "stiffness_kN_m", 4e7, "adds 14.2 times the pier's weight", "4e+07 N/m are stiffness_kN_m = 40000"),
-    ("tendon", "yield_kN", 15e6, "it yields at 510 times", "1.5e+07 N are yield_kN = 15000"),
-    ("stop", "gap_mm", 1e5, "more than the pier is wide", ""),
-    ("stop", "stiffness_kN_m", 5e8, "at a deflection of 0.059 mm", "5e+08 N/m are stiffness_kN_m = 500000"),
-    ("deck_spring", "gap_mm", 5e4, "the deck is only there", ""),
-    ("deck_spring", "stiffness_kN_m", 5e7, "at a deflection of 0.59 mm", "5e+07 N/m are stiffness_kN_m = 50000"),
-    ("deck_spring", "height_m", 31.5e3, "times the height of the pier", "31500 mm are height_m = 31.5"),
+    ("pier", "width_m", 8000.0, "more than 400 m: the highest bridge piers"),
+    ("pier", "height_m", 30e3, "more than 400 m"),
+    ("pier", "mass_t", 3e6, "more than 1e+06 t: the heaviest"),
+    ("pier", "flexural_period_s", 600.0, "more than 10 s"),
+    ("deck", "deck_inertia_t_m2", 12e6 * 30, "at 6e+02 m from its axis"),
+    ("size", "size_m", 20e3, "more than 400 m"),
+    ("p", "p", 400.0, "more than 30 rad/s"),
+    ("springs", "stiffness_kN_m", 2e9, "in by 0.0074 mm only, where sound rock"),
+    ("springs", "yield_kN", 4e7, "2.72e+03 times what the support carries"),
+    ("springs", "area_m2", 6000.0, "presses 2.5 kPa"),
+    ("springs", "flight_limit_mm", 20e3, "more than 10000 mm"),
+    ("ratios", "beta", 40e3, 'ground that does not give is base = "rigid"'),
+    ("ratios", "eta", 2500.0, 'without a limit base = "elastic"'),
+    ("friction", "force_kN", 45e3, "one damper has 1.53 times the pier's weight"),
+    ("hysteretic", "yield_mm", 5e3, "the damper yields at 5e+03 mm"),
+    ("viscous", "coefficient_kN_s_m", 9e5, "has the force of the pier's weight"),
+    ("viscous", "brace_kN_m", 2e8, "leave out one that is rigid"),
+    ("damper nu", "nu", 4000.0, "one damper has the force of the pier's weight"),
+    ("tendon", "stiffness_kN_m", 4e7, "adds 14.2 times the pier's weight"),
+    ("tendon", "yield_kN", 15e6, "it yields at 510 times"),
+    ("stop", "gap_mm", 1e5, "more than the pier is wide"),
+    ("stop", "stiffness_kN_m", 5e8, "at a deflection of 0.059 mm"),
+    ("deck_spring", "gap_mm", 5e4, "the deck is only there"),
+    ("deck_spring", "stiffness_kN_m", 5e7, "at a deflection of 0.59 mm"),
+    ("deck_spring", "height_m", 31.5e3, "times the height of the pier"),
 ]  # fmt: skip
 
 
@@ -104,7 +104,7 @@ def problems_with(folder, table, **keys):
     try:
         load_study(write_study(folder, study_text(pier=pier, cases=[case])))
     except InputError as error:
-        return error.problems
+        return error.messages
     return ()
 
 
@@ -113,11 +113,10 @@ def test_usual_values_are_accepted(tmp_path, table):
     assert problems_with(tmp_path, table) == ()
 
 
-@pytest.mark.parametrize(("table", "key", "value", "said", "instead"), SMALL + LARGE)
-def test_a_unit_off_by_a_thousand_is_refused_until_it_is_confirmed(tmp_path, table, key, value, said, instead):
+@pytest.mark.parametrize(("table", "key", "value", "said"), SMALL + LARGE)
+def test_a_unit_off_by_a_thousand_is_refused_until_it_is_confirmed(tmp_path, table, key, value, said):
     named = [problem for problem in problems_with(tmp_path, table, **{key: value}) if f"{key} = {value:g}: " in problem]
     (problem,) = [problem for problem in named if said in problem]
-    assert instead in problem
     place = f"[[case.{device_of(table)}]]" if device_of(table) else "this table"
     assert problem.endswith(f'check the unit; if it is right, write confirm = ["{key}"] in {place}')
     lines = (tmp_path / "study.toml").read_text(encoding="utf-8").splitlines()
@@ -147,19 +146,19 @@ def of_check(folder, confirm=(), **limit):
     ("limit", "said"),
     [
         ({"demand": "yield_kN", "at_least": 26},
-         "at_least = 26: yield_kN is 4e+04 here, 1.5e+03 times the limit, so that it decides nothing; 26 MN are at_least"),
+         "at_least = 26: yield_kN is 4e+04 here, 1.5e+03 times the limit, so that it decides nothing; check"),
         ({"demand": "yield_kN", "at_least": 26e6},
-         "at_least = 2.6e+07: yield_kN is 4e+04 here, 0.0015 times the limit, so that it decides nothing; 2.6e+07 N"),
-        ({"demand": "stiffness_kN_m", "at_least": 2000}, "2000 MN/m are at_least = 2e+06"),
+         "at_least = 2.6e+07: yield_kN is 4e+04 here, 0.0015 times the limit, so that it decides nothing; check"),
+        ({"demand": "stiffness_kN_m", "at_least": 2000}, "at_least = 2000: stiffness_kN_m is 2e+06 here"),
         ({"demand": "base_shear_kN", "at_most": 9e6},
-         "at_most = 9e+06: base_shear_kN is a force, and the pier's weight, 2.943e+04 kN, is 0.0033 times the limit; 9e+06 N"),
-        ({"demand": "base_shear_kN", "at_most": 2}, "is 1.5e+04 times the limit; 2 MN are at_most = 2000"),
+         "at_most = 9e+06: base_shear_kN is a force, and the pier's weight, 2.943e+04 kN, is 0.0033 times the limit; check"),
+        ({"demand": "base_shear_kN", "at_most": 2}, "is 1.5e+04 times the limit; check"),
     ],
 )  # fmt: skip
 def test_a_limit_in_another_unit_is_refused_until_it_is_confirmed(tmp_path, limit, said):
     with pytest.raises(InputError) as caught:
         of_check(tmp_path, **limit)
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert said in problem
     of_check(tmp_path, confirm=set(limit) - {"demand"}, **limit)
 
@@ -172,7 +171,7 @@ def test_limits_near_what_is_there_are_accepted(tmp_path):
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [
-        ("period_s", 1000.0, "more than 100 s: pulses of near-fault records have 0.5 to 10; 1000 ms are period_s = 1;"),
+        ("period_s", 1000.0, "more than 100 s: pulses of near-fault records have 0.5 to 10; check"),
         ("period_s", 1e-3, "less than 0.01 s"),
     ],
 )
@@ -191,8 +190,7 @@ RATES = {"levels_m_s": [0.1, 0.2, 0.4], "rate_per_year": [0.01, 0.0021, 0.0004]}
 @pytest.mark.parametrize(
     ("table", "key", "written", "said"),
     [
-        (FRAGILITY, "levels_m_s", [25, 50, 100], "levels_m_s = 25: more than 10 m/s: the strongest earthquakes had some 3 m/s; "
-         "25 cm/s are levels_m_s = 0.25; check the unit"),
+        (FRAGILITY, "levels_m_s", [25, 50, 100], "levels_m_s = 25: more than 10 m/s: the strongest"),
         (HAZARD, "levels_m_s", [11, 20, 40], "levels_m_s = 11: more than 10 m/s"),
         (HAZARD, "return_period_years", [0.1, 0.475, 2.475], "return_period_years = 0.1: less than 0.5 years"),
         (RATES, "rate_per_year", [10, 2.1, 0.4], "rate_per_year = 10: more than 2 per year"),
@@ -206,13 +204,13 @@ def test_levels_and_rates_in_another_unit_are_refused_until_they_are_confirmed(t
 
     with pytest.raises(InputError) as caught:
         read()
-    assert any(said in problem for problem in caught.value.problems)
+    assert any(said in problem for problem in caught.value.messages)
     read(confirm=[key])
 
 
 def test_levels_in_percent_of_g_and_tables_of_a_hazard_are_judged_too(tmp_path):
     percent = {"measure": "PGA", "levels_g": [20, 40]}
-    with pytest.raises(InputError, match=r"20 % of g are levels_g = 0\.2"):
+    with pytest.raises(InputError, match="levels_g = 20: more than"):
         read_fragility(load_study(write_study(tmp_path, study_text(fragility=percent))))
     (tmp_path / "hazard.csv").write_text("levels_m_s,return_period_years\n0.1,0.1\n0.4,2.475\n", encoding="utf-8")
     for more in ({}, {"confirm": ["file"]}):

@@ -174,5 +174,5 @@ def test_the_reversed_motion_gives_the_mirror_image(base):
 def test_what_cannot_be_is_said_where_it_is_made(made, told):
     with pytest.raises(rb.InputError) as caught:
         made()
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert problem.startswith(told)

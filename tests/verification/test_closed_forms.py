@@ -11,14 +11,16 @@ from scipy.integrate import quad
 from scipy.special import hyp2f1
 
 import rockbatch as rb
+from rockbatch.core.powers import power
 from rockbatch.core.springs.equations import geometry
 from rockbatch.core.springs.impact import land
-from rockbatch.core.springs.laws import power, static_deflection
-from rockbatch.core.springs.model import BOUC_WEN, Contact, State
+from rockbatch.core.springs.laws import CODES
+from rockbatch.core.springs.model import Contact, State
 from rockbatch.core.system import rates
 from rockbatch.core.types import BEFORE_EVENT, LEFT, Ground
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase, rocking_frequency
+from rockbatch.pier.first_loading import bouc_wen
 from rockbatch.simulation import Run, block, run_fixed, springs, written_run
 
 SINE = pulse("sine", 0.5, dt=0.01, end=3.0)
@@ -203,7 +205,7 @@ def test_finite_kinematics_on_one_immovable_pivot_is_housners_equation(theta):
 def test_static_deflection_is_the_integral_of_the_law(n, eta):
     """∫ ds/(1 − sⁿ) from 0 to x = 1/η, which is x ₂F₁(1, 1/n; 1+1/n; xⁿ)."""
     x = 1.0 / eta
-    found = static_deflection(x, n)
+    found = bouc_wen(n).deflection(x)
     assert found == pytest.approx(quad(lambda s: 1.0 / (1.0 - s**n), 0.0, x, epsrel=1e-12)[0], rel=1e-11)
     assert found == pytest.approx(x * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, x**n), rel=1e-11)
 
@@ -291,7 +293,7 @@ def test_a_large_exponent_approaches_the_elastic_plastic_spring(uncompiled):
 
 def test_springs_that_never_yield_are_elastic():
     """η = 10⁴, n = 5: plasticity of order (1/η)⁵, so the elastic result to rounding, events and all."""
-    assert springs(FIG5, YieldingBase(50.0, eta=3.0)).law == BOUC_WEN
+    assert springs(FIG5, YieldingBase(50.0, eta=3.0)).law == CODES["bouc-wen"]
     strong = run_fixed(FIG5, YieldingBase(50.0, 0.4, eta=1e4, confirm=("eta",)), SINE, 8, 0.0, wait=False)
     elastic = run_fixed(FIG5, ElasticBase(50.0, 0.4), SINE, 8, 0.0, wait=False)
     assert strong.theta_max == pytest.approx(elastic.theta_max, abs=1e-8 * FIG5.alpha)

@@ -192,5 +192,5 @@ def test_the_residual_rotation_is_where_the_pier_comes_to_rest_against_the_sprin
 def test_what_cannot_be_is_said_where_it_is_made(made, told):
     with pytest.raises(rb.InputError) as caught:
         made()
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert problem.startswith(told)

@@ -10,9 +10,9 @@ from restrained_reference import TiedTwoSprings
 
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.changes import FLOOR, OF_DEVICES, scales_of
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Restraint, RigidBase, Stop, Tendon, YieldingBase
 from rockbatch.simulation import block, run_fixed, run_to_tolerance
-from rockbatch.simulation.changes import FLOOR, OF_DEVICES, scales_of
 
 STILL = Motion("still", 0.01, np.zeros(150))
 PADS = YieldingBase(50.0, 0.3, eta=3.0, flight="guided")

@@ -17,8 +17,8 @@ from rockbatch.checks.verdicts import DOES_NOT_APPLY, FAIL, PASS
 from rockbatch.common.errors import InputError
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Motion
+from rockbatch.outcome.device_work import Courses, rainflow, with_turns, work_of
 from rockbatch.pier import Damper, RigidBase, Tendon, YieldingBase
-from rockbatch.simulation.device_work import Courses, rainflow, with_turns, work_of
 from rockbatch.simulation.restraints import device_work
 from rockbatch.simulation.runs import Run, written_run
 

@@ -30,7 +30,7 @@ from rockbatch.core.types import (
 from rockbatch.motions.motion import Motion
 from rockbatch.pier import ElasticBase, RigidBase, Tendon
 from rockbatch.simulation import Run, block, run_fixed, run_to_tolerance, written_run
-from rockbatch.simulation.histories import written
+from rockbatch.simulation.recording import recorded
 
 MODEL = block(PIER, RigidBase())
 STILL = Ground(0.0, 0.0, 0.0, 0.0)
@@ -247,7 +247,7 @@ def test_random_flights_are_those_of_the_independent_reference(outcomes, referen
             continue
         found = run_to_tolerance(case.pier, case.base, case.motion, 1e-6)
         assert found.status == "ok"
-        rows = written(Run(case.pier, case.base, case.motion), found, 2.0, every_step=False)
+        rows = recorded(Run(case.pier, case.base, case.motion), found, 2.0, every_step=False).rows
         aloft = rows.left + rows.right == 0.0
         goes_on = np.isin(rows.kind[1:], (IMPACT_LEFT, IMPACT_RIGHT)) & aloft[1:] & aloft[:-1]
         assert found.flights + goes_on.sum() == expected.flights

@@ -11,6 +11,7 @@ from reference_forces import greatest_forces
 
 import rockbatch as rb
 from rockbatch.batch.groups import outcomes_of
+from rockbatch.batch.observers import observers_of
 from rockbatch.pier import offsets
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.forces import with_error
@@ -57,7 +58,7 @@ EVERY_BASE = pytest.mark.parametrize(
 
 def outcome_of(pier, base, motion, *, forces=True, **numerics):
     run = StudyRun(motion, "+", 1.0, Case("case", pier, base, {}))
-    (outcome,) = outcomes_of([run], Numerics(**numerics), Output(both_laws=False, forces=forces))
+    (outcome,) = outcomes_of([run], Numerics(**numerics), observers_of(Output(forces=forces)))
     return outcome
 
 
@@ -579,8 +580,8 @@ def test_forces_that_halving_the_step_still_changes_have_an_error_and_a_note():
 def test_friction_counts_from_a_normal_force_that_the_study_chooses(share):
     """The less has to press, the more is asked, and |V| there is the demand times that share of the weight at most."""
     run = StudyRun(shaken(), "+", 1.0, Case("case", PIER, BASES["elastic"], {}))
-    output = Output(both_laws=False, forces=True, least_normal_share=share)
-    (outcome,) = outcomes_of([run], Numerics(), output)
+    observers = observers_of(Output(forces=True, least_normal_share=share))
+    (outcome,) = outcomes_of([run], Numerics(), observers)
     usual = outcome_of(PIER, BASES["elastic"], shaken()).forces
     less, more = (outcome.forces, usual) if share < 0.1 else (usual, outcome.forces)
     assert less.friction_demand > more.friction_demand
@@ -626,13 +627,16 @@ def test_a_run_says_where_it_would_slide():
     motion, friction = shaken(), 0.25
     least = sized(PIER, rb.RigidBase(), motion).friction_demand
     assert least > friction
-    note = outcome_of(PIER, rb.RigidBase(friction=friction), motion).note
+    slid = outcome_of(PIER, rb.RigidBase(friction=friction), motion)
+    note = slid.note
     response = rb.simulate(PIER, rb.RigidBase(), motion, forces=True)
     first = response.t[np.argmax(response.forces["friction"].to_numpy() > friction)]
     assert note.startswith("would slide at ")
     assert float(note.split()[3]) == pytest.approx(first, abs=0.011)
     assert f"the friction demand reaches {least:.3g}, the interface has 0.25; sliding is not followed" in note
-    assert outcome_of(PIER, rb.RigidBase(friction=2 * least), motion).note == ""
+    assert slid.forces.slides
+    held = outcome_of(PIER, rb.RigidBase(friction=2 * least), motion)
+    assert (held.forces.slides, held.note) == (False, "")
     hops = outcome_of(PIER, replace(BASES["elastic"], friction=5.0, confirm=("friction",)), motion)
     assert hops.forces.friction_demand < 5.0
     carried = f"keys have to carry a base shear of up to {hops.forces.key_shear / G:.3g} of the weight"
@@ -645,6 +649,7 @@ def test_a_run_says_where_it_would_slide():
         PIER, rb.RigidBase(restitution=0.1, friction=2.0, confirm=("restitution",)), replace(motion, vertical=None)
     )
     assert hard.forces.friction_demand < 2.0 < hard.forces.impact_friction_demand
+    assert hard.forces.slides
     assert "would slide at an impact" in hard.note
 
 

@@ -9,8 +9,8 @@ import reference_solver
 from core_samples import broadband, has_usual_n, is_common
 
 from rockbatch.motions import Motion, pulse
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.pier import ElasticBase, Pier, RigidBase, YieldingBase
-from rockbatch.simulation.outcome import Outcome
 
 PIER = Pier(alpha=0.20, p=1.0)
 G = PIER.gravity

@@ -96,4 +96,4 @@ def test_a_base_that_ratchets_on_is_not_called_over():
         pier, base, Motion("ratchets", samples[1, 0] - samples[0, 0], samples[:, 1]), 1e-4, quiet_s=0.0
     )
     assert found.status == "failed"
-    assert "further" in found.reason
+    assert found.failure == "ratchets"

@@ -403,7 +403,7 @@ def test_a_pier_that_is_held_beyond_alpha_has_not_survived(foundation, damper):
     outcome = run_fixed(FIG5, replace(foundation, restraints=(damper,)), motion, 8)
     assert FIG5.alpha < outcome.theta_max < math.pi / 2
     assert outcome.status == "failed"
-    assert outcome.reason == LEFT_ALONE[0]
+    assert outcome.failure == LEFT_ALONE[0]
 
 
 YIELDS = base(
@@ -523,7 +523,7 @@ def test_impossible_devices_are_refused():
     ):
         with pytest.raises(InputError) as caught:
             kind(**values)
-        assert len(caught.value.problems) == 1, values
+        assert len(caught.value.messages) == 1, values
     assert len(problems(FIG5, base(Damper("friction", f=0.1, at=99.0)))) == 1
     frame = Pier.frame(replace(Pier.rectangle(1.0, 5.0), mass_t=100.0), 2, 400.0)
     for each in (Damper("viscous", nu=0.1, at="deck"), DeckSpring(lam=1.0)):

@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 
 import rockbatch as rb
-from rockbatch.common.notes import CHAOTIC
+from rockbatch.observers.sections.observe import ForcesInSections
+from rockbatch.outcome.changes import LEAST
+from rockbatch.outcome.outcome import Section
 from rockbatch.pier.sections import section_heights
+from rockbatch.simulation import recording
 from rockbatch.simulation import sections as of_sections
-from rockbatch.simulation.changes import LEAST
 from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import at_rows
-from rockbatch.simulation.histories import forces_in_sections, written
-from rockbatch.simulation.outcome import Section
+from rockbatch.simulation.observing import observed
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.simulation.sections import InBody, InSection, in_body, in_section, sections_of, with_errors
 
@@ -115,7 +116,7 @@ def smooth(rows, rng, number):
 def recorded(pier, base, motion, substeps=SUBSTEPS):
     run = Run(pier, base, motion)
     outcome = run_fixed(pier, base, motion, substeps, 0.2, wait=False)
-    return run, written(run, outcome, 0.2, True, wait=False)
+    return run, recording.recorded(run, outcome, 0.2, True, wait=False).rows
 
 
 def in_sections(run, rows, heights, numbers, shares):
@@ -286,15 +287,20 @@ def test_an_error_is_four_times_the_change_of_any_extreme_as_a_share_of_itself(p
     assert with_errors([fine], [fine], pier, CHANCE)[0].error == CHANCE * LEAST
 
 
+def error_at_foot(run, outcome, error):
+    """The error of the forces in the lowest section, None without one."""
+    (found,) = observed([run], [outcome], [ForcesInSections((0.0,))], 0.2, error=error, wait=False)
+    (row,) = found.tables[ForcesInSections.table]
+    return row["sections_error"]
+
+
 def test_forces_in_sections_of_a_chaotic_run_and_of_an_odd_number_of_steps_have_no_error():
     rng = np.random.default_rng(10)
     run, _ = recorded(random_pier(rng), BASES["rigid"], random_motion(rng, random_pier(rng), 0.5), substeps=8)
-    for substeps, note, claimed in ((8, "", True), (8, CHAOTIC, False), (7, "", False)):
-        outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.2, wait=False).noted(note)
-        (foot,) = forces_in_sections(run, outcome, 0.2, [0.0], error=True, wait=False)
-        assert (foot.error is not None) == claimed
-    (foot,) = forces_in_sections(run, outcome.changed(substeps=8, note=""), 0.2, [0.0], error=False, wait=False)
-    assert foot.error is None
+    for substeps, chaotic, claimed in ((8, None, True), (8, True, False), (7, None, False)):
+        outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.2, wait=False).changed(chaotic=chaotic)
+        assert (error_at_foot(run, outcome, error=True) is not None) == claimed
+    assert error_at_foot(run, outcome.changed(substeps=8, chaotic=None), error=False) is None
 
 
 def test_a_motion_that_begins_with_a_jump_bends_the_foot_by_no_more_than_its_normal_force_can():

@@ -217,5 +217,5 @@ def test_random_stops_beside_dampers_and_tendons_settle_on_real_records(seeds):
 def test_what_cannot_be_is_said_where_it_is_made(made, told):
     with pytest.raises(rb.InputError) as caught:
         made()
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert problem.startswith(told)

@@ -19,7 +19,6 @@ from rockbatch.core.springs.ending import _foresee as foresee
 from rockbatch.core.springs.equations import clearances
 from rockbatch.core.springs.free_vibration import rocking_stiffness
 from rockbatch.core.springs.lanes import LANE
-from rockbatch.core.springs.laws import number
 from rockbatch.core.springs.model import State, Supports
 from rockbatch.core.table import table
 from rockbatch.core.types import (
@@ -81,7 +80,7 @@ def parts() -> dict[str, Any]:
     found["height without time"] = float(lanes.tally.flight_height[0])
     m, sunk = model(FIG5, YieldingBase(50.0, 0.1, eta=2.2)), 1e-4
     shared = m.gravity * m.height / rocking_stiffness(m)
-    exponent = number(m.exponent) * m.height * (1.0 + shared) * sunk / m.half_width**2
+    exponent = m.creep * m.height * (1.0 + shared) * sunk / m.half_width**2
     found["exponent of a lean that grows"] = float(exponent)
     waiting, growths = lanes.waiting, []
     waiting.patience[0], lanes.clock.dt[0] = 2.0 / FORESEEN, 1.0  # a second ahead

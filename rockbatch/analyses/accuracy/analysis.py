@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analyses.accuracy import RUNS, SECONDS
 from rockbatch.analyses.accuracy.error_and_time import Clock, measure, references
-from rockbatch.batch.analysis import Analysis
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.listening import Progress, listener_of
 from rockbatch.common.arguments import checked
@@ -18,6 +17,7 @@ from rockbatch.reporting import write_report
 from rockbatch.results.run_json import is_of
 from rockbatch.study import Motions, Study, given_study
 from rockbatch.study.suite import ground_motions
+from rockbatch.workflow.analysis import Analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Accuracy(Analysis):
-    """Error against time per run; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """Error against time per run; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------

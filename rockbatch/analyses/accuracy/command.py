@@ -5,12 +5,12 @@ import argparse
 from rockbatch.analyses.accuracy.analysis import accuracy
 from rockbatch.analyses.accuracy.levels import of_table
 from rockbatch.analyses.accuracy.quantities import QUANTITIES, rows
-from rockbatch.commands.analysis import in_lines, print_files
-from rockbatch.commands.messages import Terminal
-from rockbatch.commands.options import folder
-from rockbatch.commands.streams import show
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
+from rockbatch.terminal.analysis import in_lines, print_files
+from rockbatch.terminal.messages import Terminal
+from rockbatch.terminal.options import folder
+from rockbatch.terminal.streams import show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:

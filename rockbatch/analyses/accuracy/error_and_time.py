@@ -19,9 +19,9 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.motions import MotionSet
+from rockbatch.outcome.outcome import Outcome
 from rockbatch.results.columns import StudyRun
 from rockbatch.simulation.models import first_substeps
-from rockbatch.simulation.outcome import Outcome
 from rockbatch.simulation.runs import Stop, run_all_fixed, run_fixed
 from rockbatch.study import Study
 

@@ -16,7 +16,6 @@ from rockbatch.analyses.fragility.runs import first_intensities, level_plans, ou
 from rockbatch.analyses.fragility.scale_factors import SCALES, described_scales, scales
 from rockbatch.analyses.fragility.study import FragilitySpec, read_fragility
 from rockbatch.analyses.fragility.tables import CAPACITIES, POINTS, RUNS, capacities, described, points
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
@@ -28,6 +27,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.motions.hazard import HazardCurve
 from rockbatch.results.columns import columns
 from rockbatch.study import Motions, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Fragility(Analysis):
-    """Fragility of every case for overturning and every limit; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """Fragility of every case for overturning and every limit; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------

@@ -8,13 +8,13 @@ from rockbatch.analyses.fragility.quantities import Curve, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
-from rockbatch.commands.analysis import analysis_arguments, in_lines, print_files
-from rockbatch.commands.options import folder
-from rockbatch.commands.streams import say, show
-from rockbatch.commands.summary import named
 from rockbatch.common.analyses import Entry
 from rockbatch.reporting.table import Head
 from rockbatch.study import Study
+from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.options import folder
+from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:

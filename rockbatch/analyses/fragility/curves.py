@@ -26,12 +26,12 @@ from rockbatch.analyses.fragility.runs import LevelPlan, Point, RecordRuns, Simu
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.windows import Windows, windows
 from rockbatch.batch.listening import count
+from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import grouped
 from rockbatch.motions import Motion
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import PIER_KEYS, Case, Study
-from rockbatch.study.rules import Rule
 
 
 class Stripe(NamedTuple):

@@ -2,16 +2,16 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from rockbatch.common.errors import InputError, remedy
+from rockbatch.common.errors import InputError
 from rockbatch.common.showing import shown
 from rockbatch.common.units import Usual
 from rockbatch.motions.hazard import HazardCurve, problems
 from rockbatch.toml.csv_columns import columns_of
 from rockbatch.toml.kinds import Number, choice, positive, text
-from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
 YEARS = (50.0,)
@@ -179,9 +179,11 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
         return None
     x, y = points[levels], points[rate_key]
     if "file" in read and "file" not in table.confirmed:
-        doubts = [HAZARD[name].doubt(name, value) for name in (levels, rate_key) for value in points[name]]
-        for doubt in list(filter(None, doubts))[:1]:
-            table.complain(f"{doubt}; {remedy('file')} in this table", "file")
+        doubts = [
+            doubt for name in (levels, rate_key) for value in points[name] for doubt in HAZARD[name].doubts(name, value)
+        ]
+        for doubt in doubts[:1]:
+            table.complain(in_table(replace(doubt, confirm="file")), "file")
     rates = tuple(1.0 / period for period in y) if rate_key == "return_period_years" else tuple(y)
     slope, shape = read.get("slope"), read.get("shape", "points")
     wrong = list(problems(x, rates, slope, shape))

@@ -5,11 +5,11 @@ import numpy.typing as npt
 
 from rockbatch.analyses.fragility.study import OVERTURNING
 from rockbatch.checks.bounds import of_runs
+from rockbatch.checks.rule_choices import chooses
+from rockbatch.checks.rules import Rule
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, has_device
 from rockbatch.quantities.catalogue import DEMANDS
-from rockbatch.study.rule_choices import chooses
-from rockbatch.study.rules import Rule
 
 LEFT_OUT, WITHSTOOD, UNDECIDED, EXCEEDED = -1, 0, 1, 2
 """States of a run with respect to a limit.
@@ -41,12 +41,13 @@ def words(rule: Rule) -> str:
 
 def demands(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.float64]:
     """Return the demand of each of the n runs of a case, shape (n,)."""
-    return of_runs(rule, runs, case)[0].value
+    return of_runs(rule, runs, case).bounds.value
 
 
 def states(rule: Rule, runs: Rows, case: Case) -> npt.NDArray[np.int8]:
     """Return the state of each of the n runs of a case, shape (n,)."""
-    bounds, counted = of_runs(rule, runs, case)
+    demanded = of_runs(rule, runs, case)
     limit = threshold(rule)
+    bounds = demanded.bounds
     state = np.where(bounds.low > limit, EXCEEDED, np.where(bounds.high > limit, UNDECIDED, WITHSTOOD))
-    return np.where(counted, state, LEFT_OUT).astype(np.int8)
+    return np.where(demanded.counting, state, LEFT_OUT).astype(np.int8)

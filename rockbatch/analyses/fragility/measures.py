@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, placed
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.motions import Motion
@@ -98,7 +98,7 @@ def measure_of_file(path: Path, power: float) -> OwnMeasure:
     try:
         return own_measure(others[0], zip(columns["record"], columns[others[0]], strict=True), power)
     except InputError as error:
-        raise InputError(*(f"{path}: {problem}" for problem in error.problems)) from None
+        raise type(error)(*placed(error.problems, f"{path}")) from None
 
 
 def given_measure(im: Any, power: float) -> OwnMeasure:

@@ -14,6 +14,7 @@ from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.uncertain import Drawn, Draws
 from rockbatch.analyses.fragility.windows import samples
 from rockbatch.batch.plan import Made
+from rockbatch.checks.rules import Rule
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
@@ -22,7 +23,6 @@ from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.results.columns import StudyRun
 from rockbatch.study import Case, Output, Study
-from rockbatch.study.rules import Rule
 
 
 class Point(NamedTuple):
@@ -153,7 +153,7 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
-        both_laws=of_study.both_laws and any(DEMANDS[rule.demand].other_law for rule in spec.limits),
+        both_laws=any(DEMANDS[rule.demand].other_law for rule in spec.limits),
         forces="forces" in needs,
         rocking="rocking" in needs,
         least_normal_share=of_study.least_normal_share,

@@ -22,12 +22,12 @@ from rockbatch.analyses.fragility.measures import LEVELS, MEASURES, OwnMeasure, 
 from rockbatch.analyses.fragility.stripes import STRIPE, StripeRecords, read_stripes
 from rockbatch.analyses.fragility.uncertain import SECTIONS as OF_UNCERTAIN
 from rockbatch.analyses.fragility.uncertain import Uncertain, read_uncertain
+from rockbatch.checks.rules import Rule
 from rockbatch.common.grouping import closest
 from rockbatch.common.showing import shown
 from rockbatch.pier import Base
 from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.study.load import Study
-from rockbatch.study.rules import Rule
 from rockbatch.study.target import PERIOD
 from rockbatch.toml.kinds import Number, choice, positive, share, text
 from rockbatch.toml.meant import names

@@ -11,7 +11,6 @@ import numpy as np
 
 from rockbatch.analyses.release.fit import Fit, Passages, fitted
 from rockbatch.analyses.release.study import ReleaseSpec, read_release
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.listening import Progress
 from rockbatch.batch.single import simulate
 from rockbatch.batch.threads import Engine
@@ -19,12 +18,14 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.files import made_folder
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
+from rockbatch.outcome.half_cycles import apparent_restitution
 from rockbatch.pier import Base
-from rockbatch.simulation.half_cycles import apparent_restitution
-from rockbatch.simulation.histories import cycles_of, written
+from rockbatch.simulation.histories import cycles_of
 from rockbatch.simulation.models import first_substeps
+from rockbatch.simulation.recording import recorded
 from rockbatch.simulation.runs import Run, run_fixed
 from rockbatch.study import Case, Motions, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +53,7 @@ NO_STRETCH = 0.005
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Release(Analysis):
-    """A fitted release test; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """A fitted release test; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------
@@ -105,7 +106,7 @@ def release(
     study, motions, jobs, fresh, progress
         As for :func:`rockbatch.run`; there is nothing to continue.
     out : path, optional
-        Folder for the files of ``rockbatch release``; without it nothing is kept on disk.
+        Folder for the tables, release.json and their section of report.html; without it nothing is kept on disk.
 
     Returns
     -------
@@ -182,7 +183,7 @@ class _Test:
         run = Run(self.case.pier, self.base(value), self.still)
         substeps = 2 * first_substeps(run.pier, run.base, run.motion.dt)
         outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.0, wait=False)
-        rows = written(run, outcome, 0.0, every_step=False, wait=False)
+        rows = recorded(run, outcome, 0.0, every_step=False, wait=False).rows
         cycles = cycles_of(run.base, rows)
         n, computed = len(self.measured.t), len(cycles.t) - 1
         t, amplitude = np.full(n, float(rows.t[-1])), np.zeros(n)

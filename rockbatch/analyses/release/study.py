@@ -55,8 +55,8 @@ class ReleaseSpec:
 RELEASE = Section(
     ("release",),
     (
-        "A release test, by `rockbatch release`: what was measured as the pier was let go from `initial_rotation_rad`, to which "
-        "the restitution of rigid ground, or the losses of springs, are fitted."
+        "A release test, by `rb.release`: what was measured as the pier was let go from `initial_rotation_rad`, to which the "
+        "restitution of rigid ground, or the losses of springs, are fitted."
     ),
     {
         "impact_s": Key(

@@ -18,7 +18,6 @@ from rockbatch.analyses.sensitivity import sampled
 from rockbatch.analyses.sensitivity.columns import SOBOL, TORNADO
 from rockbatch.analyses.sensitivity.sampled import Design, Point, Points, indices
 from rockbatch.analyses.sensitivity.study import Input, SensitivitySpec, Value, read_sensitivity
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.digests import digests
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
@@ -27,6 +26,7 @@ from rockbatch.common.files import opened_text
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import STATISTICS, Values
 from rockbatch.study import Motions, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Sensitivity(Analysis):
-    """Sensitivity of the peak rotation; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """Sensitivity of the peak rotation; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------

@@ -4,13 +4,13 @@ import argparse
 
 from rockbatch.analyses.sensitivity.analysis import sensitivity
 from rockbatch.analyses.sensitivity.quantities import QUANTITIES
-from rockbatch.commands.analysis import analysis_arguments, in_lines, print_files
-from rockbatch.commands.streams import say, show
-from rockbatch.commands.summary import named
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.table import Head
 from rockbatch.results.labelled import as_dicts
 from rockbatch.study import Study
+from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import say, show
 
 
 def main(arguments: argparse.Namespace, study: Study) -> int:

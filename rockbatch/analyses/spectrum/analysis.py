@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rockbatch.analyses.spectrum import overturning_map, rocking_spectrum
 from rockbatch.analyses.spectrum.study import AXES, SELF_SIMILAR, MapSpec, SpectrumSpec, read_spectrum
-from rockbatch.batch.analysis import Analysis, AnalysisFolder, run_analysis
 from rockbatch.batch.compiling import make_ready
 from rockbatch.batch.digests import digests
-from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.listening import Progress, count, once
 from rockbatch.batch.threads import Engine
 from rockbatch.batch.waves import Waves
@@ -19,7 +17,8 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, read_table
 from rockbatch.common.lazy import pd
 from rockbatch.results.columns import columns
-from rockbatch.study import Motions, Study
+from rockbatch.study import Motions, Output, Study
+from rockbatch.workflow.analysis import Analysis, AnalysisFolder, run_analysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Spectrum(Analysis):
-    """Rocking spectra and overturning maps; see also :class:`rockbatch.batch.analysis.Analysis`.
+    """Rocking spectra and overturning maps; see also :class:`rockbatch.workflow.analysis.Analysis`.
 
     Attributes
     ----------
@@ -153,7 +152,7 @@ def _write_spectra(results: AnalysisFolder, spectra: SpectrumSpec) -> None:
 
 def _write_maps(results: AnalysisFolder, maps: Sequence[MapSpec]) -> None:
     """Write the overturning maps, unless they exist already."""
-    study, listener = replace(results.study, output=NOTHING_MORE), results.listener
+    study, listener = replace(results.study, output=Output()), results.listener
     file, of_runs = overturning_map.FILE, overturning_map.RUNS
     results.info["varied_map"] = list(study.varied)
     fields = ("name", "shape", "tolerance", "width")

@@ -8,12 +8,12 @@ from rockbatch.analyses.spectrum.analysis import spectrum
 from rockbatch.analyses.spectrum.rocking_spectrum import OWN, groups
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
 from rockbatch.batch.listening import count
-from rockbatch.commands.analysis import analysis_arguments, print_files
-from rockbatch.commands.streams import in_width, say, show
-from rockbatch.commands.summary import named
 from rockbatch.common.grouping import spread
 from rockbatch.common.lazy import pd
 from rockbatch.study import Study
+from rockbatch.terminal.analysis import analysis_arguments, print_files
+from rockbatch.terminal.naming import named
+from rockbatch.terminal.streams import in_width, say, show
 
 MOST_LINES = 12
 """Greatest number of lines of a table for the terminal."""

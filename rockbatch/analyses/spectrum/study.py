@@ -116,8 +116,9 @@ SPECTRUM = Section(
         ),
         Clash(
             (INTENSITY,),
-            f"{INTENSITY} = {{value}}: goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
+            f"goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
             lacking=(SELF_SIMILAR,),
+            shown=True,
         ),
     ),
 )

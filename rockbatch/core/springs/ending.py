@@ -22,7 +22,6 @@ from rockbatch.core.springs.free_vibration import (
     rocking_period,
     unstable_equilibrium,
 )
-from rockbatch.core.springs.laws import ratchets
 from rockbatch.core.springs.model import SpringTraits, State, Supports
 from rockbatch.core.system import pier_in
 from rockbatch.core.types import GROWING, RESTLESS, RUNNING, SURVIVED, UNDECIDED, Moment
@@ -168,7 +167,7 @@ def _read_base(lanes, i, m, now):
 def _foresee(lanes, i, m):
     """Foresee how far the base may still tilt, if its supports go on as between the first two readings, or the last two."""
     waiting = lanes.waiting
-    ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if ratchets(m.law) else 1.0)
+    ahead = 0.5 * waiting.patience[i] * lanes.clock.dt[i] * (FORESEEN if m.creep > 0.0 else 1.0)
     last_left, last_right = ahead * waiting.last_drift_left[i], ahead * waiting.last_drift_right[i]
     first_left, first_right = ahead * waiting.drift_left[i], ahead * waiting.drift_right[i]
     last, first = (last_left - last_right) / m.half_width, (first_left - first_right) / m.half_width
@@ -302,4 +301,4 @@ def _given_up(lanes, i, m, now):
     least = GROWTH * lanes.clock.alpha[i]
     turned = lanes.peak.theta[i] > lanes.waiting.midway[i] + least
     tilted = _tilt(m, now) > lanes.waiting.midway_tilt[i] + least
-    return GROWING if ratchets(m.law) and turned and tilted else RESTLESS
+    return GROWING if m.creep > 0.0 and turned and tilted else RESTLESS

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from rockbatch.core.kernel import kernel
 from rockbatch.core.springs.equations import geometry
-from rockbatch.core.springs.laws import give, number, ratchets
-from rockbatch.core.springs.model import ELASTIC, HOUSNER
+from rockbatch.core.springs.laws import give, limited
+from rockbatch.core.springs.model import HOUSNER
 
 PARTS = 24
 """Parts of the way to the supports' capacity over which their work is summed."""
@@ -28,7 +28,7 @@ SEEN = 1e-6
 @kernel
 def _capacity(m, load):
     """Return the supports' greatest moment about the base's centre, over load · b: one carries all, or what it can."""
-    return 1.0 if m.law == ELASTIC else min(1.0, 2.0 * m.yield_force / load - 1.0)
+    return min(1.0, 2.0 * m.yield_force / load - 1.0) if limited(m.law) != 0.0 else 1.0
 
 
 @kernel
@@ -145,9 +145,9 @@ def further(m, right, left, sinking):
     """
     amplification = _amplification(m)
     right, left = max(right * amplification, 0.0), max(left * amplification, 0.0)
-    if not ratchets(m.law):
+    if m.creep == 0.0:
         return Drift(right, left, 0.0)
-    grows = number(m.exponent) * m.height * amplification * sinking / (m.half_width * m.half_width)
+    grows = m.creep * m.height * amplification * sinking / (m.half_width * m.half_width)
     if grows <= 1e-6:
         return Drift(right, left, 0.0)
     growth = math.expm1(min(grows, 50.0))

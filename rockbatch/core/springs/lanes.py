@@ -12,7 +12,7 @@ from rockbatch.core.roots import lowest_within
 from rockbatch.core.springs import events  # noqa: F401  hooks of the springs
 from rockbatch.core.springs.ending import Waiting, base_of, set_deadline
 from rockbatch.core.springs.equations import clearances
-from rockbatch.core.springs.laws import branch_when_pressed, curved, deflection, yield_point
+from rockbatch.core.springs.laws import yield_point, yields_at_first, yields_when_pressed
 from rockbatch.core.springs.loading import BranchChange, Loading, branch_change, branches
 from rockbatch.core.springs.model import NUMBERS, Contact, Numbers, SpringTraits, State, Supports, model_in
 from rockbatch.core.springs.passing import Reversals
@@ -70,13 +70,13 @@ def _put_moment(lanes, i, now):
 def static_state(m, load):
     """Return the equilibrium under the ``load`` [m/s²], of the weight and of tendons: z = −(1 + ψ)/η on first loading."""
     force = 0.5 * load / m.yield_force
-    return State(-m.yield_deflection * deflection(m, force), 0.0, 0.0, 0.0, -force, -force)
+    return State(m.level, 0.0, 0.0, 0.0, -force, -force)
 
 
 @kernel
 def static_contact(m, y):
     """Return contacts and supports in the static state ``y``, in first loading."""
-    branch = 1.0 if curved(m.law) else 0.0
+    branch = yields_at_first(m.law)
     point = yield_point(m.law, 0.0, y.z_left)
     return Contact(1.0, 1.0, branch, branch, 0.0), Supports(0.0, 0.0, point, point)
 
@@ -88,7 +88,7 @@ def held_contact(m, y, z_static, plastic):
     The side that was lifted is pressed next, and the one that was pressed is unloaded; a support without its pivot waits where it
     is unstressed, at ``plastic`` [m].
     """
-    pressed, left, right = branch_when_pressed(m.law), y.z_left < 0.0, y.z_right < 0.0
+    pressed, left, right = yields_when_pressed(m.law), y.z_left < 0.0, y.z_right < 0.0
     left_yields = pressed if left and y.theta > 0.0 else 0.0
     right_yields = pressed if right and y.theta < 0.0 else 0.0
     point = yield_point(m.law, 0.0, z_static)

@@ -6,18 +6,9 @@ from rockbatch.core.kernel import inlined
 from rockbatch.core.table import get
 from rockbatch.core.types import Pull
 
-# Constitutive models; those from EPP on have a yield point
-ELASTIC = 0.0
-BOUC_WEN = 1.0
-EPP = 2.0
-HARDENING = 3.0
-
 # Impacts: what a landing does to the velocities
 LANDING = 0.0
 HOUSNER = 1.0
-
-LAWS = {"bouc-wen": BOUC_WEN, "epp": EPP, "hardening": HARDENING}
-"""Constitutive models of yielding springs by the names that users write."""
 
 IMPACTS = {"landing": LANDING, "housner": HOUSNER}
 """Impacts by the names that users write."""
@@ -41,7 +32,9 @@ class Springs(NamedTuple):
     impact: float  # LANDING, by epsilon, or HOUSNER, by restitution
     restitution: float  # Housner's e, by which θ̇ is multiplied
     damping: float  # C/M = ζ ω_v of each support's dashpot [1/s]
-    law: float  # ELASTIC, BOUC_WEN, EPP or HARDENING
+    law: float  # its code, of CODES in laws.py
+    level: float  # v at rest, under the weight and tendons, on first loading [m]
+    creep: float  # power of its load by which a spring settles with every small cycle of it; 0 if it does not ratchet
     guided: float  # 1: flight goes on, 0: it ends the run
     rest: float  # velocity that counts as none [m/s]
     exponent: float | int | None  # n of Bouc–Wen; None for the paper's 5, int for other whole numbers up to 10
@@ -80,7 +73,7 @@ def model_in(traits, lanes, i):
     m = get(lanes.model, i, Numbers)
     return Springs(
         m.half_width, m.height, m.inertia, m.gravity, m.yield_deflection, m.stiffness, m.yield_force, m.epsilon,
-        m.impact, m.restitution, m.damping, m.law, m.guided, m.rest,
+        m.impact, m.restitution, m.damping, m.law, m.level, m.creep, m.guided, m.rest,
         _typed(traits.exponent, m.exponent), traits.finite, traits.damped, traits.pull,
     )  # fmt: skip
 

@@ -12,8 +12,8 @@ from rockbatch.core.springs.laws import (
     after_switch,
     branch_after_jump,
     branch_of_landing,
-    branch_when_pressed,
     yield_point,
+    yields_when_pressed,
 )
 from rockbatch.core.springs.model import Contact, Springs, State, Supports
 from rockbatch.core.springs.recovery import lag, velocity_of_top
@@ -170,7 +170,7 @@ def _landing(m, now, ground):
     if m.damped is not None:
         return _damped_landing(m, now, ground)
     at = geometry(m, y.theta)
-    loaded = branch_when_pressed(m.law)
+    loaded = yields_when_pressed(m.law)
     other_free = contact.left == 0.0 and contact.right == 0.0 and contact.held == 0.0
     if other_free:
         gap = y.v + (at.lift_right - supports.right)
@@ -211,7 +211,7 @@ def _right_after_impulse(m, y, contact, supports, at):
     velocity = y.v_rate + at.arm_right * y.omega
     if contact.held == RIGHT and abs(velocity) > m.rest:
         if velocity < 0.0:
-            return touching(contact, RIGHT, branch_when_pressed(m.law)), supports
+            return touching(contact, RIGHT, yields_when_pressed(m.law)), supports
         moved = Supports(supports.left, y.v + at.lift_right, supports.yield_left, supports.yield_right)
         return without(contact, RIGHT), moved
     if contact.right == 0.0:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError, UnknownFormat, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
 from rockbatch.motions.evidence import Kind, Statement, decided_orientation
@@ -127,7 +127,7 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     """Return the components of a file, usable or not, with legible texts; raise ``InputError`` with the reason if it has none."""
     form = format_of(file.path.suffix, file.data)
     if form is None:
-        raise InputError(_not_recognised(file))
+        raise UnknownFormat(_not_recognised(file))
     if "sensitivity" in file.options.instead and not form.counts:
         raise InputError(f"{form.name} is no format of counts: in motions.toml write scale = … instead of sensitivity")
     read = form.read
@@ -141,7 +141,7 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     with np.errstate(over="ignore", invalid="ignore"):  # checked_reading refuses infinite samples
         try:
             return readings(file.options)
-        except UnstatedError as error:
+        except Unstated as error:
             raise with_advice(error, readings, file.options, file.gravity) from None
 
 

@@ -7,7 +7,7 @@ records whose header, count and step agree.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component
@@ -38,20 +38,20 @@ class _Trial:
     refusal: str
 
 
-def with_advice(error: UnstatedError, read: Read, options: ReadOptions, gravity: float) -> UnstatedError:
+def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
     """Return the refusal of a file with the statements that lead to a record when tried, or the reason why none does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
     trials = [_trial(choice, read, options) for choice in choices]
     advice = [
         _advice_text(choice, trial, gravity) for choice, trial in zip(choices, trials, strict=True) if trial.components
     ]
-    problem = "; ".join(error.problems)
+    problem = "; ".join(error.messages)
     if advice:
         message = f"{problem}; write {', or '.join(advice)} {_WHERE}"
     else:
         message = f"{problem}; what could be stated makes no record of it: {trials[0].refusal}"
     stated = dict.fromkeys(key for trial in trials for key in (*trial.stated, *error.keys) if trial.components)
-    return UnstatedError(message, *(stated or error.keys))
+    return type(error)(message, keys=tuple(stated or error.keys))
 
 
 def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
@@ -60,13 +60,13 @@ def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
     for _ in range(_MOST_LACKS):
         try:
             readings = read(options.with_statement(stated))
-        except UnstatedError as again:
+        except Unstated as again:
             more = {key: _TRIED[key] for key in again.keys if key in _TRIED and key not in stated}
             if not more:
-                return _Trial(stated, (), "; ".join(again.problems))
+                return _Trial(stated, (), "; ".join(again.messages))
             stated |= more
         except InputError as refusal:
-            return _Trial(stated, (), "; ".join(refusal.problems))
+            return _Trial(stated, (), "; ".join(refusal.messages))
         else:
             reasons = [*_contradictions(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]

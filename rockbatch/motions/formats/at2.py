@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.common.errors import InputError, NoRecord, NoUnit, Truncated
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import (
@@ -79,7 +79,7 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
     (recording,) = _parse(file.data.decode("latin-1"))
     unit = recording.unit or file.options.unit
     if unit is None:
-        raise UnstatedError('no unit in the header ("… IN UNITS OF G")', "unit")
+        raise NoUnit('no unit in the header ("… IN UNITS OF G")')
     try:
         acceleration_factor(unit, file.gravity)
     except ValueError as error:
@@ -109,9 +109,7 @@ def _parse(text: str) -> list[Recording]:
         )
     header = " ".join(lines[:first])
     if quantity := re.search(r"\b(?:VELOCITY|DISPLACEMENT) TIME\b", header, re.IGNORECASE):
-        raise NoRecordError(
-            f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record'
-        )
+        raise NoRecord(f'header: found "{quantity[0]}…"; expected accelerations: take the .AT2 file of this record')
     unit = _UNIT.search(header) or _IN_G.search(" ".join(lines[: first + 1]))
     event, date, station, component = _title(lines[1].strip()) if first > 1 else ("", "", "", "")
     return [
@@ -183,12 +181,12 @@ def _values(text: str, start: int, npts: int) -> Samples:
     except ValueError:
         values, last = _touching_or_double(text, start, npts)
     if len(values) != npts:
-        raise InputError(f"the header says NPTS = {npts}, but the file holds {len(values)} values; fetch it again")
+        raise Truncated(f"the header says NPTS = {npts}, but the file holds {len(values)} values; fetch it again")
     if not np.isfinite(values).all():
         i = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f'value {i + 1} of {npts} is "{values[i]}"; expected finite numbers')
     if is_cut_short(reversed(last)):
-        raise InputError(f'the last value is "{last[-1]}", shorter than all others: the file is cut; fetch it again')
+        raise Truncated(f'the last value is "{last[-1]}", shorter than all others: the file is cut; fetch it again')
     return values
 
 

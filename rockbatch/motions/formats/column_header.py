@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor, length_factor
 from rockbatch.motions.limits import HUGE, SAME_STEP
 from rockbatch.motions.orientation import orientation_in, orientation_of
@@ -237,11 +237,11 @@ def line_about_spectra(header: Sequence[str]) -> str:
 def stated_unit(header: Sequence[str]) -> str | None:
     """Return the unit in a line ``unit: cm/s2``, else in one such as ``acceleration in units of cm/s/s``; ``None`` without.
 
-    Raises ``NoRecordError`` for a record file of MIDAS that states another quantity than acceleration.
+    Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
     """
     if midas := next((match for line in header if (match := _MIDAS.match(line))), None):
         if not midas["kind"].upper().startswith("ACC"):
-            raise NoRecordError(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
+            raise NoRecord(f'found "{midas[0]}"; expected accelerations, *UNIT&TYPE, GRAV, ACCEL')
         return _MIDAS_UNITS.get(midas["unit"].upper(), midas["unit"])
     stated = next((match["unit"].rstrip(".,;") for line in header if (match := _STATED.match(line))), None)
     units = (match["unit"].rstrip(".") for line in header if not _PEAK.search(line) for match in _SAID.finditer(line))

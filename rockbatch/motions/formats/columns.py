@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.common.errors import Contradiction, InputError, NoRecord, NoStep, NoUnit, Unstated
 from rockbatch.motions.component import Component
 from rockbatch.motions.evidence import Kind
 from rockbatch.motions.formats.clock_times import in_seconds
@@ -103,10 +103,11 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     ]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
-        raise UnstatedError("; ".join(lacking), *(("unit", "dt") if untimed else ("unit",)))
+        message = "; ".join(lacking)
+        raise Unstated(message, keys=("unit", "dt")) if untimed else NoUnit(message)
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
-        raise NoRecordError(f"found {quantities or 'a column of time and no other'}; expected accelerations")
+        raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
     omitted = tuple(f"{_column_name(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
     dt, values, moved = _on_one_step(columns, table, header, options)
     recordings = []
@@ -166,7 +167,7 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
         return _guessed_columns(header, table)
     columns = _with_time(columns, table)
     if spectrum := spectrum_in(columns):
-        raise NoRecordError(f"{spectrum} is no time history; take the record of accelerations instead")
+        raise NoRecord(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
 
 
@@ -241,9 +242,9 @@ def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], t
     timed = grows_evenly(table[:, 0])
     names = ("time", *_COMPONENTS) if timed else _COMPONENTS
     columns = {"columns": (*names, *["-"] * width)[:width]}
-    raise UnstatedError(
+    raise Unstated(
         f'found {width} columns and no header that says what they are, such as # time(s) NS(cm/s2) UD(cm/s2); "-" leaves one out',
-        "columns",
+        keys=("columns",),
         choices=(columns,) if timed else ({"layout": "wrapped"}, columns),
     )
 
@@ -259,7 +260,7 @@ def _on_one_step(
     if not times:
         dt = stated.dt if stated else options.dt
         if dt is None:
-            raise UnstatedError("no column of time and no sampling interval", "dt")
+            raise NoStep("no column of time and no sampling interval")
         return dt, table, ()
     column = columns[times[0]]
     seconds = seconds_in(column.unit or "s")
@@ -275,7 +276,7 @@ def _on_one_step(
 def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
     """Raise ``InputError`` if the header's interval is neither ``dt`` of the samples nor their ``usual`` step [s]."""
     if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
-        raise InputError(
+        raise Contradiction(
             f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '
             "wrong, or write dt = … for this file in motions.toml"
         )

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in
@@ -96,7 +96,7 @@ def parse(text: str) -> list[Recording]:
                 recordings[-1] = (_with_series(recordings[-1][0], series, values), header)
         index = end
     if not recordings:
-        raise NoRecordError(
+        raise NoRecord(
             f"holds {' and '.join(quantities) or 'nothing'}; expected accelerations: take the file that has them"
         )
     return [recording for recording, _ in recordings]
@@ -119,7 +119,7 @@ def _header(lines: list[str], start: int) -> _Header:
     """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete."""
     title = match_line(_TITLE, lines, start, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
-        raise NoRecordError(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
+        raise NoRecord(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
     end = start + int(title["lines"])
     text = [line_at(lines, i) for i in range(start, end)]
     numbers = []

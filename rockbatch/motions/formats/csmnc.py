@@ -8,7 +8,7 @@ description of them; further lines of text differ from year to year.
 import math
 import re
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in, spaced_numbers
 from rockbatch.motions.formats.header_lines import line_with, search_lines
@@ -45,7 +45,7 @@ def parse(text: str) -> list[Recording]:
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"
-        raise NoRecordError(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
+        raise NoRecord(f'found "{kind["what"]}"; expected accelerations: take the file that has them')
     label = line_with(_COMPONENT, lines, _MOST, "COMP. EW")[1]["label"]
     station = line_with(_STATION, lines, _MOST, "STATION: …")[1]["code"]
     index, count = line_with(_COUNT, lines, _MOST, "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC")

@@ -6,7 +6,7 @@ files; empty ones are unknown.
 
 import re
 
-from rockbatch.common.errors import NoRecordError
+from rockbatch.common.errors import NoRecord
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, keys_of, moment_in
@@ -70,9 +70,7 @@ def _header(lines: list[str]) -> dict[str, str]:
     header = keys_of(lines[:end], "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM", once=True)
     kind = header.get("DATA_TYPE", "ACCELERATION")
     if kind.upper() != "ACCELERATION":
-        raise NoRecordError(
-            f"the header says DATA_TYPE: {kind[:40]}; expected ACCELERATION: take that file of this record"
-        )
+        raise NoRecord(f"the header says DATA_TYPE: {kind[:40]}; expected ACCELERATION: take that file of this record")
     return header
 
 

@@ -5,7 +5,7 @@ azimuths, then the values, six to a line between blanks. They do not state their
 cm/s² or, of velocities, in cm/s. The layout is that of the programs' own files.
 """
 
-from rockbatch.common.errors import UnstatedError
+from rockbatch.common.errors import NoUnit
 from rockbatch.motions.component import Component, Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, spaced_numbers
 from rockbatch.motions.formats.header_lines import count_and_step, layout, read_header
@@ -34,7 +34,7 @@ def read_emod3d(file: RecordFile) -> list[Component | Unusable]:
     npts, dt = count_and_step(fields, "npts", "dt")
     values = spaced_numbers(lines, 2, npts, _PER_LINE)
     if file.options.unit is None:
-        raise UnstatedError("no unit in the header", "unit")
+        raise NoUnit("no unit in the header")
     station = fields["station"]
     recording = Recording(
         label=fields["label"],

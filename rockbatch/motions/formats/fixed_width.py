@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Truncated
 from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
@@ -87,7 +87,7 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
     """
     needed = -(-count // per_line)
     if len(lines) - first < needed:
-        raise InputError(
+        raise Truncated(
             f"{count} values from line {first + 1} on take {needed} lines, but the file ends with line {len(lines)}: "
             "it is cut; fetch it again"
         )
@@ -196,7 +196,7 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
     values = _numbers(lines[first:end], first, count, per_line, fields)
     backwards = (field for index in range(end - 1, first - 1, -1) for field in reversed(lines[index].split()))
     if is_cut_short(backwards) or _ends_within_a_column(lines[first:end], per_line):
-        raise InputError(
+        raise Truncated(
             f'line {end}: found "{lines[end - 1].split()[-1][:40]}", shorter than all others: the file is cut'
         )
     return values

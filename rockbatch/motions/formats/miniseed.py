@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError, Truncated, Unstated
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import obspy
 from rockbatch.common.showing import shown
@@ -57,8 +57,8 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
     """
     stream = read_stream(file.data, "MSEED")
     lengths = {trace.stats.mseed.record_length for trace in stream}
-    if len(lengths) == 1 and len(file.data) % (length := lengths.pop()):  # ObsPy drops the rest without a warning
-        raise InputError(
+    if len(lengths) == 1 and len(file.data) % (length := lengths.pop()):  # ObsPy drops the rest unsaid
+        raise Truncated(
             f"{len(file.data)} bytes are not a whole number of its records of {length} bytes: the file is cut"
         )
     if len(stream) > _MOST_PIECES:
@@ -88,7 +88,7 @@ def components_of_traces(
                 component = _component(name, source, file, pieces[0])
                 readings.append(replace(component, findings=_BROKEN_OFF) if channel_id in broken else component)
             except InputError as error:
-                lacks = error.keys if isinstance(error, UnstatedError) else ()
+                lacks = error.keys if isinstance(error, Unstated) else ()
                 readings.append(Unusable(name, source, str(error), channel_id.rpartition(".")[2], lacks))
     return readings
 
@@ -224,15 +224,15 @@ def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
     if asked and (statements := stationxml.contradiction(asked)):
         if file.options.sensitivity is not None:
             return None
-        raise UnstatedError(
+        raise Unstated(
             f"{trace.id}: StationXML contradicts itself: {statements}; take out the wrong one, or state {_STATED}",
-            "sensitivity",
+            keys=("sensitivity",),
         )
     return asked[0] if asked else None
 
 
-def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> UnstatedError:
-    """Return the refusal of counts without a sensitivity, naming StationXML files that could not be read."""
+def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> Unstated:
+    """Return the refusal of counts that no StationXML covers, with the files of StationXML that were not read."""
     stats, epochs = trace.stats, file.inventories.epochs_of(trace.id)
     refused = ", ".join(file.inventories.refused[:_MOST_NAMED])
     unread = f" (not read: {refused})" if refused else ""
@@ -245,4 +245,4 @@ def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> UnstatedErro
             f"counts without a sensitivity: put the StationXML of {stats.network}.{stats.station} (an .xml with channel "
             f"{trace.id}) into the folder or one below it, or state {_STATED}"
         )
-    return UnstatedError(f"{reason}{unread}", "sensitivity")
+    return Unstated(f"{reason}{unread}", keys=("sensitivity",))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, placed
 from rockbatch.common.lazy import obspy
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.formats.recording import Recording, contradictions_of, letters
@@ -66,7 +66,7 @@ def plugin(
             recordings = parse(text_of(data))
             _warn_of_contradictions(place, recordings)
         except InputError as error:
-            raise InputError(*(f"{place}: {problem}" for problem in error.problems)) from None
+            raise type(error)(*placed(error.problems, place)) from None
         return obspy.Stream([_trace(name, recording, headonly) for recording in recordings])
 
     return is_format, read_format

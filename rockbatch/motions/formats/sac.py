@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, UnstatedError
+from rockbatch.common.errors import InputError, NoUnit, Truncated
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
@@ -82,9 +82,8 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     if kind and "unit" not in options.instead:
         raise no_acceleration("its header says that it", kind)
     if options.unit is None and options.sensitivity is None:
-        raise UnstatedError(
-            "SAC files do not tell their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)",
-            "unit",
+        raise NoUnit(
+            "SAC files do not tell their unit reliably (sensitivity = … for counts per m/s² is a statement of it, too)"
         )
     start, day = _start(numbers)
     statements = _directions(channel, numbers)
@@ -121,7 +120,7 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
     Raises ``InputError`` for impossible numbers, and for a file of another length.
     """
     if len(data) < _HEADER:
-        raise InputError(f"holds {len(data)} bytes; a SAC header alone has {_HEADER}: the file is cut")
+        raise Truncated(f"holds {len(data)} bytes; a SAC header alone has {_HEADER}: the file is cut")
     order = _byte_order(data)
     words = (*np.frombuffer(data, f"{order}f4", _FLOATS), *np.frombuffer(data, f"{order}i4", _INTEGERS, 4 * _FLOATS))
     numbers = {}
@@ -134,7 +133,7 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
         numbers[name] = value
     npts = int(numbers["NPTS"])
     if len(data) != _HEADER + 4 * npts:
-        raise InputError(
+        raise Truncated(
             f"holds {(len(data) - _HEADER) / 4:.10g} samples behind its header, which says {npts}: the file is cut, or damaged"
         )
     text = data[4 * (_FLOATS + _INTEGERS) : _HEADER].decode("latin-1")

@@ -8,7 +8,7 @@ Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 
 import re
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import fixed_numbers, lines_of, number_in, refuse_more
 from rockbatch.motions.formats.header_lines import layout, line_at, moment, read_header
@@ -48,7 +48,7 @@ def parse(text: str) -> list[Recording]:
     title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:
         quantity = line_at(lines, 0).strip()
-        raise NoRecordError(f'line 1: found "{quantity}"; expected accelerations: take the .smc file that has them')
+        raise NoRecord(f'line 1: found "{quantity}"; expected accelerations: take the .smc file that has them')
     fields = read_header(lines, 0, _TEXT)
     integers = [int(value) for value in fixed_numbers(lines, _INTEGERS, 48, 10, 8)[0]]
     unknown, comments, npts = integers[0], integers[15], integers[16]
@@ -98,7 +98,7 @@ def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str,
             raise InputError(f"no sampling rate, so digitised from film: found {len(values)} numbers; expected pairs")
         return from_pairs(values.reshape(-1, 2), "no sampling rate, so digitised from film")
     except InputError as error:
-        raise NoRecordError(
+        raise NoRecord(
             f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', number
         ) from None
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import Truncated
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.motion import Finding, Samples
 
@@ -128,7 +128,7 @@ def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding 
         return None
     if stated.quantity == "count":
         if value != (npts := len(sampled.as_read)):
-            raise InputError(f"its header states {printed} samples, and there are {npts}; fetch it again")
+            raise Truncated(f"its header states {printed} samples, and there are {npts}; fetch it again")
         return None
     quantity, scale = QUANTITIES[stated.quantity], 1.0
     if not quantity.unit:

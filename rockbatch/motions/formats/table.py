@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from rockbatch.common.errors import InputError, NoRecordError, UnstatedError
+from rockbatch.common.errors import InputError, NoRecord, Truncated, Unstated
 from rockbatch.motions.formats.column_header import columns_with_units, columns_without_units, stated_count
 from rockbatch.motions.formats.fixed_width import is_cut_short, lines_of, without_end_marks
 from rockbatch.motions.formats.time_steps import grows_evenly
@@ -71,22 +71,22 @@ def read_table(
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
-        raise NoRecordError("no columns of numbers found in it")
+        raise NoRecord("no columns of numbers found in it")
     pairs = None if wrapped and not named else _pairs(rows, remainder, width)
     if width > 1 and (wrapped or stated_count(header) == len(rows) + len(remainder)):
         wrapped = not (named and (columns_with_units(header, width) or columns_without_units(header, width)))
     if remainder and pairs is None and not wrapped:
         reason = f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above"
         refusal = _table_error(lines, reason)
-        may_be_wrapped = width > 2 and not isinstance(refusal, NoRecordError)
-        raise UnstatedError(reason, "layout", choices=(_WRAPPED,)) if may_be_wrapped else refusal
+        may_be_wrapped = width > 2 and not isinstance(refusal, NoRecord)
+        raise Unstated(reason, keys=("layout",), choices=(_WRAPPED,)) if may_be_wrapped else refusal
     table = np.array(rows).reshape(-1, width)
     wild = ~(np.abs(table) < HUGE).all(axis=1)
     if wild.any():
         i = row_lines[int(wild.argmax())]
         raise InputError(f'line {i + 1}: found "{lines[i].strip()[:60]}"; expected finite numbers')
     if is_cut_short(lines[i].split()[-1].replace(",", ".") for i in reversed(row_lines)):
-        raise InputError(
+        raise Truncated(
             f"line {row_lines[-1] + 1}: its last number is shorter than all others: the file is cut; fetch it again"
         )
     if pairs is not None:
@@ -151,7 +151,7 @@ def _table_error(lines: list[str], reason: str) -> InputError:
     """Return the error of a bad table: ``NoRecordError`` if fewer than half of the lines are numbers only."""
     written = [line for line in lines if line.strip()]
     numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)
-    return InputError(reason) if 2 * numbers >= len(written) else NoRecordError(reason)
+    return InputError(reason) if 2 * numbers >= len(written) else NoRecord(reason)
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:

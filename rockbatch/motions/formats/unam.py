@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Truncated
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.fixed_width import lines_of, number_in
 from rockbatch.motions.formats.header_lines import (
@@ -171,7 +171,7 @@ def _values(lines: list[str], first: int, npts: int, channels: int, layout: str)
     width = int(form["width"])
     rows = [i for i in range(first, len(lines)) if lines[i].strip()]
     if len(rows) < npts:
-        raise InputError(
+        raise Truncated(
             f"{npts} samples from line {first + 1} on, but the file ends with line {len(lines)}: it is cut; fetch it again"
         )
     if len(rows) > npts + _MOST_MORE:

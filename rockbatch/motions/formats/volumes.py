@@ -14,7 +14,7 @@ import re
 from functools import partial
 from typing import NamedTuple
 
-from rockbatch.common.errors import InputError, NoRecordError
+from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.formats.declared_series import declared_series, declares_series, equal_columns
 from rockbatch.motions.formats.fixed_width import fixed_numbers, number_in, one_after_another
@@ -121,9 +121,7 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
             f'line {first + 1}: found "{lines[first].strip()[:60]}"; expected "Uncorrected accelerogram data"'
         )
     if volume == 3:
-        raise NoRecordError(
-            f"line {first + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record"
-        )
+        raise NoRecord(f"line {first + 1}: Volume 3, spectra; expected accelerations: take the .V2 file of this record")
     header = first + volume - 1
     fields = read_header(lines, header, _TEXT)
     needed = not fields["number"]  # by USC and Caltech

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from rockbatch.common.errors import InputError
+from rockbatch.common.errors import InputError, Truncated
 from rockbatch.common.lazy import obspy
 
 _ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # changes from run to run
@@ -58,7 +58,7 @@ def _volume_exponent(data: bytes) -> int:
 def _data_record(record: bytes) -> None:
     """Raise ``InputError`` unless bytes begin with a data record of possible time and chain of blockettes."""
     if len(record) < _FIXED or record[6:7] not in _DATA:
-        raise InputError("holds no whole data record; fetch it again")
+        raise Truncated("holds no whole data record; fetch it again")
     order = ">" if 1 <= int.from_bytes(record[22:24], "big") <= 366 else "<"
     header = np.frombuffer(record[:_FIXED], f"{order}u2")  # of 16-bit words; bytes 24 to 27 are hour, minute, second
     hour, minute, second = record[24:27]
@@ -102,10 +102,10 @@ def check_evt(data: bytes) -> bytes:
         if data[at : at + 1] == b"\0" and not any(data[at : at + _TAG]):
             break  # zeros that recorders write after the last frame
         if len(data) < at + _TAG or data[at : at + 1] != b"K" or data[at + 1] > 1:
-            raise InputError(f".evt: no tag at byte {at}: it is cut, or damaged")
+            raise Truncated(f".evt: no tag at byte {at}: it is cut, or damaged")
         kind, length, of_data = _tag(data, at)
         if (kind == 1) != (at == 0) or at + _TAG + length + of_data > len(data):
-            raise InputError(f".evt: a frame of {length} and {of_data} bytes at byte {at}: it is cut, or damaged")
+            raise Truncated(f".evt: a frame of {length} and {of_data} bytes at byte {at}: it is cut, or damaged")
         at += _TAG + length + of_data
     return data
 

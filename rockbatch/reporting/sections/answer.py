@@ -14,6 +14,7 @@ from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_wo
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
 from rockbatch.reporting.markup import Markup, join, number, paragraphs, tag
@@ -21,7 +22,6 @@ from rockbatch.reporting.overview import by_record
 from rockbatch.reporting.sections import verdicts
 from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.results.labelled import as_dicts
-from rockbatch.results.rows import NOT_RUN
 from rockbatch.results.suite_statistics import reasons_of_failure
 
 LEAST_ERROR = 1e-6

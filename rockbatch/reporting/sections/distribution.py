@@ -3,6 +3,7 @@
 from itertools import islice
 
 from rockbatch.quantities.arrays import Rows
+from rockbatch.quantities.rows import counts_as
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.overview import worst_first
@@ -10,7 +11,6 @@ from rockbatch.reporting.sections.statistics import RECORDS
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.templates import render
 from rockbatch.results.figures import distributions
-from rockbatch.results.rows import counts_as
 
 MOST_PANELS = 12
 MOST_CURVES = 21

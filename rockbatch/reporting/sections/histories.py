@@ -8,6 +8,8 @@ from typing import Any
 
 from rockbatch.common.figures.description import COLOURS, DASHES, Figure, Look, marks_of
 from rockbatch.common.grouping import grouped
+from rockbatch.outcome.figures import PEAK, Drawn, reduced, together
+from rockbatch.outcome.response import Response
 from rockbatch.reporting.finished import Finished, worst_first
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.svg import drawn, key_of, timed
@@ -16,8 +18,6 @@ from rockbatch.results.histories_file import Responses
 from rockbatch.results.labelled import as_dicts
 from rockbatch.results.labels import Series
 from rockbatch.results.run_json import FROM_PYTHON
-from rockbatch.simulation.figures import PEAK, Drawn, reduced, together
-from rockbatch.simulation.response import Response
 
 MOST_HISTORIES = 40
 """Most histories of a page, but for the last of its pictures."""

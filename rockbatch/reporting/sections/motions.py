@@ -3,17 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
-from rockbatch.motions.figures import drawable, response_spectra
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup, figure, join, tag
 from rockbatch.reporting.svg import drawn
 from rockbatch.reporting.table import MOST_ROWS, Head, listed, table
 from rockbatch.results.labelled import as_dicts
+from rockbatch.results.spectra_figure import drawable, response_spectra
 
-PULSE_LIKE = (
-    "by the criterion of Baker (2007), of the record before scaling; late, weak: no, because the pulse arrives late or PGV is "
-    "below 0.3 m/s"
-)
 Record = Mapping[str, Any]
 COLUMNS = (
     Head("event", value="event"),
@@ -41,9 +37,12 @@ COLUMNS = (
     Head("distance [km]", value="distance_km"),
     Head("factor", ".4g", "what brought the record to the study's target", value="factor"),
     Head("vertical factor", ".4g", "vertical_factor: that of the vertical component, if it has its own", value="vertical_factor"),
-    Head("pulse-like", note=PULSE_LIKE, value="pulse"),
-    Head("pulse indicator", ".2f", "pulse_indicator: above 0.85 pulse-like, below 0.15 not", value="pulse_indicator"),
-    Head("pulse [s]", ".2f", "pulse_period_s: period of the largest pulse", value="pulse_period_s"),
+    Head(
+        "pulse [s]",
+        ".2f",
+        "pulse_period_s: of a record that is pulse-like by Baker (2007), before it is scaled",
+        value="pulse_period_s",
+    ),
 )  # fmt: skip
 """Columns of the table of ground motions; those of a name hold that value of run.json."""
 

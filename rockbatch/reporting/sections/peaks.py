@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from rockbatch.common.notes import LINEARISED
+from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import creeps
 from rockbatch.quantities.catalogue import COLUMNS, IN_MOTION, IN_MOTION_ERROR, OTHER_LAW, report_columns
 from rockbatch.reporting.finished import Finished, worst_first
@@ -33,7 +33,7 @@ def section(finished: Finished) -> Markup:
     widest = None if gap is None or gap.isna().all() else runs.iloc[int(gap.argmax())]
     return render(
         "reporting/sections/peaks.html", file=PEAKS, runs=runs, finished=finished, table=_every_run(finished), widest=widest,
-        linearised=LINEARISED, far=int(runs["note"].str.contains(LINEARISED).sum()), one_law=gap is None,
+        far=int(Rows(runs).facts("beyond_linearised").sum()), one_law=gap is None,
         ratchets=any(map(creeps, finished.info["cases"])),
         range=[] if widest is None else sorted(1000 * widest[name] for name in ("settlement_m", OTHER_LAW)),
     )  # fmt: skip

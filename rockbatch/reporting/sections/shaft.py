@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from rockbatch.common.lazy import pd
+from rockbatch.quantities.demands import OF_SECTIONS
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.markup import Markup
 from rockbatch.reporting.sections.forces import CUT_SHORT
@@ -12,7 +13,7 @@ from rockbatch.reporting.table import Head, alarm, table
 from rockbatch.reporting.templates import render
 from rockbatch.results.figures import over_height
 from rockbatch.results.labelled import groups_of
-from rockbatch.results.sections import MEANING, SECTIONS, columns_in, read_sections
+from rockbatch.results.sections import SECTIONS, columns_in, read_sections
 
 MOST_GROUPS = 4
 """Most piers and scales whose envelopes are drawn."""
@@ -24,7 +25,7 @@ def section(finished: Finished) -> Markup:
     rows = read_sections(path, finished.info["varied"]) if path.exists() else pd.DataFrame()
     if rows.empty:
         return Markup("")
-    runs = finished.runs.merge(rows, on=[name for name in rows if name not in MEANING])
+    runs = finished.runs.merge(rows, on=[name for name in rows if name not in OF_SECTIONS])
     if runs.empty:
         return Markup("")
     groups = list(groups_of(runs, finished.piers))
@@ -41,12 +42,13 @@ def _heads(runs: "pd.DataFrame") -> list[Head]:
     words = {"axial_at_moment": "with the moment, ", "axial_least": "least ", "axial_greatest": "greatest "}
     order = ("shear", "moment", "axial_at_moment", "axial_least", "axial_greatest")
     forces = [
-        Head(words.get(name, "") + heads[name], ".0f" if "kN" in columns[name] else ".3f", MEANING[columns[name]])
+        Head(words.get(name, "") + heads[name], ".0f" if "kN" in columns[name] else ".3f", OF_SECTIONS[columns[name]])
         for name in order
     ]
     return [
-        Head("case"), Head("height [m]", ".2f", MEANING["height_m"]), *forces, Head("±", ".0e", MEANING["sections_error"]),
-        Head("runs", note="that went through, of all"), Head("record with the moment"),
+        Head("case"), Head("height [m]", ".2f", OF_SECTIONS["height_m"]), *forces,
+        Head("±", ".0e", OF_SECTIONS["sections_error"]), Head("runs", note="that went through, of all"),
+        Head("record with the moment"),
     ]  # fmt: skip
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.catalogue import COLUMNS
+from rockbatch.quantities.rows import counts_as
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import heading
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.table import MOST_ROWS, Head, alarm, shown_of, table
-from rockbatch.results.rows import counts_as
 from rockbatch.results.suite_statistics import Statistics, suites
 
 Row = tuple[Hashable, ...]
@@ -68,7 +68,7 @@ def tables(
 
     ``sides`` are the runs of every side that is compared, by the words for it, empty of one alone. ``names`` has the texts of the
     first cells of each row, under ``heads``, by its values of ``keys``; other runs do not count. ``count`` says what is one
-    record, one of :data:`rockbatch.study.rules.COUNTS`.
+    record, one of :data:`rockbatch.checks.rules.COUNTS`.
     """
     drawn = [tag("p", RECORDS[count] + WORDS)]
     index = pd.MultiIndex.from_tuples(list(names), names=keys)

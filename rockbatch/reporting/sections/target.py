@@ -101,7 +101,7 @@ def _mean_over(target: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence[Record]) -> Markup:
-    pulses = [record for record in records if record.get("pulse") == "yes"]
+    pulses = [record for record in records if record.get("pulse_period_s") is not None]
     distances = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."
     both = np.array(target.get("components_sa_g", ()), dtype=np.float64)
@@ -113,8 +113,7 @@ def _horizontal(finished: Finished, target: Mapping[str, Any], records: Sequence
         factors=[record.get("factor", 1.0) for record in records],
         picture=spectra(finished, caption, tuple(target["range_s"])),
         stations=_stations(records), pulses=pulses, with_pulse=_stations(pulses),
-        open=[record.get("pulse") for record in records].count("ambiguous"),
-        lengths=[record["pulse_period_s"] for record in pulses if record.get("pulse_period_s") is not None],
+        lengths=[record["pulse_period_s"] for record in pulses],
         known=distances, near=sum(distance <= NEAR_KM for distance in distances), near_km=f"{NEAR_KM:g}",
     )  # fmt: skip
 

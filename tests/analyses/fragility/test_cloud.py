@@ -307,7 +307,7 @@ def test_what_a_curve_rests_on_is_said(tmp_path, beyond, words):
 def test_keys_of_other_methods_are_named(tmp_path, fragility, message):
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, fragility)))
-    assert message in "\n".join(caught.value.problems)
+    assert message in "\n".join(caught.value.messages)
 
 
 @pytest.mark.parametrize("intercept", [1.0, -1.0])

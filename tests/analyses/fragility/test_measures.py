@@ -95,7 +95,7 @@ def test_tables_that_are_no_measure_say_why(tmp_path, text, message):
     (tmp_path / "own.csv").write_text(text, encoding="utf-8")
     with pytest.raises(InputError) as caught:
         rb.fragility(study(tmp_path, {"measure_file": "own.csv", "levels": [0.2, 0.4]}))
-    assert message in "\n".join(caught.value.problems)
+    assert message in "\n".join(caught.value.messages)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_tables_that_are_no_measure_say_why(tmp_path, text, message):
 def test_measures_and_levels_that_do_not_belong_together_are_refused(tmp_path, fragility, message):
     with pytest.raises(InputError) as caught:
         rb.fragility(study(tmp_path, fragility))
-    assert message in "\n".join(caught.value.problems)
+    assert message in "\n".join(caught.value.messages)
 
 
 def test_intensities_over_uplift_are_those_of_the_spectrum_of_a_pier():

@@ -377,9 +377,9 @@ def test_a_hazard_in_a_file_is_that_of_its_points(tmp_path):
 def test_mistakes_of_a_hazard_are_named_with_their_line(tmp_path, hazard, message):
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, hazard or {"years": [50]})))
-    told = "\n".join(caught.value.problems)
+    told = "\n".join(caught.value.messages)
     assert message in told
-    assert all("study.toml:" in problem for problem in caught.value.problems)
+    assert all("study.toml:" in problem for problem in caught.value.messages)
 
 
 @pytest.mark.parametrize(
@@ -401,7 +401,7 @@ def test_a_hazard_is_read_as_it_is_written_up_to_what_is_usual(tmp_path, measure
         return
     with pytest.raises(InputError, match="write confirm = ") as caught:
         read_fragility(load_study(file))
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     name, value = (levels, most) if most else next((name, values[0]) for name, values in points.items())
     assert f"{name} = {value:g}" in problem
 
@@ -419,14 +419,14 @@ def test_mistakes_in_a_file_of_a_hazard_are_named_with_its_line(tmp_path, conten
     (tmp_path / "hazard.csv").write_text(content, encoding="utf-8")
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, {"file": "hazard.csv"})))
-    assert message in "\n".join(caught.value.problems)
+    assert message in "\n".join(caught.value.messages)
 
 
 def test_mistakes_of_added_dispersions_are_named(tmp_path):
     wrong = [{"name": "a", "value": 0.3}, {"name": "a", "value": 30}, {"value": 0.1}]
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(study(tmp_path, HAZARD, dispersion=wrong)))
-    told = "\n".join(caught.value.problems)
+    told = "\n".join(caught.value.messages)
     for message in ("above 0 and at most 2", "its name is given twice", "name is missing"):
         assert message in told
 
@@ -445,7 +445,7 @@ def test_of_a_file_of_doubtful_values_the_first_is_asked_about(tmp_path):
     file = study(tmp_path, {"file": "hazard.csv", "years": [50]}, fragility={"measure": "PGA", "levels_g": [0.2, 0.4]})
     with pytest.raises(InputError) as caught:
         read_fragility(load_study(file))
-    (problem,) = caught.value.problems
+    (problem,) = caught.value.messages
     assert "levels_g = 20" in problem
 
 

@@ -151,8 +151,8 @@ def saved(found, tmp_path):
 def test_mistakes_of_stripes_are_named_with_their_line(tmp_path, fragility, message):
     with pytest.raises(InputError) as caught:
         rb.fragility(study(tmp_path, fragility))
-    assert message in "\n".join(caught.value.problems)
-    assert all("study.toml:" in problem for problem in caught.value.problems)
+    assert message in "\n".join(caught.value.messages)
+    assert all("study.toml:" in problem for problem in caught.value.messages)
 
 
 def test_one_stripe_tells_no_dispersion(tmp_path):

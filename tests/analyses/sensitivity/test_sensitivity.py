@@ -288,7 +288,7 @@ def test_impossible_inputs_of_dampers_and_tendons_are_reported_at_their_line(tmp
     path = written(tmp_path, varying(uniform, **more))
     with pytest.raises(InputError) as caught:
         read_sensitivity(load_study(path))
-    (told,) = [problem for problem in caught.value.problems if words in problem] or [str(caught.value)]
+    (told,) = [problem for problem in caught.value.messages if words in problem] or [str(caught.value)]
     assert words in told
     number = int(told.partition("study.toml:")[2].partition(":")[0])
     assert line in path.read_text(encoding="utf-8").splitlines()[number - 1]
@@ -338,7 +338,7 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
     text = text.replace("mu = [2.0, 4.0]", "mu = [4.0, 2.0]\nkinematics = 1\np = [0.5, 2]")
     with pytest.raises(InputError) as caught:
         read_sensitivity(load_study(written(tmp_path, text)))
-    told = "\n".join(caught.value.problems)
+    told = "\n".join(caught.value.messages)
     for line, words in (
         (36, "samples = 10: expected a power of two from 4"),
         (37, "statistics: unknown key; did you mean statistic?"),
@@ -347,7 +347,7 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
         (47, "p is given under uniform and log_uniform; keep one"),
         (51, 'polarity: expected both choices; write polarity = ["+", "-"]'),
     ):
-        assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), told
+        assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.messages), told
 
 
 @pytest.mark.parametrize(("old", "new", "words"), [

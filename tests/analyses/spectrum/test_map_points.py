@@ -12,19 +12,18 @@ import rockbatch as rb
 from rockbatch.analyses.spectrum.map_regions import strips
 from rockbatch.analyses.spectrum.overturning_map import SAMPLES, Maps, columns, ending
 from rockbatch.analyses.spectrum.study import MapSpec
-from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.plan import Made
 from rockbatch.batch.threads import Threads
 from rockbatch.motions.pulses import pulse_length
 from rockbatch.pier import Pier, RigidBase
 from rockbatch.results.columns import StudyRun, as_table, row
-from rockbatch.study import Case, Numerics, Study
+from rockbatch.study import Case, Numerics, Output, Study
 from rockbatch.study.spec import MotionSpec
 
 PIER = Pier(0.15, 1.0)
 CASE = Case("rigid", PIER, RigidBase(), {})
 NUMERICS = Numerics(tolerance=1e-4, quiet_s=2.0)
-STUDY = Study("", "", None, "", MotionSpec(), NUMERICS, (CASE,), (), (), NOTHING_MORE)
+STUDY = Study("", "", None, "", MotionSpec(), NUMERICS, (CASE,), (), (), Output())
 
 
 def whole(shape, **parameters):

@@ -150,7 +150,7 @@ def test_keys_that_do_not_fit_are_reported_with_their_line(tmp_path, change, lin
     text = STUDY.replace(*change, 1)
     with pytest.raises(InputError) as caught:
         rb.spectrum(write_study(tmp_path, text))
-    assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), (
+    assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.messages), (
         caught.value
     )
 
@@ -164,7 +164,7 @@ def test_bases_given_in_kilonewtons_have_no_place_on_piers_of_many_sizes(tmp_pat
     text = study_text(pier=pier, cases=[RIGID, stiff, tied, ratios], spectrum={"alpha": [0.2], **AXES})
     with pytest.raises(InputError) as caught:
         rb.spectrum(write_study(tmp_path, text))
-    problems = [problem.split(": ", 2)[2] for problem in caught.value.problems]
+    problems = [problem.split(": ", 2)[2] for problem in caught.value.messages]
     assert len(problems) == 2
     for problem, name in zip(problems, ("pads", "tied"), strict=True):
         assert f'case "{name}" has another base for each size; give its ratios: beta, eta, nu instead of' in problem

@@ -129,7 +129,7 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
     text += '[[spectrum.map]]\nname = "a"\nshape = "sin"\nfrequency = [5, 1]\namplitude = [1, 2, 3]\ntolerance = 0\n'
     with pytest.raises(InputError) as caught:
         read(text, tmp_path)
-    told = "\n".join(caught.value.problems)
+    told = "\n".join(caught.value.messages)
     for line, words in (
         (38, "points = 1: expected a whole number, 2 or above"),
         (39, "pint: unknown key; did you mean points?"),
@@ -138,13 +138,13 @@ def test_every_mistake_is_reported_with_its_line(tmp_path):
         (44, "amplitude = [1, 2, 3]: expected a range; write for example amplitude = [1.0, 3.0]"),
         (45, "tolerance = 0: expected a number, 1e-09 or above"),
     ):
-        assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.problems), told
+        assert any(f"study.toml:{line}: " in problem and words in problem for problem in caught.value.messages), told
 
 
 def test_impossible_slendernesses_are_reported_with_the_case(tmp_path):
     with pytest.raises(InputError) as caught:
         read(STUDY.replace("alpha = [0.1, 0.2]", "alpha = [0.1, 0.01, 1.7]"), tmp_path)
-    first, second = caught.value.problems
+    first, second = caught.value.messages
     assert "study.toml:36: " in first
     assert "alpha = 1.7: must be below" in first + second
     assert 'alpha = 0.01, case "pads": beta = 40' in first + second

@@ -13,12 +13,11 @@ from studies import RIGID, SINE, study_text, write_study
 from rockbatch.analyses.spectrum.map_search import End, Search, regions
 from rockbatch.analyses.spectrum.overturning_map import OUTRIGHT, SAFE, SAMPLES, UNDECIDED, WITH_IMPACT, Maps, ending
 from rockbatch.analyses.spectrum.study import MapSpec
-from rockbatch.batch.groups import NOTHING_MORE
 from rockbatch.batch.threads import Threads
 from rockbatch.commands.cli import main
 from rockbatch.pier import ElasticBase, Pier, RigidBase
 from rockbatch.results.columns import as_table, row
-from rockbatch.study import Case, Numerics, Study
+from rockbatch.study import Case, Numerics, Output, Study
 from rockbatch.study.spec import MotionSpec
 
 TOLERANCE = 1e-3
@@ -28,7 +27,7 @@ def found(spec, pier, base):
     """Regions of each frequency of a map with one case."""
     numerics = Numerics(tolerance=1e-4, quiet_s=0.0)
     case = Case("block", pier, base, {})
-    study = Study("", "", None, "", MotionSpec(), numerics, (case,), (), (), NOTHING_MORE)
+    study = Study("", "", None, "", MotionSpec(), numerics, (case,), (), (), Output())
 
     def execute(runs):
         finished = dict(pair for group in Threads(2).outcomes(runs, numerics) for pair in group.items())

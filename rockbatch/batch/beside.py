@@ -1,0 +1,88 @@
+"""Rows of the tables beside peaks.csv: kept with the row of their run until it is written, or read from the run again."""
+
+import base64
+import json
+import zlib
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import Listener
+from rockbatch.batch.plan import simulations
+from rockbatch.common.lazy import pd
+from rockbatch.results.beside_peaks import NAMING
+from rockbatch.results.columns import StudyRun
+from rockbatch.simulation.observing import Observer, observed
+from rockbatch.simulation.runs import run_fixed
+from rockbatch.study import Numerics, Study
+
+MOST_OF_A_CELL = 1 << 18
+"""Characters of the rows that one run adds to one table; of more the run is recorded again when the table is written."""
+
+Rows = list[dict[str, Any]]
+
+
+def packed(run: StudyRun, table: str) -> str:
+    """Return the rows of a finished run in a ``table``, in a cell without commas; empty if it has none or too many."""
+    rows = None if run.outcome is None else run.outcome.tables.get(table)
+    if rows is None:
+        return ""
+    cell = base64.b64encode(zlib.compress(json.dumps(rows).encode())).decode()
+    return cell if len(cell) <= MOST_OF_A_CELL else ""
+
+
+def unpacked(cell: str) -> Rows:
+    """Return the rows in a cell of :func:`packed`."""
+    return list(json.loads(zlib.decompress(base64.b64decode(cell))))
+
+
+def rows_beside(
+    observers: Sequence[Observer],
+    study: Study,
+    runs: Sequence[StudyRun],
+    peaks: "pd.DataFrame",
+    journal: Journal,
+    jobs: int,
+    listener: Listener,
+) -> dict[str, Rows]:
+    """Return the rows of the tables of ``observers``, of finished ``runs`` whose rows of peaks.csv are the first of ``peaks``.
+
+    Mirror images have none. A run whose rows the ``journal`` lacks, such as one that was finished before they were asked for, is
+    recorded again.
+    """
+    tables: dict[str, Rows] = {observer.table: [] for observer in observers}
+    numbers = [number for number, run in enumerate(runs) if not run.mirror_of]
+    kept = (journal.cells_beside(number) for number in numbers)
+    lacking = [[o for o in observers if not cells.get(o.table)] for cells in kept]
+    again = [(number, missing) for number, missing in zip(numbers, lacking, strict=True) if missing]
+
+    def of_run(number: int, missing: Sequence[Observer]) -> Mapping[str, Rows]:
+        return read_again(runs[number], peaks.iloc[number], missing, study.numerics)
+
+    pool = ThreadPoolExecutor(max(1, jobs))
+    try:
+        with listener.progress(len(again)) as progress:
+            of_again = pool.map(of_run, *zip(*again, strict=True)) if again else iter(())
+            for number, missing in zip(numbers, lacking, strict=True):
+                found = {name: unpacked(cell) for name, cell in journal.cells_beside(number).items() if cell}
+                if missing:
+                    found |= next(of_again)
+                    progress(1)
+                names = {name: peaks[name].iloc[number] for name in (*NAMING, *study.varied)}
+                for table, rows in tables.items():
+                    rows += [names | row for row in found.get(table, ())]
+    finally:
+        pool.shutdown(cancel_futures=True)  # an interrupt does not wait for the others
+    return tables
+
+
+def read_again(
+    planned: StudyRun, row: "pd.Series", observers: Sequence[Observer], numerics: Numerics
+) -> Mapping[str, Rows]:
+    """Return the rows of a run beside its ``row`` of peaks.csv: with the same steps it comes to the same bits."""
+    (run,) = simulations([planned])
+    outcome = run_fixed(run.pier, run.base, run.motion, int(row["substeps"]), numerics.quiet_s)
+    outcome = outcome.changed(status=row["status"], reason=row["reason"], note=row["note"])
+    (outcome,) = observed([run], [outcome], observers, numerics.quiet_s, error=numerics.substeps is None)
+    return outcome.tables

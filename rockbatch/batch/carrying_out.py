@@ -1,0 +1,33 @@
+"""The runs of a batch that are left, carried out into its journal."""
+
+from typing import Any
+
+from rockbatch.batch.compiling import make_ready
+from rockbatch.batch.execution import execute_runs, to_simulate
+from rockbatch.batch.journal import Journal
+from rockbatch.batch.listening import count
+from rockbatch.batch.observers import observers_of
+from rockbatch.batch.preparing import Batch
+from rockbatch.batch.threads import Engine
+
+
+def execute(batch: Batch, requested: range, journal: Journal, engine: Engine) -> dict[str, Any]:
+    """Carry out those of the ``requested`` runs that are missing in the journal; return their entry in run.json."""
+    runs, listener = batch.runs, batch.listener
+    every, remaining = (len(to_simulate(runs, requested, finished)) for finished in ((), journal))
+    n_finished = every - remaining
+    if n_finished:
+        listener.say(f"{n_finished} of them are finished already, {remaining} are left (--fresh starts over)")
+    try:
+        with listener.progress(remaining) as progress:
+            observers, numerics = (*observers_of(batch.study.output), *batch.observers), batch.study.numerics
+            make_ready(batch.study, listener, observers)
+            execute_runs(runs, numerics, journal, engine, observers, among=requested, progress=progress)
+    except KeyboardInterrupt:
+        if n_done := every - len(to_simulate(runs, requested, journal)):
+            listener.say(
+                f"interrupted: {n_done} of {count(every, 'run')} are finished and kept in {journal.path}; "
+                "the same command continues from there"
+            )
+        raise
+    return {"jobs": engine.jobs, "kept": n_finished}

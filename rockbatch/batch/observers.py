@@ -1,0 +1,24 @@
+"""Observers that a study asks for."""
+
+from collections.abc import Iterable
+
+from rockbatch.common.observers import OBSERVERS, from_observer
+from rockbatch.motions import Motion
+from rockbatch.simulation.observing import Observer
+from rockbatch.study import Output
+
+
+def observers_of(output: Output) -> tuple[Observer, ...]:
+    """Return the observers that bring columns of peaks.csv."""
+    return tuple(observer for observer in _requested(output) if not observer.table)
+
+
+def observers_beside(output: Output, motions: Iterable[Motion]) -> tuple[Observer, ...]:
+    """Return the observers that bring tables beside peaks.csv, of runs under these ``motions``."""
+    read = list(motions)
+    return tuple(observer for observer in _requested(output) if observer.table and observer.observes(read))
+
+
+def _requested(output: Output) -> list[Observer]:
+    requested = (from_observer(name, "observe.requested")(output) for name in OBSERVERS)
+    return [observer for observer in requested if observer is not None]

@@ -1,0 +1,122 @@
+"""Rules from TOML: the tables [[check]] of a study file or of a file of rules."""
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
+from rockbatch.common.errors import InputError, Problem
+from rockbatch.common.showing import shown
+from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.toml.kinds import choice, count, text
+from rockbatch.toml.meant import names
+from rockbatch.toml.reader import Table, TomlFile
+from rockbatch.toml.section import Key, Section
+
+SUITE = Section(("suite",), "What holds for every check that does not say otherwise, and where more of them are.", {
+    "count": Key(choice(*COUNTS), '"component"', f"{COUNT}.", default=COUNTS[0]),
+    "per_event": Key(count, "4", f"{PER_EVENT}; no limit if it is not given."),
+    "both_axes": Key(choice(*BOTH_AXES), '"srss"', f"{AXES}; demands that do not add up have the greater.", default="greater"),
+    "checks": Key(text, '"checks.toml"',
+        "A file of checks, relative to this one, that hold beside those written here; its text is kept in run.json."),
+}, also=names({"checks": "file rules"}))  # fmt: skip
+
+TOP = Section((), "", {
+    "title": Key(text, '"Checks of a stepping pier"', "Heading of the report and its tables; default: the file's name."),
+    "notes": Key(text, '"Limits as agreed."', "Free text for the report. Blank lines separate paragraphs."),
+})  # fmt: skip
+
+
+SECTIONS = (TOP, SUITE, CHECK)
+"""Tables of a file of checks."""
+
+
+def _read(path: Path) -> TomlFile:
+    return TomlFile.read(path, SECTIONS)
+
+
+def load_rules(path: str | os.PathLike[str]) -> tuple[Rule, ...]:
+    """Return the rules of a file: its [[check]] tables; a study file will do, whose other tables are ignored.
+
+    Raises ``InputError`` with every mistake and its line.
+    """
+    file = _read(Path(path))
+    if "pier" not in file.data:
+        Table(file, (), "", file.data).read(TOP, other=("check", "suite"))
+    checks = read_checks(file)
+    if not (file.data.get("check") or checks.file):
+        file.complain((), "no checks; write at least one [[check]] with name, demand, at_most and reason")
+    file.finish()
+    return checks.rules
+
+
+class Checks(NamedTuple):
+    """The rules of a file with those of the file that its [suite] names, what counts as one record, and that file."""
+
+    rules: tuple[Rule, ...]
+    counted: str
+    file: TomlFile | None
+
+
+def read_checks(
+    file: TomlFile,
+    unmet: Callable[[Rule], Iterable[Problem]] | None = None,
+    opened: Callable[[Path], TomlFile] = _read,
+) -> Checks:
+    """Read [suite] and [[check]] of ``file``, and [[check]] of the file that [suite] names; mistakes are noted in ``file``.
+
+    ``unmet`` returns the choices of a rule that the study lacks, as :func:`rockbatch.checks.rule_choices.unmet` does; ``opened``
+    opens the file that [suite] names, or raises ``InputError``.
+    """
+    suite = file.table("suite")
+    read = {} if suite is None else suite.read(SUITE)
+    usual = {name: value for name, value in read.items() if name != "checks"}
+    names: set[str] = set()
+    rules = _rules(file, unmet, usual, names)
+    rules_file = None
+    if suite is not None and "checks" in read:
+        try:
+            rules_file = opened(file.path.parent / read["checks"])
+        except InputError as error:
+            for problem in error.problems:
+                text = f"checks = {shown(read['checks'])}: {problem}"
+                suite.complain(Problem("checks", read["checks"], text, kind=problem.kind, named=False), "checks")
+        else:
+            Table(rules_file, (), "", rules_file.data).read(TOP, other=("check", "suite"))
+            its = rules_file.table("suite")
+            own = {} if its is None else its.read({name: key for name, key in SUITE.items() if name != "checks"})
+            rules += _rules(rules_file, unmet, usual | own, names)
+            file.adopt(rules_file, (*suite.key_path, "checks"))
+    return Checks(tuple(rules), usual.get("count", COUNTS[0]), rules_file)
+
+
+def _rules(
+    file: TomlFile, unmet: Callable[[Rule], Iterable[Problem]] | None, usual: Mapping[str, Any], names: set[str]
+) -> list[Rule]:
+    """Return the rules of usable [[check]] tables, with the ``usual`` keys that they do not give; their names join ``names``."""
+    rules: list[Rule] = []
+    for table in file.tables("check", title="name"):
+        before = len(file.problems)
+        read = table.read(CHECK)
+        name = read.get("name")
+        if name in names:
+            table.complain(f"name = {shown(name)}: given twice; give each check its own name", "name")
+        if name is not None:
+            names.add(name)
+        if file.is_sound_since(before):
+            applying = {"count"} if "demand" in read and not DEMANDS[read["demand"]].per_case else set()
+            applying |= {"both_axes"} if read.get("demand") in DIRECTED else set()
+            applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
+            read = {name: value for name, value in usual.items() if name in applying} | read
+            try:
+                rule = Rule(**read)
+            except InputError as error:
+                wrong: Iterable[Problem] = error.problems
+            else:
+                rules.append(rule)
+                wrong = unmet(rule) if unmet else ()
+            for problem in wrong:
+                table.complain(problem, *([problem.key] if problem.key in table.data else []))
+    return rules

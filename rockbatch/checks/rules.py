@@ -1,0 +1,363 @@
+"""Rules: a demand, its statistic over the suite, a limit, and the source of the limit."""
+
+import math
+from dataclasses import dataclass
+
+from rockbatch.common.arguments import checked
+from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
+from rockbatch.common.showing import shown
+from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.statistics import STATISTICS
+from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, text
+from rockbatch.toml.meant import names
+from rockbatch.toml.section import Key, Section
+
+BASES = ("code", "literature", "judgement")
+COUNTING = ("infinite", "unknown", "value", "left out")
+"""Ways in which a run counts that did not go through to its end:
+
+infinite
+    Worse than any limit.
+unknown
+    Anything from what is known up to infinity: a peak or a count is at least what it was when the pier overturned or flew.
+value
+    What the table has, as if the run had gone through; unknown where it has nothing.
+left out
+    Not at all; the verdict says how many.
+"""
+COUNTS = ("station", "component")
+"""Ways to count records:
+
+station
+    All components, directions and polarities of one station in one earthquake, with the worst of them.
+component
+    Every horizontal component by itself, with the worse of its polarities.
+"""
+BOTH_AXES = {"greater": "the greater of both axes", "srss": "SRSS of both axes", "100_30": "100 % + 30 % of both axes"}
+"""Ways to combine the demands of a record on both axes of a pier, with words for them:
+
+greater
+    The greater of the two.
+srss
+    The root of the sum of their squares.
+100_30
+    The greater of one with 0.3 of the other.
+"""
+EITHER, LESSER = "on either axis", "the lesser of both axes"
+"""Words for events, and for properties of a case of which more is better."""
+CONFIRMED = ("at_most", "at_least", "above")
+USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
+
+
+@checked
+@dataclass(frozen=True)
+class Rule:
+    """One check.
+
+    A record is a station: its components, the angles that they are turned to and both polarities are directions of it, and it
+    counts once, with the worst of them, for every statistic. Each scale is a suite of its own, as is each case.
+
+    Attributes
+    ----------
+    name : str
+        What it is called in the table.
+    demand : str
+        A key of :data:`rockbatch.quantities.demands.DEMANDS`.
+    at_most, at_least : float or None
+        The limit, one of the two; ``at_least`` is for properties of the case, such as eta.
+    statistic : str
+        A key of :data:`rockbatch.quantities.statistics.STATISTICS`; "max" unless given.
+    above : float or None
+        With "count", what a record has to exceed to count; 0 unless given for events such as flight.
+    least : int or None
+        Number of records below which nothing passes; that of the statistic if it is larger or nothing is given.
+    count : "station", "component" or None
+        What counts as one record, one of :data:`COUNTS`; ``None`` takes what [suite] of the study says, or "station". A code's
+        statistic counts stations.
+    per_event : int or None
+        With a code's statistic: the greatest number of records of one event with which anything passes; no limit unless given.
+    reason : str
+        Clause, source, or why, in words.
+    basis : "code", "literature" or "judgement"
+        Where the limit comes from.
+    case : tuple of str
+        Names or globs of the cases to check; all if empty.
+    scale : tuple of float
+        Scales to check; all if empty.
+    overturned, flight, failed : str
+        How such runs count, one of :data:`COUNTING`; a run that has not settled, or was not run, is failed. ``None`` takes
+        the usual: overturned is infinite, the others are unknown; under "asce7-16" all are unacceptable, hence infinite.
+    other_law : bool
+        Whether the settlement by the other spring law has to be there: where both were run the worse counts in any case, and with
+        this a run that did not go through by the other one is unknown.
+    at_m : float or None
+        Height of the section that a demand such as section_moment_kNm is about [m].
+    both_axes : "greater", "srss", "100_30" or None
+        How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
+        "greater" unless given, and of demands that do not add up (:data:`rockbatch.quantities.catalogue.DIRECTED`).
+    confirm : tuple of str
+        Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
+
+    Raises ``InputError`` with all that is wrong, each problem with the name of its attribute as ``key``.
+
+    Examples
+    --------
+    >>> limit = rb.Rule("rotation", "theta_max_over_alpha", at_most=0.3, statistic="median", reason="agreed")
+    >>> rb.check(rb.run("pier4.toml"), [limit], study="pier4.toml")[["case", "value", "limit", "verdict"]].round(2)
+        case  value  limit verdict
+    0  rigid   0.21    0.3    pass
+    1   pads   0.17    0.3    pass
+    """
+
+    name: str
+    demand: str
+    at_most: float | None = None
+    at_least: float | None = None
+    statistic: str | None = None
+    above: float | None = None
+    least: int | None = None
+    count: str | None = None
+    reason: str = ""
+    basis: str = "judgement"
+    case: tuple[str, ...] = ()
+    scale: tuple[float, ...] = ()
+    overturned: str | None = None
+    flight: str | None = None
+    failed: str | None = None
+    other_law: bool = False
+    confirm: tuple[str, ...] = ()
+    at_m: float | None = None
+    both_axes: str | None = None
+    per_event: int | None = None
+
+    def __post_init__(self) -> None:
+        refuse(_unknown_words(self) or _misfits(self))
+
+    @property
+    def limit(self) -> float:
+        """The limit, whichever way it bounds."""
+        return float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
+
+    @property
+    def sense(self) -> str:
+        """ "at most" or "at least"."""
+        return "at most" if self.at_most is not None else "at least"
+
+    def counts(self, status: str) -> str:
+        """Return how a run of this status counts, one of :data:`COUNTING`."""
+        usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
+        return getattr(self, status) or usual
+
+    @property
+    def on_both_axes(self) -> str:
+        """Return how demands on both axes combine in words: "SRSS of both axes"; of a demand of the case, the worse counts."""
+        if DEMANDS[self.demand].event:
+            return EITHER
+        return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
+
+    @property
+    def is_ban(self) -> bool:
+        """True if it asks that an event happens under no record."""
+        return is_ban(self.demand, self.statistic or "max", self.limit)
+
+    @property
+    def words(self) -> str:
+        """Name of the quantity that is compared with the limit: "mean of theta_max_over_alpha"."""
+        return self.words_at(self.at_m)
+
+    def words_at(self, height: float | None) -> str:
+        """Return that name with the height at which the demand is read [m], if it is read at one."""
+        demand = DEMANDS[self.demand]
+        if demand.per_case:
+            return self.demand
+        statistic = STATISTICS[self.statistic or "max"].words
+        if self.is_ban:
+            return f"no record {demand.verb}"
+        place = "" if height is None else f" at {height:g} m"
+        if self.statistic != "count":
+            return f"{statistic} of {self.demand}{place}"
+        return f"{statistic} with {self.demand}{place}" + (
+            "" if demand.event and not self.above else f" above {self.above:g}"
+        )
+
+    @property
+    def counting(self) -> str:
+        """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
+        if not DEMANDS[self.demand].per_run:
+            return ""
+        kinds = dict.fromkeys(self.counts(status) for status in USUAL)
+        return "; ".join(
+            f"{', '.join(status for status in USUAL if self.counts(status) == kind)}: {kind}" for kind in kinds
+        )
+
+
+def is_ban(demand: str, statistic: str, limit: float) -> bool:
+    """Return whether a check with these asks that an event happens under no record."""
+    return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
+
+
+COUNT = (
+    'What counts as one record: a "station" in one earthquake, with the worst of its components and polarities, '
+    'or each "component"'
+)
+PER_EVENT = "Greatest number of stations of one event with which anything passes by a code's statistic"
+AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
+_CALLED = {
+    "demand": names({
+        ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
+        ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
+        ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
+        ("top_drift_m", "top_drift_mm"): "displacement topdisplacement", "friction_demand": "sliding slip",
+        "overturned": "overturning overturn collapse toppling",
+    }),
+    "statistic": names({
+        "mean": "average avg", "max": "maximum envelope worst largest peak", "median": "p50", "count": "number",
+        "p84": "84th 84 84percentile percentile84 84thpercentile", "p84_lognormal": "lognormal",
+        "p84_95": "tolerance", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
+        "asce7-16": "asce7", "aashto": "aashtolrfd lrfd", "nzs1170.5": "nzs",
+    }),
+    "basis": names({
+        "code": "standard norm", "literature": "paper book", "judgement": "judgment engineeringjudgement expert",
+    }),
+}  # fmt: skip
+_DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
+
+CHECK = Section(("check",), (
+    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
+), {
+    "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
+    "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
+    "at_m": Key(not_negative, "7.5",
+        "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`."),
+    "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
+        'How the records are summed up; "max" if it is not given.'),
+    "above": Key(not_negative, "0.5",
+        'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
+    "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
+    "count": Key(choice(*COUNTS), '"component"',
+        f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations."),
+    "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
+    "both_axes": Key(choice(*BOTH_AXES), '"srss"',
+        f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
+        "`[suite]` says if it is not given."),
+    "at_most": Key(number, "0.5", "The limit."),
+    "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
+    "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
+    "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
+    "case": Key(text, '["soft", "stiff*"]',
+        "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
+    "scale": Key(positive, "1.0",
+        "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
+    "overturned": Key(choice(*COUNTING), '"infinite"',
+        'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
+        '"value", as the table has it; "left out". "infinite" if it is not given.'),
+    "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
+    "failed": Key(choice(*COUNTING), '"unknown"',
+        'How a run counts that has not settled, or was not run; "unknown" if it is not given.'),
+    "other_law": Key(boolean, "true",
+        "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
+    "confirm": Key(choice(*CONFIRMED), '["at_most"]',
+        "Keys of this check that are right though such a limit decides nothing.", many=True),
+}, many=True, homes=(Rule,), also=names({
+    "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
+    "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",
+    "reason": "source reference clause comment note notes description why", "name": "id label title",
+}), instead=names({
+    "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
+    "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity polarities sign",
+}))  # fmt: skip
+"""A [[check]]; :class:`Rule` says what its keys mean."""
+
+
+def _unknown_words(rule: Rule) -> list[Problem]:
+    wrong = []
+    for name, key in CHECK.items():
+        value = getattr(rule, name)
+        if value is None or key.many or not isinstance(key.kind, Choice):
+            continue
+        try:
+            key.kind(value)
+        except KindError as error:
+            text = f"{name} = {shown(value)}: {error.advice()}"
+            wrong.append(Problem(name, value, text, kind=WrongType, named=False))
+    return wrong
+
+
+def _misfits(rule: Rule) -> list[Problem]:
+    """Return what the attributes of a rule say about each other, each problem at the first of them that is wrong."""
+    demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
+    two_limits = rule.at_most is not None and rule.at_least is not None
+    neither = rule.at_most is None and rule.at_least is None
+    wrong_way = not demand.per_case and rule.at_most is None and not neither
+    least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
+    example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
+    counts = rule.statistic == "count"
+    with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
+    rules = [
+        (two_limits, "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"),
+        (neither, example.split()[0], f"{example.split()[0]} is missing, the limit; write for example {example}"),
+        (
+            wrong_way,
+            "at_least",
+            f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}",
+        ),
+        (
+            not (neither or wrong_way or math.isfinite(rule.limit)),
+            rule.sense.replace(" ", "_"),
+            f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
+        ),
+        (rule.above is not None and not counts, "above", 'above: is for statistic = "count"; leave it out'),
+        (
+            counts and rule.above is None and not (demand.event or demand.per_case),
+            "above",
+            "above is missing, what a record has to exceed to count; write for example above = 0.5",
+        ),
+        (
+            rule.least is not None and rule.least < statistic.least,
+            "least",
+            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
+        ),
+        (
+            rule.count == "component" and statistic.code != "",
+            "count",
+            f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
+            'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
+        ),
+        (
+            rule.per_event is not None and not statistic.code,
+            "per_event",
+            "per_event: is for a code's statistic; leave it out",
+        ),
+        (
+            demand.event and statistic.code != "",
+            "statistic",
+            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
+        ),
+        (
+            demand.needs == "sections" and rule.at_m is None,
+            "at_m",
+            "at_m is missing, the height of the section [m]; write for example at_m = 7.5",
+        ),
+        (
+            demand.needs != "sections" and rule.at_m is not None,
+            "at_m",
+            "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
+        ),
+        (
+            rule.both_axes not in (None, "greater") and rule.demand not in DIRECTED,
+            "both_axes",
+            f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
+        ),
+        (rule.other_law and demand.other_law is None, "other_law", f"other_law: is for {with_other_law}; leave it out"),
+    ]
+    without_place = [  # attributes that say nothing about such a demand or statistic
+        (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
+        (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
+        (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
+    ]
+    return [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies] + [
+        Problem(name, None, f"{reason}; leave it out", kind=Contradiction)
+        for applies, names, reason in without_place
+        for name in names
+        if applies and getattr(rule, name) is not None
+    ]

@@ -1,0 +1,1 @@
+"""Forces and motions that a designer sizes."""

@@ -1,0 +1,50 @@
+"""Forces are read from every step of a run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rockbatch.common.lazy import pd
+from rockbatch.outcome.outcome import Outcome, PeakForces
+from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
+from rockbatch.simulation.observing import Observer
+from rockbatch.simulation.recording import Recording
+from rockbatch.simulation.runs import Run
+from rockbatch.study import Output
+
+Peaks = tuple[PeakForces, str]
+"""Demands on the design, and a note."""
+
+
+@dataclass(frozen=True)
+class PeaksOfForces(Observer):
+    """The greatest forces; friction counts while N is above the share ``least_normal`` of the weight."""
+
+    least_normal: float
+
+    column = "base_shear_m_s2"
+
+    def read(self, recording: Recording, outcome: Outcome) -> Peaks:
+        """See :class:`Observer`."""
+        return peak_forces(recording.run, recording.rows, self.least_normal)
+
+    def add(self, run: Run, outcome: Outcome, fine: Peaks | None, coarse: Peaks | None) -> Outcome:
+        """See :class:`Observer`."""
+        if fine is None:
+            return outcome
+        peaks, note = fine
+        outcome = outcome.noted(note)
+        if coarse is not None:
+            peaks, note = with_error(peaks, coarse[0], run.pier)
+            outcome = outcome.noted(note)
+        return outcome.changed(forces=peaks)
+
+    def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
+        """See :class:`Observer`."""
+        run, rows = recording.run, recording.at_samples.rows
+        moments = at_rows(run, rows)
+        return {"forces": forces_table(rows.t, moments, run.pier.gravity), "impacts": impacts_table(rows, moments)}
+
+
+def requested(output: Output) -> PeaksOfForces | None:
+    """Return the observer that a study asks for, if any."""
+    return PeaksOfForces(output.least_normal_share) if output.forces else None

@@ -1,0 +1,1 @@
+"""Settlement of springs that ratchet by the other spring law, the other end of its range."""

@@ -1,0 +1,31 @@
+"""Runs on springs that ratchet are compared with runs by the other spring law."""
+
+from dataclasses import dataclass, replace
+
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.simulation.observing import Observer
+from rockbatch.simulation.runs import Run
+from rockbatch.study import Output
+
+
+@dataclass(frozen=True)
+class OtherLaw(Observer):
+    """Settlement by the other spring law, to the same tolerance; with a note unless that converged."""
+
+    def beside(self, run: Run, outcome: Outcome) -> Run | None:
+        """See :class:`Observer`."""
+        return replace(run, base=run.base.by_other_law()) if run.base.ratchets and outcome.was_run else None
+
+    def compare(self, outcome: Outcome, other: Outcome) -> Outcome:
+        """See :class:`Observer`."""
+        failed = f"by the other spring law: {other.reason}" if other.status == "failed" else ""
+        return outcome.noted(failed, settlement_other_law=other.settlement)
+
+    def reads(self, run: Run, outcome: Outcome) -> bool:
+        """See :class:`Observer`."""
+        return False
+
+
+def requested(output: Output) -> OtherLaw | None:
+    """Return the observer that a study asks for, if any."""
+    return OtherLaw() if output.both_laws else None

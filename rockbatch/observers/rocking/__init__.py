@@ -1,0 +1,1 @@
+"""Rocking about a base that has yielded, apart from its lean."""

@@ -1,0 +1,3 @@
+"""Forces in sections of the shaft: sections.csv."""
+
+TABLE = "sections.csv"

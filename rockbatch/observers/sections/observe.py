@@ -1,0 +1,43 @@
+"""Forces in sections are read from every step of a run."""
+
+from dataclasses import dataclass
+
+from rockbatch.outcome.outcome import Outcome, Section
+from rockbatch.pier.sections import section_heights
+from rockbatch.results.sections import SECTIONS, section_rows
+from rockbatch.simulation.error_control import CHANCE
+from rockbatch.simulation.observing import Observer
+from rockbatch.simulation.recording import Recording
+from rockbatch.simulation.runs import Run
+from rockbatch.simulation.sections import sections_of, with_errors
+from rockbatch.study import Output
+
+
+@dataclass(frozen=True)
+class ForcesInSections(Observer):
+    """The greatest forces in so many sections of the shaft, or in those at some heights [m], of every run that did not fail."""
+
+    sections: int | tuple[float, ...]
+
+    table = SECTIONS
+
+    def reads(self, run: Run, outcome: Outcome) -> bool:
+        """See :class:`Observer`."""
+        return outcome.status != "failed"
+
+    def read(self, recording: Recording, outcome: Outcome) -> list[Section]:
+        """See :class:`Observer`."""
+        return sections_of(recording.run, recording.rows, section_heights(recording.run.pier, self.sections))
+
+    def add(self, run: Run, outcome: Outcome, fine: list[Section] | None, coarse: list[Section] | None) -> Outcome:
+        """See :class:`Observer`."""
+        if fine is None:
+            return outcome.with_table(self.table, [])
+        sections = fine if coarse is None else with_errors(fine, coarse, run.pier, CHANCE)
+        return outcome.with_table(self.table, section_rows(run.pier, sections))
+
+
+def requested(output: Output) -> ForcesInSections | None:
+    """Return the observer that a study asks for, if any."""
+    sections = output.requested_sections
+    return None if sections is None else ForcesInSections(sections)

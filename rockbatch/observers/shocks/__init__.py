@@ -1,0 +1,3 @@
+"""Effects of each shock of a sequence: shocks.csv."""
+
+TABLE = "shocks.csv"

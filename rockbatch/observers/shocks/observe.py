@@ -1,0 +1,55 @@
+"""Effects of shocks are read from the history of a run at samples."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rockbatch.motions import Motion
+from rockbatch.outcome.outcome import Outcome, ShockOutcome
+from rockbatch.results.shocks import SHOCKS, shock_rows
+from rockbatch.simulation.observing import Observer
+from rockbatch.simulation.recording import Recording
+from rockbatch.simulation.runs import Run
+from rockbatch.simulation.shocks import OfShocks, of_shocks, with_error
+from rockbatch.study import Output
+
+
+@dataclass(frozen=True)
+class EffectsOfShocks(Observer):
+    """What each shock of a sequence does, until a pause after the last."""
+
+    table = SHOCKS
+    every_step = False
+
+    def observes(self, motions: Sequence[Motion]) -> bool:
+        """See :class:`Observer`."""
+        return any(motion.shocks for motion in motions)
+
+    def reads(self, run: Run, outcome: Outcome) -> bool:
+        """See :class:`Observer`."""
+        return bool(run.motion.shocks) and outcome.status != "failed"
+
+    def claims_error(self, outcome: Outcome) -> bool:
+        """See :class:`Observer`."""
+        return True
+
+    def quiet_s(self, run: Run, quiet_s: float) -> float:
+        """See :class:`Observer`."""
+        last = run.motion.shocks[-1]
+        return max(quiet_s, last.until - last.end)
+
+    def read(self, recording: Recording, outcome: Outcome) -> OfShocks:
+        """See :class:`Observer`."""
+        return of_shocks(recording.run, outcome, recording.rows)
+
+    def add(self, run: Run, outcome: Outcome, fine: OfShocks | None, coarse: OfShocks | None) -> Outcome:
+        """See :class:`Observer`."""
+        not_read = "failed" if outcome.status == "failed" else "not read"  # too long to be held in memory
+        outcomes = [ShockOutcome(not_read)] * len(run.motion.shocks)
+        if fine is not None:
+            outcomes = fine.outcomes if coarse is None else with_error(fine, coarse)
+        return outcome.with_table(self.table, shock_rows(run.motion, run.pier, outcomes))
+
+
+def requested(output: Output) -> EffectsOfShocks:
+    """Return the observer, which every study has that has a sequence."""
+    return EffectsOfShocks()

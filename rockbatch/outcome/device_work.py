@@ -1,0 +1,131 @@
+"""Work of devices along a run: cumulative travel, energy and half cycles of each damper, and the strain of each tendon."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.motions.motion import Samples
+from rockbatch.outcome.changes import LEAST, Sized, greatest_change
+from rockbatch.outcome.outcome import DeviceWork, Outcome
+from rockbatch.pier import Base, Damper, Pier, Tendon, places
+
+
+class Courses(NamedTuple):
+    """Elongation [m], force [N/kg] and energy taken [J/kg] of all devices at every row; shape (rows, devices) each.
+
+    Without the energy it is that of the force along the way, by the trapezoidal rule. With the times ``t`` [s] of the rows and
+    the ``speed`` [m/s] of the elongation a device turns between rows, where its elongation is cubic; else at rows.
+    """
+
+    elongation: Samples
+    pull: Samples
+    lost: Samples | None = None
+    t: Samples | None = None
+    speed: Samples | None = None
+
+
+class Work(NamedTuple):
+    """Work of each device; shape (devices,) each, NaN of ``strain`` where a device is no tendon that yields."""
+
+    travel: Samples  # [m]
+    lost: Samples  # [J/kg]
+    half_cycles: Samples
+    strain: Samples  # greatest, over the yield strain
+
+
+def rainflow(course: Sequence[float] | Samples) -> tuple[Samples, Samples]:
+    """Return the ranges of a ``course``, and of how many half cycles each is: rainflow counting of ASTM E1049-85, 5.4.4."""
+    values = np.asarray(course, dtype=np.float64)
+    values = values[np.concatenate([[True], np.diff(values) != 0.0])]
+    steps = np.diff(values)
+    turns = np.concatenate([[True], steps[1:] * steps[:-1] < 0.0, [True]])[: len(values)]
+    ranges, counts, points = list[float](), list[int](), list[float]()
+
+    def count(width: float, halves: int) -> None:
+        ranges.append(width)
+        counts.append(halves)
+
+    for value in values[turns].tolist():
+        points.append(value)
+        while len(points) >= 3 and abs(points[-1] - points[-2]) >= (width := abs(points[-2] - points[-3])):
+            if len(points) == 3:  # it has the starting point
+                count(width, 1)
+                del points[0]
+            else:
+                count(width, 2)
+                del points[-3:-1]
+    for first, second in pairwise(points):
+        count(abs(second - first), 1)
+    return np.array(ranges), np.array(counts, dtype=np.float64)
+
+
+def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
+    """Return the ``way`` of a device at times ``t`` with the extremes between them of the cubics by its ``speed``."""
+    h = np.diff(t)
+    rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
+    h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]
+    first, last = h * speed[rows], h * speed[rows + 1]
+    # the rate is first + 2 linear s + square s², and has one zero between its ends, whose signs differ
+    square, linear = 3.0 * (first + last - 2.0 * travel), 3.0 * travel - 2.0 * first - last
+    larger = -(linear + np.copysign(np.sqrt(np.maximum(linear**2 - square * first, 0.0)), linear))
+    s = first / larger
+    outside = ~((s >= 0.0) & (s <= 1.0))
+    s[outside] = larger[outside] / square[outside]
+    turns = start + s * travel + s * (1.0 - s) * ((1.0 - s) * (first - travel) + s * (travel - last))
+    return np.insert(way, rows + 1, turns)
+
+
+def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Work:
+    """Return the work of all devices; half cycles count from ``least_stroke`` [m] up, from end to end.
+
+    Travel and half cycles of a damper are its own, without its brace.
+    """
+    devices = [device for device in base.restraints for _ in places(pier, device)]
+    elongation, pull, lost, t, speed = courses
+    per_lambda = pier.gravity * pier.size / pier.half_width**2  # stiffness over the mass [1/s²] of λ = 1
+    braces = [per_lambda * device.brace if isinstance(device, Damper) else math.inf for device in devices]
+    way = elongation - pull / np.array(braces)
+    halves, travels = [], []
+    for j, course in enumerate(way.T):
+        if t is not None and speed is not None and braces[j] == math.inf:
+            course = with_turns(t, course, speed[:, j])
+        travels.append(np.abs(np.diff(course)).sum())
+        ranges, counts = rainflow(course)
+        halves.append(counts[ranges >= least_stroke].sum())
+    strain = np.full(len(devices), math.nan)
+    for j, device in enumerate(devices):
+        if isinstance(device, Tendon) and device.strength < math.inf:
+            most = device.psi * pier.gravity + device.lam * per_lambda * elongation[:, j].max()
+            strain[j] = max(most, 0.0) / (device.strength * pier.gravity)
+    taken = (0.5 * (pull[1:] + pull[:-1]) * np.diff(way, axis=0)).sum(axis=0) if lost is None else lost[-1] - lost[0]
+    return Work(np.array(travels), taken, np.array(halves), strain)
+
+
+def greatest_of(pier: Pier, base: Base, work: Work) -> DeviceWork:
+    """Return the greatest of the ``work`` of dampers and tendons."""
+    dampers = np.array([isinstance(device, Damper) for device in base.restraints for _ in places(pier, device)])
+    strains = work.strain[np.isfinite(work.strain)]
+    strain = float(strains.max()) if len(strains) else None
+    if not dampers.any():
+        return DeviceWork(tendon_strain=strain)
+    travel, lost, half_cycles = (float(of_each[dampers].max()) for of_each in work[:3])
+    return DeviceWork(travel, lost, int(half_cycles), strain)
+
+
+OF_WORK = {
+    "travel of a damper": Sized(("damper_travel",), "gap"),
+    "work of a damper": Sized(("damper_work",), "energy"),
+    "strain of a tendon": Sized(("tendon_strain",), "share"),
+}
+"""Fields of DeviceWork that have an error, with the scale of each."""
+
+
+def with_work(outcome: Outcome, fine: DeviceWork, coarse: DeviceWork | None, pier: Pier, chance: float) -> Outcome:
+    """Return ``outcome`` with the work of its devices; their error is ``chance`` times the change from that of twice the step."""
+    if coarse is None or outcome.devices_error is None:
+        return outcome.changed(device_work=fine)
+    change = max(greatest_change(OF_WORK, fine, coarse, pier)[1], LEAST)
+    return outcome.changed(device_work=fine, devices_error=max(outcome.devices_error, chance * change))

@@ -1,0 +1,382 @@
+"""Results of one run, without its histories."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+RELEASED = "theta_max is the rotation from which the pier was let go, beyond which it has not turned"
+"""A note on a run whose greatest rotation says nothing that was not given."""
+
+LEANS = "lean"
+"""``theta_max_is`` of a peak at which the pier hardly rocks, on a base that has yielded."""
+
+
+class Failure(StrEnum):
+    """Kind of failure of a run; its ``reason`` describes it."""
+
+    CONTACTS = "contacts"  # too many contact events within one sample
+    BLEW_UP = "blew up"  # the integration came to infinity
+    UNDECIDED = "undecided"  # left alone after the record, the pier may yet overturn
+    RATCHETS = "ratchets"  # left alone after the record, its springs ratchet
+    NOT_SETTLED = "not settled"  # the results did not converge when the step was halved
+    LARGE_STEP = "large step"  # refused: a fixed step too large for the springs
+    MANY_STEPS = "many steps"  # refused: it would take too long
+    UNUSABLE = "unusable"  # its record cannot be used
+
+
+TERMS = (
+    "kinetic",
+    "potential",
+    "elastic",
+    "input",
+    "plastic",
+    "impact",
+    "p_delta",
+    "constraint",
+    "damping",
+    "remainder",
+)
+"""Terms of the energy ledger, in the order in which the core returns them."""
+
+
+@dataclass(frozen=True)
+class PeakForces:
+    """Demands of a run on the design, until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.
+
+    Magnitudes; ``None`` where it does not apply (THEORY.md, Results of a run).
+
+    Attributes
+    ----------
+    base_shear, normal_force : float
+        Greatest V/M, and N/M of all supports, without the impulses of impacts [m/s²].
+    base_moment : float
+        Greatest moment over M about the middle of the base, of supports, dampers and tendons, likewise [m²/s²].
+    friction_demand : float
+        Greatest |V|/N while N is above a share of the weight.
+    pivot_left, pivot_right : float
+        Greatest force of each support over half the weight.
+    heel_gap_left, heel_gap_right : float
+        Greatest height of each pivot above where its support waits [m].
+    heel_speed_left, heel_speed_right : float
+        Greatest speed at which these open or close [m/s].
+    deck_acceleration : float
+        Greatest absolute horizontal acceleration of the deck [m/s²].
+    omega_over_p : float
+        Greatest |θ̇|/p.
+    landing_velocity, impulse : float or None
+        Of the hardest impact: speed of the pivot that lands, and vertical impulse over M [m/s].
+    impact_friction_demand : float or None
+        Greatest horizontal over vertical impulse of an impact.
+    first_uplift, uplift_ground : float or None
+        When a pivot first lifts [s], and magnitude of the horizontal ground acceleration then [m/s²].
+    key_shear : float or None
+        Greatest V/M while N is below that share: shear keys bear it [m/s²].
+    flight_longest : float or None
+        The longest flight that was followed [s].
+    error : float or None
+        By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
+    landing_force : float or None
+        Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
+    slides : bool or None
+        True if the greatest friction demand, of impacts too, exceeds the friction of the interface; ``None`` without a limit.
+    """
+
+    base_shear: float
+    normal_force: float
+    base_moment: float
+    friction_demand: float
+    pivot_left: float
+    pivot_right: float
+    heel_gap_left: float
+    heel_gap_right: float
+    heel_speed_left: float
+    heel_speed_right: float
+    deck_acceleration: float
+    omega_over_p: float
+    landing_velocity: float | None = None
+    impulse: float | None = None
+    impact_friction_demand: float | None = None
+    first_uplift: float | None = None
+    uplift_ground: float | None = None
+    key_shear: float | None = None
+    flight_longest: float | None = None
+    error: float | None = None
+    landing_force: float | None = None
+    slides: bool | None = None
+
+    def mirrored(self) -> "PeakForces":
+        """Return the demands of the mirror image."""
+        return replace(
+            self,
+            pivot_left=self.pivot_right,
+            pivot_right=self.pivot_left,
+            heel_gap_left=self.heel_gap_right,
+            heel_gap_right=self.heel_gap_left,
+            heel_speed_left=self.heel_speed_right,
+            heel_speed_right=self.heel_speed_left,
+        )
+
+
+@dataclass(frozen=True)
+class DeviceWork:
+    """Work of the devices of a run, until it ends; ``None`` without such a device.
+
+    Attributes
+    ----------
+    damper_travel, damper_work : float or None
+        Greatest cumulative travel [m], and greatest energy [J/kg], of any one damper.
+    damper_half_cycles : int or None
+        Half cycles of the damper that has most of them, from the least stroke that counts up.
+    tendon_strain : float or None
+        Greatest strain of a tendon over its yield strain; of tendons that yield.
+    """
+
+    damper_travel: float | None = None
+    damper_work: float | None = None
+    damper_half_cycles: int | None = None
+    tendon_strain: float | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Results of a run. SI units, angles in radians; ``None`` where it does not apply.
+
+    Attributes
+    ----------
+    status : str
+        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
+    reason : str
+        Why it failed, or what made it fly, in words for people; empty otherwise.
+    failure : Failure or None
+        The kind of failure of a run that failed.
+    note : str
+        Remarks on a valid run for people, e.g. counts that did not converge; empty otherwise.
+    chaotic : bool or None
+        True if a change of the motion or of the step that no record resolves changes the peak or the residuals beyond the
+        tolerance; ``None`` if that is not known, with a fixed step and of a run that failed.
+    may_overturn : bool or None
+        True if the run did not overturn, and does under a motion 10⁻⁸ stronger or weaker; ``None`` likewise.
+    beyond_linearised : bool or None
+        True if the peak is too large for the linearised kinematics of its base; ``None`` with finite rotations.
+    theta_max, t_max : float
+        Greatest rotation |θ| [rad] until the end of the run, and its time [s].
+    theta_max_in_motion : float
+        Greatest rotation |θ| until the record's last sample, or the end of a run that ended before it [rad].
+    change_in_motion : float or None
+        By how much halving the step still changed that [rad], where it has converged.
+    theta_max_is : str
+        "lean" where ``theta_max`` is mostly the lean of a base that has yielded; empty where the pier rocks.
+    theta_rocking, theta_lean : float or None
+        Greatest rotation about where the pier would rest on its base as it then was, and where it would at ``t_max`` [rad, to
+        the side of the peak]; if asked for.
+    theta_max_error, theta_res_error, settlement_error : float or None
+        Estimated errors of ``theta_max`` and ``theta_res`` [rad], and of ``settlement`` on yielding springs [m]; those of
+        residuals with their drift while they were read. ``None`` with a fixed step, or if the result is chaotic.
+    theta_res, base_tilt : float or None
+        Residual rotation, static on the deformed base, and tilt of the base itself [rad].
+    settlement : float or None
+        Mean plastic settlement of the supports since the start [m].
+    t_read : float or None
+        When residual rotation, tilt and settlement of a yielding base were read [s] (THEORY.md, Results of a run).
+    settlement_drift, theta_res_drift : float or None
+        How fast they went on changing then [m/s, rad/s].
+    impacts, separations : int
+        Counts; on the rigid base a separation is a lift-off from rest.
+    t_flight : float or None
+        First time at which neither pivot was in contact [s].
+    flights : int
+        How often both pivots left the ground; that which ended a run counts.
+    flight_duration, flight_height : float
+        Of the flights that were followed: how long both pivots were in the air, all together [s], and how high the lower one
+        was at most [m]; 0 without.
+    t_end : float
+        End of the run [s].
+    ductility_left, ductility_right : float or None
+        Yield demand: greatest deflection of each support over its yield deflection.
+    dissipated_left, dissipated_right : float or None
+        Plastic work in each spring [J/kg].
+    substeps : int
+        Steps per sample.
+    settlement_other_law : float or None
+        Settlement [m] of Bouc–Wen springs by the elastic–perfectly plastic law, if asked for.
+    damper_force, damper_stroke, damper_speed, damper_energy : float or None
+        Of dampers: greatest force over M g, elongation [m] and speed [m/s] of any; energy of all [J/kg].
+    tendon_force, tendon_yield, tendon_slack : float or None
+        Of tendons: greatest force over M g and plastic elongation [m] of any; how often they went slack.
+    stop_force, stop_depth, stop_blows, stop_energy : float or None
+        Of stops: greatest force over M g and deflection [m] of any; how often they were met; energy that all took [J/kg].
+    deck_spring_force, deck_spring_depth, deck_spring_blows, deck_spring_energy : float or None
+        Of deck springs, likewise.
+    devices_error : float or None
+        Estimated error of these demands but counts, as a share of the one whose error is the largest or of 1 % of its scale.
+    deflection_max, top_drift_max : float or None
+        Of a shaft that bends: greatest deflection of its top across it, and greatest horizontal way of its top [m].
+    deflection_max_error, top_drift_max_error : float or None
+        Their estimated errors [m].
+    energies : mapping of str to float, or None
+        Energy ledger at the end [J/kg], and the greatest ``remainder`` on the way, if asked for.
+    forces : PeakForces or None
+        Its demands on the design, if asked for.
+    device_work : DeviceWork or None
+        The work of its devices, if asked for.
+    tables : mapping
+        Rows of tables beside peaks.csv by their files, if asked for; none of a mirror image.
+    """
+
+    status: str
+    reason: str
+    theta_max: float
+    t_max: float
+    impacts: int
+    separations: int
+    t_flight: float | None
+    t_end: float
+    substeps: int
+    theta_max_error: float | None = None
+    theta_res: float | None = None
+    theta_res_error: float | None = None
+    base_tilt: float | None = None
+    settlement: float | None = None
+    t_read: float | None = None
+    settlement_drift: float | None = None
+    theta_res_drift: float | None = None
+    ductility_left: float | None = None
+    ductility_right: float | None = None
+    dissipated_left: float | None = None
+    dissipated_right: float | None = None
+    settlement_other_law: float | None = None
+    damper_force: float | None = None
+    damper_stroke: float | None = None
+    damper_speed: float | None = None
+    damper_energy: float | None = None
+    tendon_force: float | None = None
+    tendon_yield: float | None = None
+    tendon_slack: int | None = None
+    stop_force: float | None = None
+    stop_depth: float | None = None
+    stop_blows: int | None = None
+    stop_energy: float | None = None
+    deck_spring_force: float | None = None
+    deck_spring_depth: float | None = None
+    deck_spring_blows: int | None = None
+    deck_spring_energy: float | None = None
+    energies: Mapping[str, float] | None = None
+    forces: PeakForces | None = None
+    note: str = ""
+    devices_error: float | None = None
+    theta_max_in_motion: float = math.nan
+    change_in_motion: float | None = None
+    flights: int = 0
+    flight_duration: float = 0.0
+    flight_height: float = 0.0
+    theta_max_is: str = ""
+    theta_rocking: float | None = None
+    theta_lean: float | None = None
+    theta_rocking_error: float | None = None
+    theta_lean_error: float | None = None
+    settlement_error: float | None = None
+    device_work: DeviceWork | None = None
+    deflection_max: float | None = None
+    deflection_max_error: float | None = None
+    top_drift_max: float | None = None
+    top_drift_max_error: float | None = None
+    failure: Failure | None = None
+    chaotic: bool | None = None
+    may_overturn: bool | None = None
+    beyond_linearised: bool | None = None
+    tables: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def was_run(self) -> bool:
+        """True unless the run was refused with a reason: it would blow up or take too long."""
+        return not math.isnan(self.theta_max)
+
+    @property
+    def theta_max_in_motion_error(self) -> float | None:
+        """Estimated error of ``theta_max_in_motion`` [rad]: that of ``theta_max`` if they are the same, none if that has none.
+
+        A run that overturned or failed after its motion has one, too.
+        """
+        stood = self.status in ("ok", "flight")
+        same = self.theta_max_error is None or self.theta_max == self.theta_max_in_motion
+        return self.theta_max_error if stood and same else self.change_in_motion
+
+    def changed(self, **fields: Any) -> "Outcome":
+        """Return the outcome with other ``fields``, in a tenth of the time of ``dataclasses.replace``."""
+        copy = object.__new__(Outcome)
+        vars(copy).update(vars(self), **fields)
+        return copy
+
+    def noted(self, *remarks: str, **fields: Any) -> "Outcome":
+        """Return the outcome with those ``remarks`` that are not empty behind its note, and other ``fields``."""
+        return self.changed(note="; ".join(filter(None, (self.note, *remarks))), **fields)
+
+    def with_table(self, file: str, rows: Any) -> "Outcome":
+        """Return the outcome with the rows of a table beside peaks.csv."""
+        return self.changed(tables={**self.tables, file: rows})
+
+    def mirrored(self) -> "Outcome":
+        """Return the outcome under the reversed horizontal motion, of a symmetric pier on a symmetric foundation."""
+        return self.changed(
+            theta_res=_reversed(self.theta_res),
+            base_tilt=_reversed(self.base_tilt),
+            theta_res_drift=_reversed(self.theta_res_drift),
+            ductility_left=self.ductility_right,
+            ductility_right=self.ductility_left,
+            dissipated_left=self.dissipated_right,
+            dissipated_right=self.dissipated_left,
+            forces=self.forces and self.forces.mirrored(),
+            tables={},
+        )
+
+
+class Section(NamedTuple):
+    """Greatest forces in a section; SI units, per unit mass of the pier, axial forces positive in compression.
+
+    ``error`` is four times the share of itself by which halving the step still changed shear, moment or an axial extreme at most;
+    None with a fixed step.
+    """
+
+    height: float  # above the pivots [m]
+    shear: float  # greatest |V|/M, across the axis [m/s²]
+    moment: float  # greatest |moment|/M about the middle of the section [m²/s²]
+    axial_least: float  # N/M, along the axis [m/s²]
+    axial_greatest: float
+    axial_at_moment: float  # at the greatest |moment|
+    error: float | None = None
+
+
+@dataclass(frozen=True)
+class ShockOutcome:
+    """Effects of a shock; SI units, angles in radians, NaN where it does not apply.
+
+    Attributes
+    ----------
+    status : str
+        "ok"; "overturned" or "flight" if the run ended so before the next shock began; "not reached"; or "failed".
+    theta_max, t_max : float
+        Greatest rotation |θ| from its first sample until the next shock begins, or the run ends, and its time.
+    theta_max_error : float
+        By how much halving the step still changed it; NaN with a fixed step.
+    theta_res : float
+        Rotation at which the pier would rest when the next shock begins, static on the deformed base; with dampers or tendons
+        the middle of the extremes of θ in the last quarter of the pause. Behind the last shock a pause counts, too.
+    settlement : float
+        Mean settlement of the supports since the start, at the same time.
+    moving : float
+        Half the range of θ in the last quarter of the pause.
+    """
+
+    status: str
+    theta_max: float = math.nan
+    t_max: float = math.nan
+    theta_max_error: float = math.nan
+    theta_res: float = math.nan
+    settlement: float = math.nan
+    moving: float = math.nan
+
+
+def _reversed(angle: float | None) -> float | None:
+    return None if angle is None else 0.0 - angle  # never a negative zero

@@ -1,0 +1,306 @@
+"""Result of a simulation: the histories of one record on one foundation."""
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rockbatch.common.errors import InputError
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import Shown
+from rockbatch.pier import Base, Pier
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Samples = npt.NDArray[np.float64]
+
+FORCE_UNITS = {
+    "base_shear": "m/s^2",
+    "normal_force": "m/s^2",
+    "base_moment": "m^2/s^2",
+    "friction": "1",
+    "pivot_left": "1",
+    "pivot_right": "1",
+    "heel_gap_left": "m",
+    "heel_gap_right": "m",
+    "heel_speed_left": "m/s",
+    "heel_speed_right": "m/s",
+    "deck_acceleration": "m/s^2",
+}
+"""Columns of the table of forces, but for the time, with their units."""
+
+IMPACT_UNITS = {"t": "s", "landing_velocity": "m/s", "impulse_horizontal": "m/s", "impulse_vertical": "m/s"}
+"""Columns of the table of impacts, but for the pivot, with their units."""
+
+EVENT_TYPES = {"t": "float64", "kind": "str", "pivot": "str", "before": "int64", "after": "int64"}
+"""Columns of the table of events."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(Shown):
+    """Results of one run, and its histories. SI units; angles in radians; energy per unit mass.
+
+    Attributes
+    ----------
+    record, case : str
+        Names of the ground motion and of the foundation case.
+    columns : dict
+        Values of the study's varied keys that apply to this run, such as ``{"beta": 40.0}``.
+    pier : Pier
+        The block.
+    base : RigidBase, ElasticBase or YieldingBase
+        What it stands on.
+    status : str
+        "ok", "overturned", "flight" (the run was stopped by it) or "failed".
+    history : DataFrame, one row per instant
+        ``t`` [s]; ``theta`` [rad], positive tilts right; ``omega`` = dθ/dt [rad/s]; ``v`` [m], the centre of
+        mass above the position of unstressed springs; ``z_left``, ``z_right``, spring forces over the yield
+        force, −1..0; ``v_left``, ``v_right`` [m], the pivots, up positive; ``force_left``, ``force_right`` [N/kg],
+        forces of the supports per unit mass of the pier, negative in compression; ``energy`` [J/kg], relative to the start;
+        ``ag_h``, ``ag_v`` [m/s²], the ground, positive right and up; ``deflection`` [m] of the top of a shaft that bends,
+        across it, positive right. On the rigid base ``v``, ``z_*``, ``v_*`` and
+        ``force_*`` are NaN.
+    events : DataFrame, one row per event
+        ``t`` [s], ``kind`` ("separation", "impact", …), ``pivot`` ("left", "right"), and the places in ``history`` of
+        the rows ``before`` and ``after`` it, alike where nothing jumps.
+    ledger : DataFrame or None
+        Energies [J/kg] at the rows of ``history``, where they were asked for: stored ``kinetic``, ``potential``,
+        ``elastic``, relative to the start; summed since, ``input``, ``plastic``, ``impact``, ``p_delta`` (first-order
+        kinematics), ``constraint`` (finite kinematics), ``damping`` (dashpots of the supports, dampers); and the ``remainder``
+        of their balance, the integrator's error.
+    forces : DataFrame or None
+        What is sized, at the rows of ``history``, where it was asked for (THEORY.md, Forces): ``base_shear`` V/M, to the right on
+        the pier, ``normal_force`` N/M [m/s²], ``base_moment`` over M about the middle of the base, of supports, dampers and
+        tendons [m²/s²], positive as the right support bears more, ``friction`` |V|/N, ``pivot_…``, the supports'
+        forces over half the weight, ``heel_gap_…`` [m], ``heel_speed_…`` [m/s], opening, ``deck_acceleration`` [m/s²].
+    impacts : DataFrame or None
+        With the forces: of each impact ``t`` [s], the ``pivot`` that lands, ``landing_velocity`` [m/s], down, and the
+        impulse on the pier per unit mass, ``impulse_horizontal``, to the right, and ``impulse_vertical`` [m/s].
+    polarity : str
+        "-" where the motion's horizontal component was reversed, else "+".
+    scale : float
+        Factor on all components of the motion.
+    restraints : DataFrame or None
+        Elongation [m] and force [N/kg], positive in tension, of every damper and tendon at the rows of ``history``, such as
+        ``damper 1 left force``; ``None`` without.
+    row : Series or None
+        What the run came to: its row of ``peaks.csv``, by the names and in the units of its columns; NaN, or "", where one
+        does not apply.
+    shocks : DataFrame or None
+        What each shock of a sequence does, in the columns of ``shocks.csv`` that are not names of the run; ``None`` for a
+        motion that is none.
+
+    sections : DataFrame or None
+        Where it was asked for, the greatest forces in sections of the shaft, a row for each, in the columns of
+        ``sections.csv`` that are not names of the run. ``None`` in responses of a folder, whose ``sections`` has all runs.
+
+    Examples
+    --------
+    >>> pier, base = rb.Pier(alpha=0.2, p=1.0), rb.ElasticBase(beta=50, epsilon=0.1)
+    >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+    >>> response = rb.simulate(pier, base, motion)
+    >>> response.status, int(response.row["impacts"])
+    ('ok', 5)
+    >>> f"{response.theta_max / pier.alpha:.4f}", response.theta_max_error < 1e-4 * pier.alpha
+    ('0.1713', True)
+    >>> response.history[["t", "theta", "omega"]].tail(1).round(4)
+           t   theta   omega
+    822  4.0  0.0014 -0.0801
+    """
+
+    record: str
+    case: str
+    columns: dict[str, float | str]
+    pier: Pier
+    base: Base
+    status: str
+    history: "pd.DataFrame" = field(repr=False)
+    events: "pd.DataFrame" = field(repr=False)
+    ledger: "pd.DataFrame | None" = field(default=None, repr=False)
+    polarity: str = "+"
+    scale: float = 1.0
+    forces: "pd.DataFrame | None" = field(default=None, repr=False)
+    impacts: "pd.DataFrame | None" = field(default=None, repr=False)
+    restraints: "pd.DataFrame | None" = field(default=None, repr=False)
+    row: "pd.Series[Any] | None" = None
+    shocks: "pd.DataFrame | None" = field(default=None, repr=False)
+    sections: "pd.DataFrame | None" = field(default=None, repr=False)
+
+    @property
+    def theta_max(self) -> float:
+        """Greatest rotation |θ| until the end of the run [rad]; NaN where nothing was run."""
+        return self.pier.alpha * self._number("theta_max_over_alpha")
+
+    @property
+    def theta_max_error(self) -> float:
+        """Estimated error of ``theta_max`` [rad]; NaN with a fixed step, and where the pier did not stand."""
+        return self.pier.alpha * self._number("theta_max_error")
+
+    @property
+    def theta_res(self) -> float:
+        """Residual rotation [rad]; NaN on a rigid base without dampers that hold a tilt, and where the pier did not stand."""
+        return self.pier.alpha * self._number("theta_res_over_alpha")
+
+    @property
+    def settlement(self) -> float:
+        """Mean settlement of the supports [m]; NaN on the rigid base, and where the pier did not stand."""
+        return self._number("settlement_m")
+
+    @property
+    def reason(self) -> str:
+        """Why the run failed, or what made the pier fly; empty otherwise."""
+        return str(self._of_row()["reason"])
+
+    @property
+    def note(self) -> str:
+        """Remarks on a valid run; empty otherwise."""
+        return str(self._of_row()["note"])
+
+    @property
+    def t(self) -> Samples:
+        """Time [s], shape (n,)."""
+        return self._history("t")
+
+    @property
+    def theta(self) -> Samples:
+        """Rotation θ [rad], shape (n,); positive lifts the left pivot and tilts the block to the right."""
+        return self._history("theta")
+
+    @property
+    def omega(self) -> Samples:
+        """Angular velocity dθ/dt [rad/s], shape (n,)."""
+        return self._history("omega")
+
+    @property
+    def v(self) -> Samples:
+        """Centre of mass above the position of unstressed springs [m], shape (n,); NaN on the rigid base."""
+        return self._history("v")
+
+    @property
+    def z_left(self) -> Samples:
+        """Force of the left spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_left")
+
+    @property
+    def z_right(self) -> Samples:
+        """Force of the right spring over its yield force, −1..0, shape (n,); NaN on the rigid base."""
+        return self._history("z_right")
+
+    @property
+    def energy(self) -> Samples:
+        """Total energy per unit mass [J/kg], relative to the start, shape (n,)."""
+        return self._history("energy")
+
+    @property
+    def half_cycles(self) -> "pd.DataFrame":
+        """Half cycles of rocking: row 0 from the start of the run, such as a release, and one for each impact, to the next.
+
+        ``t`` [s], of its beginning; ``omega_before``, ``omega_after`` [rad/s], the angular velocity on both sides of the impact
+        there, NaN in row 0, which begins with none; ``amplitude`` [rad], the greatest |θ| until the next impact, and
+        ``t_amplitude`` [s], NaN where the run ends before; ``apparent_restitution``, by which a block on rigid ground that does
+        not move would come from the amplitude before to this one. On springs a half cycle begins as the pier passes through
+        θ = 0, where its velocity does not jump.
+
+        Examples
+        --------
+        >>> block = rb.Pier.rectangle(width_m=0.3, height_m=1.2)
+        >>> ground, still = rb.RigidBase(restitution=0.9), rb.Motion.still(2.0)
+        >>> response = rb.simulate(block, ground, still, initial_rotation_rad=0.1)
+        >>> response.half_cycles[["t", "amplitude", "apparent_restitution"]].head(3).round(4)
+                t  amplitude  apparent_restitution
+        0  0.0000     0.1000                   NaN
+        1  0.3242     0.0764                   0.9
+        2  0.8589     0.0595                   0.9
+        """
+        from rockbatch.outcome.half_cycles import COLUMNS, Path, apparent_restitution, half_cycles
+
+        landed = self.events.loc[self.events["kind"].isin(["impact", "rest"]), "after"].to_numpy()
+        cycles = half_cycles(Path(self.t, self.theta, self.omega), None if self.base.on_springs else landed)
+        return pd.DataFrame(
+            dict(zip(COLUMNS, (*cycles, apparent_restitution(self.pier, cycles.amplitude)), strict=True))
+        )
+
+    def device_work(self, least_stroke_m: float = 0.01) -> "pd.DataFrame":
+        """Return the work of every damper and tendon, a row each, from the samples and events of the history.
+
+        ``travel_m``, its cumulative travel, a damper's without its brace; ``energy_J_kg``, the work on it, per unit mass of the
+        pier, and ``energy_kJ``, NaN if the mass is not known; ``half_cycles`` of ``least_stroke_m`` or more from end to end, by
+        rainflow counting (ASTM E1049-85); ``strain_over_yield``, of a tendon that yields, the greatest, else NaN.
+
+        Examples
+        --------
+        >>> base = rb.RigidBase(restraints=(rb.Damper("friction", f=0.05, at="left"),))
+        >>> motion = rb.pulse("sine", name="one-sine", amplitude=9.81, period=0.5, dt=0.005, duration=2.0)
+        >>> response = rb.simulate(rb.Pier(alpha=0.2, p=1.0), base, motion)
+        >>> work = response.device_work().loc["damper 1"]
+        >>> f"{work.travel_m:.3f} m, {work.half_cycles:.0f} half cycles"
+        '0.300 m, 4 half cycles'
+        """
+        from rockbatch.outcome.device_work import Courses, work_of
+
+        if self.restraints is None:
+            raise InputError(f"{self._title}: there is no damper and no tendon")
+        columns = list(self.restraints.columns[1:])
+        elongation, pull = (self.restraints[columns[first::2]].to_numpy(dtype=np.float64) for first in (0, 1))
+        work = work_of(self.pier, self.base, Courses(elongation, pull), least_stroke_m)
+        mass = math.nan if self.pier.mass_t is None else self.pier.mass_t
+        names = [name.removesuffix(" elongation") for name in columns[::2]]
+        table = {"travel_m": work.travel, "energy_J_kg": work.lost, "energy_kJ": mass * work.lost}
+        table |= {"half_cycles": work.half_cycles.astype(np.int64), "strain_over_yield": work.strain}
+        return pd.DataFrame(table, index=pd.Index(names, name="device"))
+
+    def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
+        """Draw rotation, angular velocity, energy and ground motion against time, events as strokes, and the loops of supports,
+        dampers and tendons: a matplotlib Figure, ``width_mm`` wide or in the place of ``ax``,
+        ``response.plot().savefig("pier.pdf")``."""
+        from rockbatch.common.figures.paper import drawn
+        from rockbatch.outcome.figures import of_one
+
+        return drawn(of_one(self, self._title), width_mm, ax)
+
+    def _facts(self) -> tuple[str, dict[str, str]]:
+        """See :class:`Shown`."""
+        kinds = self.events["kind"].value_counts(sort=False)
+        facts = {
+            "history": f"{len(self.history)} rows until {self.t[-1]:.2f} s" if len(self.history) else "",
+            "events": ", ".join(f"{count} × {kind}" for kind, count in kinds.items()),
+        }
+        if self.row is not None:
+            forms = {
+                "theta_max_over_alpha": ".5f",
+                "theta_max_error": ".0e",
+                "t_max_s": ".2f",
+                "theta_res_over_alpha": ".5f",
+            }
+            numbers = {name: self._number(name) for name in forms}
+            peak, error, time, residual = ("" if x != x else format(x, forms[name]) for name, x in numbers.items())
+            facts = {
+                "θ_max/α": f"{peak}{f' ± {error}' if error else ''} at {time} s" if peak else "",
+                "θ_res/α": residual,
+                "settlement": "" if self.settlement != self.settlement else f"{1000 * self.settlement:.2f} mm",
+                "reason": self.reason,
+                "note": self.note,
+            } | facts
+        return f"response {self._title}", facts
+
+    @property
+    def _title(self) -> str:
+        sign = f", polarity {self.polarity}" if self.polarity != "+" else ""
+        return f"{self.record} × {self.scale:g}{sign}, {self.case}: {self.status}"
+
+    def _of_row(self) -> "pd.Series[Any]":
+        if self.row is None:
+            raise InputError(
+                f"{self._title}: these are histories alone; take them from `open_results(...).response(...)`"
+            )
+        return self.row
+
+    def _number(self, column: str) -> float:
+        return float(self._of_row()[column])
+
+    def _history(self, column: str) -> Samples:
+        return self.history[column].to_numpy(dtype=np.float64)

@@ -1,0 +1,71 @@
+"""Frequencies of a pier in full contact with its springs, and the deflections of these (THEORY.md, eqs. 12 and 20)."""
+
+import math
+from typing import Protocol
+
+from rockbatch.pier.block import Pier
+
+
+class Ground(Protocol):
+    """A base by its vertical frequency over p, infinite on rigid ground."""
+
+    @property
+    def beta(self) -> float: ...
+
+
+class Springs(Ground, Protocol):
+    """Two springs under a pier, with their damping ratio, if any, and η, by which their deflections are measured."""
+
+    @property
+    def zeta(self) -> float | None: ...
+
+    @property
+    def reference_eta(self) -> float: ...
+
+
+def vertical_frequency(pier: Pier, base: Ground) -> float:
+    """Return the circular frequency ω_v = β p [rad/s] of vertical vibration in full contact; infinite on a rigid base."""
+    return base.beta * pier.p
+
+
+def static_deflection(pier: Pier, base: Ground) -> float:
+    """Return δ_s = g/ω_v² [m], of the springs under the weight at rest, while elastic; 0 on a rigid base."""
+    return pier.gravity / vertical_frequency(pier, base) ** 2
+
+
+def yield_deflection(pier: Pier, base: Springs) -> float:
+    """Return δ_y = η δ_s [m], at which a spring yields; elastic springs are measured by δ_s, η = 1."""
+    return base.reference_eta * pier.gravity / vertical_frequency(pier, base) ** 2
+
+
+def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v: float) -> float:
+    """Return the tilt of the base over the residual rotation, 1 − g h/(ω_v² b²): the weight leans the pier (THEORY.md, eq. 20).
+
+    ``gravity`` g [m/s²]; ``height`` h and ``half_width`` b [m], of the centre of mass from the pivots; ``omega_v`` [rad/s].
+    """
+    return 1.0 - gravity * height / (omega_v * half_width) ** 2
+
+
+def rocking_frequency(pier: Pier, base: Springs) -> float:
+    """Return the circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
+    mu, alpha = pier.mu, pier.alpha
+    stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
+    return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
+
+
+def fastest(pier: Pier, base: Springs) -> float:
+    """Return the greatest rate [rad/s] in full contact: of vertical vibration or rocking, or of decay if overdamped.
+
+    A vibration ω with the damping d, its decay's rate, has ω as its rate as long as d < ω, and d + √(d² − ω²) beyond;
+    d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
+    """
+    damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
+    share = pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)
+
+    def rate(omega: float, decay: float) -> float:
+        return omega if decay <= omega else decay + math.sqrt(decay**2 - omega**2)
+
+    return max(
+        rate(vertical_frequency(pier, base), damping),
+        rate(rocking_frequency(pier, base), damping * share),
+    )

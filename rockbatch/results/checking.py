@@ -1,0 +1,132 @@
+"""Design checks on a folder of results, or on a table: :func:`rockbatch.check`."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rockbatch.checks.judging import judge
+from rockbatch.checks.rule_choices import implausible
+from rockbatch.checks.rule_files import Checks, load_rules, read_checks
+from rockbatch.checks.rules import Rule
+from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.verdicts import Verdict, as_table
+from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
+from rockbatch.common.lazy import pd
+from rockbatch.common.showing import shown
+from rockbatch.quantities.rows import with_case
+from rockbatch.results.columns import given_table
+from rockbatch.results.reading import Saved, read_saved
+from rockbatch.results.run_json import INFO, describe_case
+from rockbatch.results.sections import SECTIONS, read_sections
+from rockbatch.study import Study, load_study
+from rockbatch.toml.reader import TomlFile
+
+PathLike = str | os.PathLike[str]
+
+
+@checked
+def check(
+    results: "PathLike | Saved | pd.DataFrame",
+    rules: PathLike | Iterable[Rule] | None = None,
+    *,
+    study: PathLike | Study | None = None,
+) -> "pd.DataFrame":
+    """Check results against rules.
+
+    Parameters
+    ----------
+    results : path, opened results or DataFrame
+        A folder that ``rockbatch run`` has written, what :func:`rockbatch.open_results` made of it, or the table that
+        :func:`rockbatch.run` returned, or some rows of it, also as ``pandas.read_csv`` reads peaks.csv. A record of which a
+        table has no row is none of the suite.
+    rules : path or iterable of Rule, optional
+        A TOML file with [[check]] tables, or the rules themselves; by default the study's own.
+    study : path or Study, optional
+        The study that a table comes from; folders know theirs.
+
+    Returns
+    -------
+    DataFrame
+        The rows of checks.csv, one for each case, scale and rule: see :class:`rockbatch.checks.Verdict`. Of a folder, first that
+        of the suite, without a case, if the study fits it to a target spectrum; a table alone has no spectra.
+
+    Raises
+    ------
+    InputError
+        For mistakes in the rules, with their lines, for rules that do not fit the results, and for a table that lacks a column.
+
+    Examples
+    --------
+    >>> table = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.check("reports/pier4")[["check", "case", "verdict"]]
+          check   case verdict
+    0  rotation  rigid    pass
+    1  rotation   pads    pass
+    """
+    judged = verdicts(results, rules, study=study)
+    return as_table(judged)
+
+
+def verdicts(
+    results: "PathLike | Saved | pd.DataFrame",
+    rules: PathLike | Iterable[Rule] | None = None,
+    *,
+    study: PathLike | Study | None = None,
+) -> list[Verdict]:
+    """Return the verdicts of :func:`check`, one for each row."""
+    given_rules = _rules_of(rules)
+    records: Mapping[str, str] | None = None
+    events: Mapping[str, str] | None = None
+    of_suite: list[Verdict] = []
+    sections: pd.DataFrame | None = None
+    if isinstance(results, Saved | str | os.PathLike):
+        saved = results if isinstance(results, Saved) else read_saved(Path(results))
+        own_rules, count, _ = _own_checks(saved.info["study"], judged=given_rules is None)
+        table, cases = saved.peaks, saved.info["cases"]
+        records = {record["record"]: record.get("station", "") for record in saved.info["records"]}
+        events = {record["record"]: record.get("event") or "" for record in saved.info["records"]}
+        if (path := saved.directory / SECTIONS).exists():
+            sections = read_sections(path, saved.info["varied"])
+        of_suite = suite_verdicts(saved.info, with_case(table)["scale"])
+    else:
+        if study is None:
+            raise InputError("check: a table does not name its piers; give study = the study it was run from")
+        study = study if isinstance(study, Study) else load_study(study)
+        own_rules, count = study.checks, study.count
+        table, cases = given_table(results, study.varied), [describe_case(case) for case in study.cases]
+    rules = own_rules if given_rules is None else given_rules
+    if not (rules or of_suite):
+        raise InputError("no checks: the study has no [[check]]; add some, or give a file of rules")
+    if given_rules is not None:  # the study's own are held against its piers when it is read
+        wrong = [f"check {shown(rule.name)}: {problem}" for rule in given_rules for problem in implausible(rule, cases)]
+        if wrong:
+            raise InputError(*wrong)
+    return [*of_suite, *(judge(rules, table, cases, records, count, sections, events) if rules else ())]
+
+
+def _rules_of(rules: PathLike | Iterable[Rule] | None) -> Sequence[Rule] | None:
+    if rules is None:
+        return None
+    if isinstance(rules, str | os.PathLike):
+        return load_rules(rules)
+    listed = tuple(rules) if isinstance(rules, Iterable) else ()
+    if isinstance(rules, Iterable) and all(isinstance(rule, Rule) for rule in listed):
+        return listed
+    raise InputError("rules: must be a file with [[check]] tables, or a list of Rule")
+
+
+def _own_checks(study: Mapping[str, Any], *, judged: bool) -> Checks:
+    """Return the checks of a study by its text and that of its file of checks, as in run.json; sound ones if ``judged``."""
+
+    def opened(path: Path) -> TomlFile:
+        for check in study.get("checks", ()):
+            return TomlFile.parse(Path(check["path"]), check["text"])
+        raise InputError(f"{INFO} does not keep {path}; run the study again, or give the file of rules")
+
+    file = TomlFile.parse(Path(study["path"]), study["text"])
+    checks = read_checks(file, opened=opened)
+    if judged:
+        file.finish()
+    return checks

@@ -1,0 +1,106 @@
+"""Recorded runs: the rows that the core writes at samples and events, or at every step."""
+
+import contextlib
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.common.errors import InputError
+from rockbatch.core import types
+from rockbatch.core.types import Result
+from rockbatch.outcome.outcome import Outcome
+from rockbatch.simulation.compilation import kernel_of
+from rockbatch.simulation.runs import Run, Stop, written_run, written_runs
+
+MOST_ROWS = 10_000_000
+"""Greatest number of rows of a history held in memory, about a gigabyte."""
+
+ROWS_TOGETHER = 150_000
+"""Greatest number of rows of histories that are written side by side, some 16 megabytes."""
+
+SPARE = 1.1
+"""Rows for which there is room, over the steps of a run: velocity reversals of springs have rows of their own."""
+
+
+class Recording(NamedTuple):
+    """A run, and the rows of its history: a record for each moment (``core.history``)."""
+
+    run: Run
+    rows: np.recarray
+    t_flight: float | None = None
+
+    @property
+    def at_samples(self) -> "Recording":
+        """The same without the steps between samples and events: to the bit what is recorded without them."""
+        shown = self.rows.kind != types.STEP
+        shown[-1:] = True  # an overturned pier may fall between samples
+        return self._replace(rows=self.rows[shown].view(np.recarray))
+
+    def until(self, t: float) -> "Recording":
+        """Return the rows until a time [s]."""
+        return self._replace(rows=self.rows[: int(np.searchsorted(self.rows.t, t, side="right"))].view(np.recarray))
+
+
+def recorded(run: Run, outcome: Outcome, quiet_s: float, every_step: bool, wait: bool = True) -> Recording:
+    """Return the history of a run whose steps, counts and end are those of ``outcome``.
+
+    Raises ``InputError`` for more than :data:`MOST_ROWS`.
+    """
+    capacity = min(_room(run, outcome, every_step), MOST_ROWS)
+    result, rows = written_run(run, outcome.substeps, quiet_s, capacity, every_step=every_step, wait=wait)
+    if result.rows > MOST_ROWS:
+        instead = "leave out the energy ledger or use fewer substeps" if every_step else "cut the record"
+        raise InputError(f"{run.motion.name}: a history of {result.rows} rows, more than {MOST_ROWS}; {instead}")
+    if result.rows > capacity:
+        result, rows = written_run(run, outcome.substeps, quiet_s, result.rows, every_step=every_step, wait=wait)
+    return _recording(run, result, rows)
+
+
+def _recording(run: Run, result: Result, rows: np.recarray) -> Recording:
+    t_flight = None if math.isnan(result.t_flight) else result.t_flight
+    return Recording(run, rows[: result.rows].view(np.recarray), t_flight)
+
+
+def _room(run: Run, outcome: Outcome, every_step: bool, until: float = math.inf) -> int:
+    """Return for how many rows there should be room in a run that ends by ``until`` [s]."""
+    steps = min(outcome.t_end, until) / run.motion.dt * (outcome.substeps if every_step else 1)
+    return int(SPARE * steps) + 64 * (outcome.impacts + outcome.separations + 64)
+
+
+def recorded_side_by_side(
+    runs: Sequence[Run], outcomes: Sequence[Outcome], quiet_s: float, wait: bool = True, stop: Stop | None = None
+) -> Iterator[tuple[int, Recording]]:
+    """Yield the number and the history, at samples and events, of each run that is not too long to be held in memory."""
+    ends = [math.inf if wait else run.motion.duration + quiet_s for run in runs]
+    room = [_room(run, o, False, end) for run, o, end in zip(runs, outcomes, ends, strict=True)]
+    alike: dict[object, list[int]] = {}
+    for i in sorted(range(len(runs)), key=room.__getitem__):
+        steps = outcomes[i].substeps
+        alike.setdefault(i if runs[i].base.restraints else (kernel_of(runs[i].pier, runs[i].base), steps), []).append(i)
+    for members in alike.values():
+        first = 0
+        for n, i in enumerate(members, 1):
+            if n == len(members) or (n + 1 - first) * room[members[n]] > ROWS_TOGETHER:
+                if stop is not None and stop.is_set:
+                    return
+                yield from _recorded_together(runs, outcomes, members[first:n], quiet_s, room[i], wait)
+                first = n
+
+
+def _recorded_together(
+    runs: Sequence[Run], outcomes: Sequence[Outcome], numbers: Sequence[int], quiet_s: float, room: int, wait: bool
+) -> Iterator[tuple[int, Recording]]:
+    """Yield the histories of the runs with these ``numbers``, of one kind and step, for which there should be ``room``."""
+    if len(numbers) == 1:
+        with contextlib.suppress(InputError):
+            yield numbers[0], recorded(runs[numbers[0]], outcomes[numbers[0]], quiet_s, False, wait)
+        return
+    found = written_runs([runs[i] for i in numbers], outcomes[numbers[0]].substeps, quiet_s, room, wait=wait)
+    for i, (result, rows) in zip(numbers, found, strict=True):
+        if result.rows > room:
+            with contextlib.suppress(InputError):
+                yield i, recorded(runs[i], outcomes[i], quiet_s, False, wait)
+        else:
+            yield i, _recording(runs[i], result, rows)

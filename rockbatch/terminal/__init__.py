@@ -1,0 +1,1 @@
+"""What all commands share: the streams, messages and progress on the terminal, and arguments."""

@@ -1,0 +1,81 @@
+"""Messages of a batch on the terminal, and its progress."""
+
+import io
+import os
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+from rockbatch.batch.listening import Advance, Bars, Listener, count
+from rockbatch.motions import MotionSet
+from rockbatch.terminal.streams import give_up, say, tell
+
+SECONDS_BETWEEN_LINES = 2.0
+
+
+class Terminal(Listener):
+    """Listener that prints on stderr what it hears of a batch."""
+
+    def __init__(self) -> None:
+        self._bars = Bars()
+
+    def motions(self, motion_set: MotionSet) -> None:
+        """Print which files are not used and why, and how many are left out."""
+        for file in motion_set.unusable:
+            say(f"not used: {file.source}: {file.reason}")
+        for first, repeat in _twice(motion_set):
+            say(f"{first} and {repeat} have the same samples: checks count them once, curves twice; leave one out")
+        if lacking := [motion.named for motion in motion_set.motions if motion.lacks_vertical]:
+            say(f"no vertical: {'; '.join(lacking)}")
+        if motion_set.left_out:
+            say(
+                f"{count(len(motion_set.left_out), 'file')} left out: `rockbatch motions FOLDER` lists them and says why"
+            )
+
+    def say(self, text: str) -> None:
+        """See :class:`Listener`."""
+        with self._bars.making_room():
+            say(text)
+
+    @contextmanager
+    def progress(self, total: int) -> Iterator[Advance]:
+        """Return a bar with the time remaining on a terminal, and plain lines elsewhere; see :class:`Listener`."""
+        stream = sys.stderr or io.StringIO()
+        # A terminal that a program makes may have no size
+        if not (stream.isatty() and min(os.get_terminal_size(stream.fileno())) > 0):
+            yield _lines(total, stream)
+            return
+        with self._bars.progress(total) as advance:
+
+            def guarded(runs: int) -> None:
+                try:
+                    advance(runs)
+                except OSError as error:
+                    give_up(stream, error)
+
+            yield guarded
+
+
+def _twice(motions: MotionSet) -> list[tuple[str, str]]:
+    """Return the names of motions with the same samples: the first, and each that repeats it."""
+    first: dict[tuple[float, bytes], str] = {}
+    names = [(first.setdefault((m.dt, m.horizontal.tobytes()), m.name), m.name) for m in motions.motions]
+    return [(name, repeat) for name, repeat in names if name != repeat]
+
+
+def _lines(total: int, stream: TextIO) -> Advance:
+    """Return a function that prints a line now and then: how many runs are finished, and the time remaining."""
+    started = printed = time.monotonic()
+    done = 0
+
+    def advance(runs: int) -> None:
+        nonlocal printed, done
+        done += runs
+        now = time.monotonic()
+        if now - printed >= SECONDS_BETWEEN_LINES:
+            printed = now
+            tell(stream, f"{done} of {count(total, 'run')}, {(now - started) * (total - done) / done:.0f} s left")
+
+    return advance

@@ -1,0 +1,247 @@
+"""From a study to its results: in memory, or in a folder, judged and reported."""
+
+import os
+import time
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rockbatch.batch.carrying_out import execute
+from rockbatch.batch.execution import InMemory, execute_runs, to_simulate
+from rockbatch.batch.finishing import Written, finish, unchanged, write_peaks
+from rockbatch.batch.listening import Listener, Progress, announced_if_slow, count, listener_of
+from rockbatch.batch.observers import observers_of
+from rockbatch.batch.plan import Plan
+from rockbatch.batch.preparing import Batch, cost_of_finished, prepare, share_of, to_be_replaced
+from rockbatch.batch.threads import Engine, engine_of
+from rockbatch.checks import Verdict, write_verdicts
+from rockbatch.checks.suite_target import suite_verdicts
+from rockbatch.checks.verdicts import CHECKS
+from rockbatch.common.arguments import checked
+from rockbatch.common.errors import InputError
+from rockbatch.common.files import is_plain
+from rockbatch.common.lazy import pd
+from rockbatch.motions import MotionSet
+from rockbatch.reporting import REPORT, write_report
+from rockbatch.results.checking import verdicts
+from rockbatch.results.columns import JOURNAL, as_table, columns, unusable_rows
+from rockbatch.results.reading import Saved
+from rockbatch.results.run_json import FROM_PYTHON
+from rockbatch.study import Motions, Study, given_study
+from rockbatch.study.suite import ground_motions
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedBatch:
+    """Results that were written into a folder, judged and reported.
+
+    Attributes
+    ----------
+    saved : Saved
+        ``peaks.csv`` and ``run.json``.
+    motions : MotionSet
+        What the study was run under, and what of it could not be used.
+    verdicts : list of Verdict
+        Those of the study's checks, and of its target spectrum; empty where it has neither.
+    files : tuple of Path
+        Table, run.json, histories, checks and report, those that were written.
+    without : InputError or None
+        Why histories that the study asks for are not there.
+    """
+
+    saved: Saved
+    motions: MotionSet
+    verdicts: list[Verdict]
+    files: tuple[Path, ...]
+    without: InputError | None
+
+
+@checked
+def run(
+    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
+    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+) -> "pd.DataFrame":  # fmt: skip
+    """Run every record of a study in every case.
+
+    Parameters
+    ----------
+    study : path or Study
+        A study file, or one that is loaded.
+    out : path, optional
+        Folder for the results of ``rockbatch run``: ``peaks.csv``, ``run.json``, the histories and checks that the study asks
+        for, and ``report.html``. Runs that an earlier process finished there are kept; an interrupted one is
+        continued. Without it nothing is kept on disk, and there are no histories.
+    motions : path, MotionSet, Motion or list of Motion, optional
+        What replaces all motions of the study: a file or folder, or motions.
+    jobs : int or Engine, optional
+        Number of threads, all processors by default; or a cluster, :class:`rockbatch.batch.dask.Dask`. The table does not
+        depend on it.
+    fresh : bool
+        Whether to start over, instead of going on with what is finished in ``out``.
+    progress : bool or function of two ints, optional
+        True for a bar, in a notebook too; False for none; by default one where stderr is a terminal. Or what is called with
+        the number of things that are done, and of all: first of the runs, then of the histories that are kept.
+
+    Returns
+    -------
+    DataFrame, shape (rows of peaks.csv, columns)
+        Row by row, by name, as in ``peaks.csv``: lengths in m, times in s, rotations over α; with ``out`` to the ten digits
+        that are on disk.
+
+    Raises
+    ------
+    InputError
+        With every mistake in the study; for a folder with finished runs of another state of the study, and for one
+        into which another process is writing; where histories that the study asks for are too long to be kept.
+
+    Examples
+    --------
+    >>> table = rb.run("pier4.toml")
+    >>> table.groupby("case")["theta_max_over_alpha"].median().round(4)
+    case
+    pads     0.1741
+    rigid    0.2100
+    Name: theta_max_over_alpha, dtype: float64
+    >>> kept = rb.run("pier4.toml", out="reports/pier4")
+    >>> rb.open_results("reports/pier4").history(record="one-sine", case="rigid")[["t", "theta"]].tail(1)
+           t     theta
+    407  4.0  0.019396
+    """
+    loaded, listener, engine = given_study(study, motions), listener_of(progress), engine_of(jobs)
+    if out is None:
+        return _in_memory(loaded, engine, listener)
+    command = ["run", str(loaded.path) if loaded.in_file else f"(study {FROM_PYTHON}", "--out", os.fspath(out)]
+    if motions is not None:
+        command += [
+            "--motions",
+            os.fspath(motions) if isinstance(motions, str | os.PathLike) else f"(motions {FROM_PYTHON}",
+        ]
+    finished = run_into(Path(out), loaded, engine, listener, command=command, fresh=fresh)
+    assert finished is not None  # no share is asked for
+    if finished.without:
+        raise finished.without
+    return finished.saved.peaks
+
+
+def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
+    motions = ground_motions(study)
+    listener.motions(motions)
+    runs, rows = Plan(study, motions), InMemory(columns(study))
+    with engine, listener.progress(len(to_simulate(runs, range(len(runs))))) as progress:
+        execute_runs(runs, study.numerics, rows, engine, observers_of(study.output), progress=progress)
+    return as_table([*(rows[i] for i in sorted(rows)), *unusable_rows(motions)], study)
+
+
+def run_into(
+    directory: Path,
+    study: Study,
+    engine: Engine,
+    listener: Listener,
+    *,
+    command: Sequence[str],
+    fresh: bool = False,
+    share: tuple[int, int] | None = None,
+    records: Collection[str] = (),
+) -> FinishedBatch | None:
+    """Carry out what is not finished in ``directory`` yet, and write the results; return what is in it, None after a share.
+
+    ``command`` are the words after ``rockbatch`` that do it again, for run.json. Of a ``share``, (i, n), the i-th of n shares
+    alone is carried out, and left in its journal. All histories of ``records`` are kept, beside those that the study asks for.
+    Raises ``InputError`` as :func:`run`.
+    """
+    started = time.monotonic()
+    batch = prepare(directory, study, listener, command, records=records, later=(CHECKS, REPORT))
+    requested = share_of(len(batch.runs), *share) if share else range(len(batch.runs))
+    with batch.journal(fresh) as journal:
+        cost = None if fresh or len(journal) else cost_of_finished(directory, batch.info)
+        if cost is not None:
+            state = f"{batch.described} are finished in {directory}"
+            listener.say(f"{state}; nothing is left to run (--fresh runs them again)")
+            if not records and (finished := _as_it_is(batch)):
+                return finished
+            return _judged_and_reported(batch, finish(batch, journal, cost, records))
+        replaced = None if fresh or share else to_be_replaced(directory, study)
+        if replaced:
+            listener.say(f"{replaced}, will be replaced")
+        of_share = f"; share {share[0]} of {share[1]} is {{}}" if share else ""
+        with engine:
+            every = count(len(to_simulate(batch.runs, requested)), "run")
+            listener.say(f"{batch.described} on {engine}{of_share.format(every)}")
+            cost = execute(batch, requested, journal, engine)
+        if share:
+            listener.say(
+                f"{journal.path}: share {share[0]} of {share[1]} is finished; `rockbatch merge` joins the shares"
+            )
+            return None
+        cost |= {"peaks": write_peaks(batch, journal), "wall_s": round(time.monotonic() - started, 3)}
+        return _judged_and_reported(batch, finish(batch, journal, cost, records))
+
+
+def merge(
+    directory: Path, study: Study, shares: Iterable[Path], listener: Listener, command: Sequence[str]
+) -> FinishedBatch:
+    """Join the journals in the folders ``shares``, and write the results into ``directory``.
+
+    ``command`` as in :func:`run_into`. Raises ``InputError`` with all that is wrong or missing in the
+    shares; joined rows stay, so that the rest can be carried out there.
+    """
+    batch = prepare(directory, study, listener, command, later=(CHECKS, REPORT))
+    with batch.journal() as journal:
+        problems = []
+        for share in shares:
+            try:
+                journal.add_from(share / JOURNAL)
+            except FileNotFoundError:
+                problems.append(f"{share / JOURNAL}: not there; give folders that `rockbatch run --shard` has written")
+            except InputError as error:
+                problems += error.messages
+        missing = [number for number in range(len(batch.runs)) if number not in journal]
+        if missing and not problems:
+            problems.append(
+                f"{len(missing)} of {len(batch.runs)} rows are missing in these folders: {_ranges(missing)}; finish their "
+                f"shares and merge again, or carry them out here: rockbatch run {study.path} --out {directory}"
+            )
+        if problems:
+            raise InputError(*problems)
+        cost = {"peaks": write_peaks(batch, journal), "jobs": 0, "wall_s": 0.0, "kept": batch.info["runs"]}
+        return _judged_and_reported(batch, finish(batch, journal, cost))
+
+
+def _judged_and_reported(batch: Batch, written: Written) -> FinishedBatch:
+    """Write the verdicts of a batch, if it has any, and its report."""
+    study, directory, saved = batch.study, batch.directory, written.saved
+    with announced_if_slow(batch.listener, f"holding {len(study.checks)} checks against {len(study.cases)} cases"):
+        judged = _judged(saved, study)
+        checks = [write_verdicts(directory, judged)] if judged else []
+    with announced_if_slow(batch.listener, f"writing {REPORT}"):
+        report = write_report(directory, saved=saved)
+    return FinishedBatch(saved, batch.motions, judged, (*written.files, *checks, report), written.without)
+
+
+def _as_it_is(batch: Batch) -> FinishedBatch | None:
+    """Return what is in the folder of a finished ``batch`` if nothing would change by finishing it again; else None."""
+    if not (written := unchanged(batch)):
+        return None
+    judged = _judged(written.saved, batch.study)
+    more = [batch.directory / name for name in (*([CHECKS] if judged else []), REPORT)]
+    return (
+        FinishedBatch(written.saved, batch.motions, judged, (*written.files, *more), None)
+        if all(map(is_plain, more))
+        else None
+    )
+
+
+def _judged(saved: Saved, study: Study) -> list[Verdict]:
+    """Return the verdicts of the study's checks and of its target spectrum, if it has them."""
+    return verdicts(saved) if study.checks or suite_verdicts(saved.info, ()) else []
+
+
+def _ranges(numbers: Sequence[int], most: int = 5) -> str:
+    """Return numbers, counted from 1, as ranges: "1 to 12, 17"."""
+    starts = [i for i, number in enumerate(numbers) if i == 0 or number != numbers[i - 1] + 1]
+    ends = [i - 1 for i in starts[1:]] + [len(numbers) - 1]
+    ranges = [
+        f"{numbers[a] + 1} to {numbers[b] + 1}" if b > a else str(numbers[a] + 1)
+        for a, b in zip(starts, ends, strict=True)
+    ]
+    return ", ".join(ranges[:most]) + (", …" if len(ranges) > most else "")

@@ -1,0 +1,73 @@
+"""An observer is one folder and one name in a tuple: each is taken away in a copy of the package, and the rest stays."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from studies import PADS, PIER, RIGID, SINE, study_text, write_study
+
+import rockbatch as rb
+from rockbatch.common.observers import OBSERVERS
+
+KEYS = {
+    "other_law": {"both_laws": True},
+    "rocking": {"rocking": True},
+    "energy_balance": {"ledger": True},
+    "forces": {"forces": True},
+    "devices_work": {"devices_work": True},
+    "half_cycles": {"half_cycles": True},
+    "sections": {"sections": 3},
+    "shocks": {},
+}
+"""What a study writes under [output] for each."""
+
+RUN = """
+import sys
+import rockbatch as rb
+rb.run(sys.argv[1], sys.argv[2])
+"""
+
+
+def output_of(names):
+    return {"histories": "none"} | {key: value for name in names for key, value in KEYS[name].items()}
+
+
+def study_of(folder, names):
+    damper = {"kind": "friction", "f": 0.05, "at": "left"}
+    cases = [RIGID, PADS, RIGID | {"name": "damped", "damper": [damper]}]
+    text = study_text(pier=PIER, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
+    return write_study(folder, text)
+
+
+def test_every_observer_is_deleted_below():
+    assert sorted(KEYS) == sorted(OBSERVERS)
+
+
+@pytest.mark.parametrize(
+    "name", [*(pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS if n != "forces"), "forces"]
+)
+@pytest.mark.usefixtures("no_report")
+def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
+    """Tables of a study that asks for all others are the same to the byte."""
+    others = [other for other in OBSERVERS if other != name]
+    study = study_of(tmp_path, others)
+    rb.run(study, tmp_path / "whole")
+    copied = tmp_path / "copied"
+    shutil.copytree(Path(rb.__file__).parent, copied / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
+    shutil.rmtree(copied / "rockbatch" / "observers" / name)
+    listing = copied / "rockbatch" / "common" / "observers.py"
+    text = listing.read_text(encoding="utf-8")
+    assert f'    "{name}",\n' in text
+    listing.write_text(text.replace(f'    "{name}",\n', ""), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest")],
+        cwd=copied, env=os.environ | {"PYTHONPATH": str(copied)}, text=True, capture_output=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    files = [path.name for path in sorted((tmp_path / "whole").glob("*.csv"))]
+    assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
+    for file in files:
+        assert (tmp_path / "whole" / file).read_bytes() == (tmp_path / "rest" / file).read_bytes()
