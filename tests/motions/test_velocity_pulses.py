@@ -11,7 +11,7 @@ from rockbatch.motions.measures import velocity
 from rockbatch.motions.velocity_pulses import (
     PULSE_LIKE,
     _daubechies,
-    _extracted,
+    _wavelet_sum,
     _filter,
     _indicator,
     _largest,
@@ -35,7 +35,7 @@ PULSES = {
 def judged(v, dt):
     """The scale [samples] of the largest pulse in a velocity, the indicator with it, and the pulse."""
     scale, place = _largest(v, dt)
-    pulse = _extracted(v, scale, place)
+    pulse = _wavelet_sum(v, scale, place)
     return scale, _indicator(v, pulse), pulse
 
 
