@@ -91,7 +91,7 @@ def parse(text: str) -> list[Recording]:
 def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
     """Return interval [s], even samples and notes of pairs of time [s] and value, flattened in ``values``.
 
-    Raises ``NoRecordError`` for uneven times, since the corrected file of station ``number`` will do instead.
+    Raises ``NoRecord`` for uneven times, since the corrected file of station ``number`` will do instead.
     """
     try:
         if len(values) % 2:
@@ -99,7 +99,7 @@ def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str,
         return from_pairs(values.reshape(-1, 2), "no sampling rate, so digitised from film")
     except InputError as error:
         raise NoRecord(
-            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', number
+            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', station=number
         ) from None
 
 
