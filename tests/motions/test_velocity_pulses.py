@@ -11,11 +11,11 @@ from rockbatch.motions.measures import velocity
 from rockbatch.motions.velocity_pulses import (
     PULSE_LIKE,
     _daubechies,
-    _wavelet_sum,
     _filter,
     _indicator,
     _largest,
     _wavelet,
+    _wavelet_sum,
     period_of_pulse,
     pulse_period,
 )
