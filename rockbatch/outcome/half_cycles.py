@@ -99,7 +99,7 @@ def _through_upright(path: Path) -> tuple[Rows, Rows, Samples, Samples]:
 
 
 def _cubic(path: Path, before: Rows, after: Rows, h: Samples, s: Samples) -> tuple[Samples, Samples]:
-    """Return θ and its rate by the cubic Hermite polynomial between two rows, at the share ``s``."""
+    """Return θ [rad] and its rate [rad/s] by cubic Hermite polynomials between two rows ``h`` [s] apart, at shares ``s``."""
     start, travel = path.theta[before], path.theta[after] - path.theta[before]
     first, last = h * path.omega[before] - travel, travel - h * path.omega[after]
     value = start + s * travel + s * (1.0 - s) * ((1.0 - s) * first + s * last)

@@ -149,7 +149,7 @@ class Spring:
         return self.strength * self.curve.force(elastic / self.strength)
 
     def depth(self, force: float) -> float:
-        """Return the depth [m] under a ``force`` below the strength, in first loading."""
+        """Return the depth [m] under a ``force`` over the weight, below the strength, in first loading."""
         if self.curve.corner:
             return force / self.stiffness
         return self.curve.deflection(force / self.strength) * self.strength / self.stiffness

@@ -100,7 +100,7 @@ def recorded(run: Run, rows: np.recarray) -> Recorded:
 
 
 def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
-    """Return the accelerations at each of ``shares`` of the steps before the rows ``numbers``.
+    """Return accelerations in the pier's axes at each of ``shares``, 0 to 1, of the steps that end at the rows ``numbers``.
 
     Within a step devices pull by their laws; the push of devices at the deck on the part above is interpolated linearly.
     """

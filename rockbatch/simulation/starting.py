@@ -30,7 +30,7 @@ def start_of(pier: Pier, base: Base) -> Start:
     for law in elements(pier, base):  # rotation about a corner: the elongation is the chord of the arc
         distance = pier.half_width - math.copysign(law.offset, theta * law.offset)
         chord = 2.0 * distance * math.sin(0.5 * abs(theta))
-        states.append(_force_and_state(law, chord if law.height == 0.0 else _on_deck(law, theta, True))[1])
+        states.append(_force_and_state(law, chord if law.height == 0.0 else _deck_elongation(law, theta, True))[1])
     return Start(theta=theta, states=tuple(states), level=0.0)
 
 
@@ -53,7 +53,7 @@ def _on_springs(pier: Pier, base: ElasticBase) -> Start:
 
     def elongation(law: Element, v: float) -> float:
         if law.height != 0.0:
-            return _on_deck(law, theta, m.finite is not None)
+            return _deck_elongation(law, theta, m.finite is not None)
         return by_v * (v - level + drop - side * tilt * law.offset)
 
     def devices(v: float) -> list[tuple[float, float]]:
@@ -88,7 +88,7 @@ def _force_and_state(law: Element, elongation: float) -> tuple[float, float]:
     return law.stiffness * elongation if law.kind == SPRING else 0.0, 0.0  # viscous
 
 
-def _on_deck(law: Element, theta: float, finite: bool) -> float:
+def _deck_elongation(law: Element, theta: float, finite: bool) -> float:
     """Return the elongation of a device at the deck [m]."""
     if not finite:
         return law.way * law.height * theta
