@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,8 @@ from rockbatch.common.figures.description import (
 )
 from rockbatch.pier import yield_deflection
 
-if TYPE_CHECKING:
-    from rockbatch.outcome.response import Response
+Response = Any
+"""A :class:`rockbatch.Response`, whose module imports this one."""
 
 QUANTITIES = ("θ/α", "θ̇/(αp)", "E/M [J/kg]", "ü_g/g")
 GROUND = 3
@@ -118,7 +118,7 @@ class Drawn(NamedTuple):
     mark: Look
 
 
-def reduced(response: "Response", look: Look, pixels: int = 900, most_devices: int | None = MOST_DEVICES) -> History:
+def reduced(response: Response, look: Look, pixels: int = 900, most_devices: int | None = MOST_DEVICES) -> History:
     """Return the response thinned to ``pixels`` while the pier moves; loops, of ``most_devices`` or all, in ``look``."""
     pier, t = response.pier, response.t
     theta = response.theta / pier.alpha
@@ -180,7 +180,7 @@ def together(runs: Sequence[Drawn], record: str) -> tuple[Figure, Axis]:
     return figure, replace(figure.panels[-1].x, low=0.0, high=end)
 
 
-def of_one(response: "Response", title: str) -> Figure:
+def of_one(response: Response, title: str) -> Figure:
     """Return the figure of a single response at the resolution of print, with its loops below."""
     look = Look("curve", int(response.base.on_springs))
     own = reduced(response, look, 2000, None)
@@ -284,14 +284,14 @@ def _clipped(point: tuple[float, float], y: Axis) -> tuple[Array, Array]:
     return np.full(1, point[0]), np.full(1, np.clip(point[1], y.low, y.high))
 
 
-def _band(response: "Response") -> float:
+def _band(response: Response) -> float:
     """Return |θ|/α up to which both supports stay loaded; 0 on the rigid base."""
     base, pier = response.base, response.pier
     sine = (1 + pier.mu) / (pier.mu * base.beta**2 * math.sin(pier.alpha))
     return math.asin(min(sine, 1)) / pier.alpha
 
 
-def _springs(response: "Response", look: Look, pixels: int) -> tuple[Panel, ...]:
+def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     """Return panels of force against deflection of both springs while loaded, normalised if they yield; () on rigid ground."""
     base, pier, sides = response.base, response.pier, ("left", "right")
     if not base.on_springs:
@@ -318,14 +318,14 @@ def _springs(response: "Response", look: Look, pixels: int) -> tuple[Panel, ...]
     return tuple(panels)
 
 
-def _devices(response: "Response") -> list[str]:
+def _devices(response: Response) -> list[str]:
     """Return the names of the devices; a pair at both pivots has one name."""
     columns = () if response.restraints is None else response.restraints
     names = (str(name).removesuffix(" force") for name in columns if str(name).endswith(" force"))
     return list(dict.fromkeys(name.removesuffix(" left").removesuffix(" right") for name in names))
 
 
-def _device(response: "Response", name: str, look: Look, pixels: int) -> Panel:
+def _device(response: Response, name: str, look: Look, pixels: int) -> Panel:
     """Return a panel of force against elongation [mm] of a device, in kN if the mass is known; a pair's right one behind."""
     table, pier = response.restraints, response.pier
     assert table is not None
