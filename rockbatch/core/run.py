@@ -7,7 +7,6 @@ which an event may occur repeats it event by event, in scalar code. A run that e
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from rockbatch.core.clock import (
@@ -37,6 +36,7 @@ from rockbatch.core.system import (
     airborne,
     begin,
     finish,
+    lanes_in_pass,
     longest_step,
     one_pass,
     pier_in,
@@ -74,14 +74,6 @@ from rockbatch.core.types import (
 
 EVENTS_IN_A_SAMPLE = 20_000
 """Greatest number of events in a sample; decaying sequences of impacts need fewer."""
-
-VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
-"""Lanes of the widest vector instructions; 1 without compilation, where an empty lane would divide by zero."""
-
-FEW = 2
-"""Greatest number of left-over lanes that are faster one by one than as a vector with empty ones."""
-
-assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
 NO_ROWS = np.zeros((0, 0, 1))
 
@@ -356,10 +348,7 @@ def _pass_with_devices(devices, context, count, substep):
 
 @_pass.of(type(None))
 def _pass_alone(devices, context, count, substep):
-    left_over = count % VECTOR
-    # Results in lanes beyond ``count`` are not used
-    lanes_taken = count if left_over <= FEW else count - left_over + VECTOR
-    one_pass(context.traits, context.lanes, lanes_taken, substep, context.settings)
+    one_pass(context.traits, context.lanes, lanes_in_pass(context.traits, count), substep, context.settings)
     busy = 0
     for i in range(count):
         busy += 1 if context.lanes.step_status.kind[i] != CALM else 0

@@ -7,10 +7,20 @@ for systems that do not need them: nothing decays, all lanes are integrated even
 
 from typing import NamedTuple
 
+import numba
 import numpy as np
 
 from rockbatch.core.clock import EVENTFUL
 from rockbatch.core.kernel import hook, optional_hook
+from rockbatch.core.table import LANES
+
+VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
+"""Lanes that the widest vector instructions take at a time; uncompiled there are none, and an empty lane would divide by zero."""
+
+FEW = 2
+"""Lanes left over that are sooner taken one by one than with others that are empty."""
+
+assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
 
 class System(NamedTuple):
@@ -92,6 +102,13 @@ def pier_in(traits, lanes, i):
 @hook
 def begin(traits, lanes, i, run):
     """Set model, initial state and deadline of a ``run`` in lane ``i``, whose clock and ground are set."""
+
+
+@optional_hook
+def lanes_in_pass(traits, count):
+    """Return how many lanes a pass takes: whole vectors of them. Those beyond ``count`` hold what nobody reads."""
+    left_over = count % VECTOR
+    return count if left_over <= FEW else count - left_over + VECTOR
 
 
 @optional_hook

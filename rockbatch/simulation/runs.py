@@ -1,7 +1,7 @@
 """Runs with given steps: piers on bases under motions, side by side, and the outcome of each."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +20,7 @@ from rockbatch.pier import (
     MOST_NEGLECTED,
     Base,
     ElasticBase,
+    FootingBase,
     Pier,
     neglected,
     places,
@@ -28,6 +29,7 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.pier.laws import steady
+from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
     Line,
@@ -341,8 +343,10 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     pier, base = run.pier, run.base
     failure = _FAILURES.get(result.status)
     status, reason = _STATUS.get(result.status, "failed"), "" if failure is None else _REASONS[failure]
-    more: dict[str, float] = {}
-    if base.on_springs:
+    more: Mapping[str, object] = {}
+    if isinstance(base, FootingBase):
+        more = of_bed(pier, base, result, survived=status == "ok")
+    elif base.on_springs:
         more = _spring_results(pier, base, result, survived=status == "ok")
     elif base.bends:
         more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}
