@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from rockbatch.batch.observers import observers_of
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.simulation import core_digest
 from rockbatch.study import Study
@@ -35,11 +36,7 @@ def study_digests(study: Study, motions: MotionSet) -> dict[str, str]:
         motions.motions,
         cases=study.cases,
         scales=(study.motions.polarity, study.motions.scale),
-        numerics=(
-            study.numerics,
-            *(getattr(study.output, key) for key in ("both_laws", "ledger", "forces", "rocking", "least_normal_share")),
-            study.output.least_stroke,
-        ),
+        numerics=(study.numerics, observers_of(study.output)),
     )
 
 

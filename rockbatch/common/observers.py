@@ -1,6 +1,7 @@
 """The observers, and the way by which what lies below them finds each without importing it."""
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 OBSERVERS = (
@@ -26,3 +27,11 @@ def tables() -> list[str]:
     """Return the files beside peaks.csv that observers may write."""
     homes = (import_module(f"rockbatch.observers.{name}") for name in OBSERVERS)
     return [home.TABLE for home in homes if hasattr(home, "TABLE")]
+
+
+def parts(name: str) -> list[Any]:
+    """Return what observers name so, such as "study.OUTPUT", in their order; of those that have it."""
+    module, _, attribute = name.partition(".")
+    homes = [f"rockbatch.observers.{observer}.{module}" for observer in OBSERVERS]
+    modules = [import_module(home) for home in homes if find_spec(home)]
+    return [getattr(home, attribute) for home in modules if hasattr(home, attribute)]

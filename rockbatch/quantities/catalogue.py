@@ -644,7 +644,7 @@ _FORCES = (
 
 
 def _estimates_landings(study: Any) -> bool:
-    return study.output.forces and any(
+    return study.output.has("forces") and any(
         "contact_stiffness_kN_m" in case.base.parameters(case.pier) for case in study.cases
     )
 
@@ -669,7 +669,7 @@ _LANDING_FORCE = replace(
 _SLIDES_FACT = _fact(
     "slides", "the friction demand, of impacts too, is more than the interface has",
     ", as `friction` of the case; with [output] forces = true", _of_forces("slides"),
-    requested=lambda study: study.output.forces and any(case.base.friction is not None for case in study.cases),
+    requested=lambda study: study.output.has("forces") and any(case.base.friction is not None for case in study.cases),
 )  # fmt: skip
 
 
@@ -721,7 +721,7 @@ OPTIONAL = (
         "both_laws = true, or with a check of a settlement",
         "settlement_other_law", "m", ReportFormat("by the other law [mm]", ".2f", 1000, "settlement_m"), bases=YIELDING,
         stood=True, sometimes=True, suite=OfSuite("Settlement by the other law [mm]", ".2f"),
-        requested=lambda study: study.output.both_laws and any(case.base.ratchets for case in study.cases),
+        requested=lambda study: study.output.has("both_laws") and any(case.base.ratchets for case in study.cases),
     ),
     Quantity(
         ROCKING,

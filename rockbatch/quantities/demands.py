@@ -101,6 +101,11 @@ class Demand:
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 
     @property
+    def brings(self) -> set[str]:
+        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
+        return {"both_laws"} if self.other_law else set()
+
+    @property
     def words(self) -> str:
         """Its meaning with its unit in brackets."""
         return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning

@@ -177,7 +177,7 @@ class Quantity:
         """Return whether a :class:`rockbatch.study.Study` brings it."""
         if self.requested:
             return self.requested(study)
-        if self.needs and not getattr(study.output, self.needs):
+        if self.needs and not study.output.has(self.needs):
             return False
         return not self.device or any(
             device.what == self.device for case in study.cases for device in case.base.restraints

@@ -24,49 +24,63 @@ KEYS = {
 }
 """What a study writes under [output] for each."""
 
+FAST = ("forces", "rocking", "sections")
+"""Those that are deleted in fast tests: one with columns, one without forces of its own, one with a table beside."""
+
 RUN = """
 import sys
 import rockbatch as rb
 rb.run(sys.argv[1], sys.argv[2])
+try:
+    rb.load_study(sys.argv[3])
+except rb.UnknownKey as error:
+    print(error)
 """
+
+
+def delete(package, name):
+    """Delete an observer: its folder, and its line in the tuple."""
+    shutil.rmtree(package / "observers" / name)
+    listing = package / "common" / "observers.py"
+    lines = listing.read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [line for line in lines if line != f'    "{name}",\n']
+    assert len(kept) == len(lines) - 1
+    listing.write_text("".join(kept), encoding="utf-8")
 
 
 def output_of(names):
     return {"histories": "none"} | {key: value for name in names for key, value in KEYS[name].items()}
 
 
-def study_of(folder, names):
+def study_of(folder, names, name="study.toml"):
     damper = {"kind": "friction", "f": 0.05, "at": "left"}
     cases = [RIGID, PADS, RIGID | {"name": "damped", "damper": [damper]}]
     text = study_text(pier=PIER, pulses=[SINE | {"duration_s": 2.0}], cases=cases, output=output_of(names))
-    return write_study(folder, text)
+    return write_study(folder, text, name)
 
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
 
 
-@pytest.mark.parametrize(
-    "name", [*(pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS if n != "forces"), "forces"]
-)
+@pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
 @pytest.mark.usefixtures("no_report")
 def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
-    """Tables of a study that asks for all others are the same to the byte."""
-    others = [other for other in OBSERVERS if other != name]
-    study = study_of(tmp_path, others)
+    """Tables of a study that asks for all others are the same to the byte, and its key is unknown."""
+    study, asking = (
+        study_of(tmp_path, [other for other in OBSERVERS if other != name]),
+        study_of(tmp_path, [name], "own.toml"),
+    )
     rb.run(study, tmp_path / "whole")
     copied = tmp_path / "copied"
     shutil.copytree(Path(rb.__file__).parent, copied / "rockbatch", ignore=shutil.ignore_patterns("*.nb[ci]"))
-    shutil.rmtree(copied / "rockbatch" / "observers" / name)
-    listing = copied / "rockbatch" / "common" / "observers.py"
-    text = listing.read_text(encoding="utf-8")
-    assert f'    "{name}",\n' in text
-    listing.write_text(text.replace(f'    "{name}",\n', ""), encoding="utf-8")
+    delete(copied / "rockbatch", name)
     done = subprocess.run(
-        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest")],
+        [sys.executable, "-c", RUN, str(study), str(tmp_path / "rest"), str(asking)],
         cwd=copied, env=os.environ | {"PYTHONPATH": str(copied)}, text=True, capture_output=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert all(f"{key}: unknown key" in done.stdout for key in KEYS[name])
     files = [path.name for path in sorted((tmp_path / "whole").glob("*.csv"))]
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:

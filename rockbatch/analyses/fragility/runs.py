@@ -149,16 +149,8 @@ Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
 
 def output(spec: FragilitySpec, of_study: Output) -> Output:
     """Return the output that the limits need beyond peaks, by the settings ``of_study``."""
-    needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
-    return Output(
-        histories="none",
-        both_laws=any(DEMANDS[rule.demand].other_law for rule in spec.limits),
-        forces="forces" in needs,
-        rocking="rocking" in needs,
-        least_normal_share=of_study.least_normal_share,
-        devices_work="devices_work" in needs,
-        least_stroke_mm=of_study.least_stroke_mm,
-    )
+    demands = [DEMANDS[rule.demand] for rule in spec.limits]
+    return of_study.only({key for demand in demands for key in (demand.needs, *demand.brings)})
 
 
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:

@@ -9,6 +9,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
+from rockbatch.observers.energy_balance.study import Ledger
 from rockbatch.outcome.outcome import TERMS, Outcome
 from rockbatch.simulation import restraints
 from rockbatch.simulation.models import ground_of, model, springs
@@ -67,4 +68,4 @@ def energies(run: Run, rows: np.recarray) -> Samples:
 
 def requested(output: Output) -> EnergyBalance | None:
     """Return the observer that a study asks for, if any."""
-    return EnergyBalance() if output.ledger else None
+    return EnergyBalance() if output.of(Ledger).ledger else None
