@@ -346,7 +346,7 @@ def _brings(key: str, cases: Sequence[Case]) -> bool:
 
 def _kinds(cases: Sequence[Case]) -> set[str]:
     """Return the kinds of devices in these cases, and "" of columns that need none."""
-    return {"", *(device.what for case in cases for device in case.base.restraints)}
+    return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:

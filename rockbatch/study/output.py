@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from rockbatch.common.errors import InputError, Problem, UnknownKey
 from rockbatch.common.observers import parts
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.toml.kinds import boolean, choice, positive
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section, joined
@@ -85,7 +85,7 @@ OUTPUT = joined(Section(("output",), "What is kept beyond the table of peaks.", 
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
         "Periods of the spectral accelerations among the intensity measures.", many=True,
         only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*DIRECTIONS), '["rotd50", "rotd100"]',
+    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
         "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
         "the greatest over all directions.", many=True, only={"intensity": (True,)}),
 }, homes=(Output,), also=names({"histories": "timehistories timehistory", "intensity": "intensitymeasures"}), instead=names({
