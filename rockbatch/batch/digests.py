@@ -13,8 +13,8 @@ from rockbatch.study import Study
 SHOW = ("commands", "terminal", "reporting", "__init__.py", "__main__.py", "common/version.py")
 """Packages and modules that only show rows. All others decide what a row says, or which runs come next."""
 
-OF_ANALYSES = ("command.py", "section.py")
-"""Modules of analyses that only show rows, likewise."""
+OF_SLICES = ("command.py", "section.py", "figure.py")
+"""Modules of analyses and observers that only show rows, likewise."""
 
 _TOP = Path(__file__).parents[1]
 
@@ -45,7 +45,7 @@ def sources() -> Iterator[Path]:
     for path in sorted(_TOP.rglob("*.py")):
         module = path.relative_to(_TOP)
         shows = module.parts[0] in SHOW or module.as_posix() in SHOW
-        if not shows and not (module.parts[0] == "analyses" and module.name in OF_ANALYSES):
+        if not shows and not (module.parts[0] in ("analyses", "observers") and module.name in OF_SLICES):
             yield path
 
 

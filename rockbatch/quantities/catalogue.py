@@ -621,11 +621,11 @@ _FORCES = (
     ),
     _force(
         "first_uplift_s", "time at which a pivot first leaves its support", "first_uplift", "s", "first uplift [s]", ".3f",
-        sometimes=True,
+        sometimes=True, least_is_worst=True,
     ),
     _force(
         "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
-        "standard_gravity", "ground then [g]", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True,
+        "standard_gravity", "ground then [g]", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True, least_is_worst=True,
     ),
     _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),)),
     *_over_mass(

@@ -142,6 +142,8 @@ class Quantity:
         True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
     bending : bool
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
+    least_is_worst : bool
+        True if the smallest value of several runs is the worst.
     """
 
     name: str
@@ -165,6 +167,7 @@ class Quantity:
     requested: Callable[[Any], bool] | None = None
     landing: bool = False
     bending: bool = False
+    least_is_worst: bool = False
 
     @property
     def meaning(self) -> str:

@@ -10,7 +10,8 @@ import pytest
 from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.common.observers import OBSERVERS
+from rockbatch.common.observers import OBSERVERS, report_parts
+from rockbatch.reporting.page import PARTS
 
 KEYS = {
     "other_law": {"both_laws": True},
@@ -30,11 +31,13 @@ FAST = ("forces", "rocking", "sections")
 RUN = """
 import sys
 import rockbatch as rb
+from rockbatch.reporting.page import PARTS
 rb.run(sys.argv[1], sys.argv[2])
 try:
     rb.load_study(sys.argv[3])
 except rb.UnknownKey as error:
     print(error)
+print("parts:", *(part.anchor for part in PARTS))
 """
 
 
@@ -81,6 +84,8 @@ def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert all(f"{key}: unknown key" in done.stdout for key in KEYS[name])
+    own = {part.anchor for owner, part in report_parts() if owner == name}
+    assert done.stdout.rpartition("parts: ")[2].split() == [part.anchor for part in PARTS if part.anchor not in own]
     files = [path.name for path in sorted((tmp_path / "whole").glob("*.csv"))]
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:
