@@ -221,3 +221,8 @@ def in_print(unit: str) -> str:
     if unit == "1":
         return ""
     return unit.replace("standard_gravity", "g").replace("^2", "²").replace("*", " ")
+
+
+def fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
+    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)

@@ -1,9 +1,12 @@
 """An observer is one folder and one name in a tuple: each is taken away in a copy of the package, and the rest stays."""
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,7 @@ from studies import PADS, PIER, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.observers import OBSERVERS, report_parts
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
 from rockbatch.reporting.page import PARTS
 
 KEYS = {
@@ -25,19 +29,23 @@ KEYS = {
 }
 """What a study writes under [output] for each."""
 
+GROUPS = ("FIRST", "QUANTITIES", "ERRORS", "FURTHER", "LAST")
+"""Places of the columns that observers bring."""
+
 FAST = ("forces", "rocking", "sections")
 """Those that are deleted in fast tests: one with columns, one without forces of its own, one with a table beside."""
 
 RUN = """
-import sys
+import json, sys
 import rockbatch as rb
+from rockbatch.quantities.catalogue import COLUMNS, DEMANDS
 from rockbatch.reporting.page import PARTS
 rb.run(sys.argv[1], sys.argv[2])
 try:
     rb.load_study(sys.argv[3])
 except rb.UnknownKey as error:
     print(error)
-print("parts:", *(part.anchor for part in PARTS))
+print("seen:", json.dumps([[part.anchor for part in PARTS], [*COLUMNS], [*DEMANDS]]))
 """
 
 
@@ -49,6 +57,17 @@ def delete(package, name):
     kept = [line for line in lines if line != f'    "{name}",\n']
     assert len(kept) == len(lines) - 1
     listing.write_text("".join(kept), encoding="utf-8")
+
+
+def brought(name):
+    """Return the parts of the report, the columns and the demands that an observer brings."""
+    parts = [part.anchor for owner, part in report_parts() if owner == name]
+    if not find_spec(f"rockbatch.observers.{name}.quantities"):
+        return parts, [], []
+    quantities = import_module(f"rockbatch.observers.{name}.quantities")
+    columns = [quantity for group in GROUPS for quantity in getattr(quantities, group, ())]
+    demands = [*getattr(quantities, "DEMANDS", ()), *(demand for column in columns for demand in column.demands())]
+    return parts, [column.name for column in columns], [demand.name for demand in demands]
 
 
 def output_of(names):
@@ -64,6 +83,9 @@ def study_of(folder, names, name="study.toml"):
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
+    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections"}
+    assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {"shocks", "half_cycles", "sections"}
+    assert {name for name in OBSERVERS if brought(name)[2]} == {"rocking", "forces", "devices_work", "sections"}
 
 
 @pytest.mark.parametrize("name", [n if n in FAST else pytest.param(n, marks=pytest.mark.slow) for n in OBSERVERS])
@@ -84,8 +106,12 @@ def test_an_observer_is_deleted_with_its_folder_and_its_name(tmp_path, name):
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert all(f"{key}: unknown key" in done.stdout for key in KEYS[name])
-    own = {part.anchor for owner, part in report_parts() if owner == name}
-    assert done.stdout.rpartition("parts: ")[2].split() == [part.anchor for part in PARTS if part.anchor not in own]
+    parts, columns, demands = (set(own) for own in brought(name))
+    assert json.loads(done.stdout.rpartition("seen: ")[2]) == [
+        [part.anchor for part in PARTS if part.anchor not in parts],
+        [column for column in COLUMNS if column not in columns],
+        [demand for demand in DEMANDS if demand not in demands],
+    ]
     files = [path.name for path in sorted((tmp_path / "whole").glob("*.csv"))]
     assert files == [path.name for path in sorted((tmp_path / "rest").glob("*.csv"))]
     for file in files:
