@@ -6,8 +6,7 @@ from typing import Any, TypeVar
 
 from rockbatch.common.errors import InputError, Problem, UnknownKey
 from rockbatch.common.observers import parts
-from rockbatch.motions.pairs import TWO_COMPONENT_RULES
-from rockbatch.toml.kinds import boolean, choice, positive
+from rockbatch.toml.kinds import choice, positive
 from rockbatch.toml.meant import names
 from rockbatch.toml.section import Key, Section, joined
 
@@ -27,9 +26,6 @@ class Output:
 
     histories: str = "worst"
     histories_MB: float = 20.0  # noqa: N815 (the study's key)
-    intensity: bool = False
-    sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
-    sa_pairs: tuple[str, ...] = ()
     settings: tuple[object, ...] = ()
 
     @classmethod
@@ -80,15 +76,7 @@ OUTPUT = joined(Section(("output",), "What is kept beyond the table of peaks.", 
         'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
     "histories_MB": Key(positive, "50",
         'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
-    "intensity": Key(boolean, "true",
-        "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
-    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
-        "Periods of the spectral accelerations among the intensity measures.", many=True,
-        only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
-        "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
-        "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-}, homes=(Output,), also=names({"histories": "timehistories timehistory", "intensity": "intensitymeasures"}), instead=names({
+}, homes=(Output,), also=names({"histories": "timehistories timehistory"}), instead=names({
     "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
     "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
 })), *_OF_OBSERVERS)  # fmt: skip

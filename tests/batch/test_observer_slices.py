@@ -26,6 +26,7 @@ KEYS = {
     "half_cycles": {"half_cycles": True},
     "sections": {"sections": 3},
     "shocks": {},
+    "intensity": {"intensity": True},
 }
 """What a study writes under [output] for each."""
 
@@ -83,8 +84,13 @@ def study_of(folder, names, name="study.toml"):
 
 def test_every_observer_is_deleted_below():
     assert sorted(KEYS) == sorted(OBSERVERS)
-    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections"}
-    assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {"shocks", "half_cycles", "sections"}
+    assert {name for name in OBSERVERS if brought(name)[0]} == {"forces", "shocks", "sections", "intensity"}
+    assert {name for name in OBSERVERS if brought(name)[1]} == {*OBSERVERS} - {
+        "shocks",
+        "half_cycles",
+        "sections",
+        "intensity",
+    }
     assert {name for name in OBSERVERS if brought(name)[2]} == {"rocking", "forces", "devices_work", "sections"}
 
 

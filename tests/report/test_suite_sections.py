@@ -11,10 +11,11 @@ from studies import COSINE, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.observers.forces import section as forces
+from rockbatch.observers.intensity import section as intensity
 from rockbatch.pier import Pier, YieldingBase
 from rockbatch.reporting import write_report
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.sections import distribution, intensity, studied, target
+from rockbatch.reporting.sections import distribution, studied, target
 
 PULSES = tuple(
     {**shape, "name": f"{shape['shape']} {size}", "amplitude_g": size}
