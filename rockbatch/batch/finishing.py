@@ -1,7 +1,7 @@
 """Writing of a folder of results: from finished runs to the table, run.json, histories and the tables beside."""
 
 import json
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,13 @@ from rockbatch.batch.preparing import OUTPUTS, Batch
 from rockbatch.batch.threads import cores
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import is_plain, remove
-from rockbatch.common.observers import tables
+from rockbatch.common.observers import parts, tables
 from rockbatch.results.beside_peaks import write
 from rockbatch.results.columns import PEAKS, unusable_rows
 from rockbatch.results.histories_file import HISTORIES
-from rockbatch.results.intensity import INTENSITY, intensities
 from rockbatch.results.opened import Results, open_results
 from rockbatch.results.run_json import INFO, write_info
+from rockbatch.study import Study
 
 _OF_COMMAND = ("created", "command", "machine", "jobs", "wall_s", "kept", "peaks")
 """Entries of run.json that tell of the command, and not of what its results are."""
@@ -80,18 +80,22 @@ def finish(batch: Batch, journal: Journal, cost: dict[str, Any], records: Collec
     return Written(saved, tuple(path for path in files if path), refusal)
 
 
+def _of_peaks(study: Study) -> dict[str, Callable[..., Iterable[dict[str, Any]]]]:
+    """Return the functions of observers that make a table beside peaks.csv of finished peaks, by its name."""
+    return {table: rows for requested, rows in parts("observe.TABLE_OF_PEAKS") if (table := requested(study))}
+
+
 def _beside_peaks(batch: Batch) -> list[str]:
-    """Return the tables that stand beside peaks.csv, of intensity measures and of observers."""
-    of_motions = [INTENSITY] if batch.study.output.intensity else []
-    return [*of_motions, *(observer.table for observer in batch.observers)]
+    """Return the tables that stand beside peaks.csv."""
+    return [*_of_peaks(batch.study), *(observer.table for observer in batch.observers)]
 
 
 def _tables(batch: Batch, saved: Results, journal: Journal) -> Iterator[tuple[str, Iterable[dict[str, Any]]]]:
     """Yield name and rows of the tables beside the peaks, and take away those of another time."""
-    for name in {INTENSITY, *tables()}.difference(_beside_peaks(batch)):
+    for name in set(tables()).difference(_beside_peaks(batch)):
         remove(batch.directory / name)
-    if batch.study.output.intensity:
-        yield INTENSITY, intensities(saved.peaks, batch.study, batch.motions.motions)
+    for name, rows in _of_peaks(batch.study).items():
+        yield name, rows(saved.peaks, batch.study, batch.motions.motions)
     jobs = min(int(saved.info["jobs"]) or cores(), cores())
     yield from rows_beside(batch.observers, batch.study, batch.runs, saved.peaks, journal, jobs, batch.listener).items()
 

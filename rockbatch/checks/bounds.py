@@ -11,8 +11,9 @@ from rockbatch.checks.omissions import omissions, open_landings
 from rockbatch.checks.rules import USUAL, Rule
 from rockbatch.quantities.arrays import Rows, Texts
 from rockbatch.quantities.cases import Case, bends, creeps
-from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.demands import Demand
+from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.quantities.statistics import Values
 

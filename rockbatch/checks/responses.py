@@ -13,7 +13,8 @@ from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
-from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.limits import OTHER_LAW
 from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import rows_of_cases
 

@@ -41,6 +41,10 @@ TERMS = (
 """Terms of the energy ledger, in the order in which the core returns them."""
 
 
+LEAST_NORMAL_SHARE = 0.1
+"""Of the weight: the normal force below which shear keys, not friction, bear the base shear."""
+
+
 @dataclass(frozen=True)
 class PeakForces:
     """Design demands of a run until it ends or the pier leans beyond α for good; SI units, per unit mass of the pier.

@@ -101,6 +101,11 @@ class Demand:
         return case["base"] in self.bases or held or ("bending" in self.bases and bends(case))
 
     @property
+    def brings(self) -> set[str]:
+        """Keys of [output] that a check of it brings: the other law, since the worse counts."""
+        return {"both_laws"} if self.other_law else set()
+
+    @property
     def words(self) -> str:
         """Its meaning with its unit in brackets."""
         return f"{self.meaning} [{self.unit}]" if self.unit else self.meaning
@@ -123,13 +128,13 @@ def largest(columns: tuple[str, ...], times: Lever = ONE, error: str = "", share
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
-        value = times(case) * _magnitude(runs, columns)
+        value = times(case) * magnitude(runs, columns)
         return Estimated(value, value * runs.numbers(share) if share else times(case) * runs.numbers(error))
 
     return evaluate
 
 
-def _magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
+def magnitude(runs: Rows, columns: tuple[str, ...]) -> Values:
     return np.maximum.reduce([np.abs(runs.numbers(name)) for name in columns])
 
 
@@ -140,23 +145,11 @@ def largest_force(columns: tuple[str, ...], times: Lever, share: str) -> Evaluat
     """
 
     def evaluate(runs: Rows, case: Case) -> Estimated:
-        value = _magnitude(runs, columns)
+        value = magnitude(runs, columns)
         if all(name in runs for name in columns):
             value = np.where(np.isnan(value) & ~np.isnan(runs.numbers(FORCES)), 0.0, value)
         value = times(case) * value
         return Estimated(value, value * runs.numbers(share))
-
-    return evaluate
-
-
-def axial(sign: float) -> Evaluate:
-    """Return the greatest axial force in a section [kN], compression with ``sign`` 1, tension with −1; 0 if it has none."""
-    columns = ("section_axial_least_kN", "section_axial_greatest_kN")
-
-    def evaluate(runs: Rows, case: Case) -> Estimated:
-        least, greatest = (sign * runs.numbers(name) for name in columns)
-        error = _magnitude(runs, columns) * runs.numbers("sections_error")
-        return Estimated(np.maximum(np.maximum(least, greatest), 0.0), error)
 
     return evaluate
 
@@ -177,24 +170,6 @@ OF_SECTIONS = {
     "halved; empty with a fixed step",
 }
 """Columns of sections.csv behind those that name the run, with their meanings."""
-
-
-def in_section(name: str, meaning: str, evaluate: Evaluate | None = None) -> Demand:
-    """Return a demand on a section of the shaft, in kN or kN m; the largest of its column unless ``evaluate`` says otherwise.
-
-    Bending is across the axis: axial forces, which ``evaluate`` gives, have none of it.
-    """
-    unit = "kN m" if name.endswith("kNm") else "kN"
-    return Demand(
-        name,
-        meaning,
-        evaluate or largest((name,), share="sections_error"),
-        unit,
-        needs="sections",
-        weighed=True,
-        landing=True,
-        bending=evaluate is None,
-    )
 
 
 def in_flight(column: str) -> Evaluate:

@@ -142,6 +142,8 @@ class Quantity:
         True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
     bending : bool
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
+    least_is_worst : bool
+        True if the smallest value of several runs is the worst.
     """
 
     name: str
@@ -165,6 +167,7 @@ class Quantity:
     requested: Callable[[Any], bool] | None = None
     landing: bool = False
     bending: bool = False
+    least_is_worst: bool = False
 
     @property
     def meaning(self) -> str:
@@ -182,7 +185,7 @@ class Quantity:
         """Return whether a :class:`rockbatch.study.Study` brings it."""
         if self.requested:
             return self.requested(study)
-        if self.needs and not getattr(study.output, self.needs):
+        if self.needs and not study.output.has(self.needs):
             return False
         return not self.device or any(
             self.device in device.kinds for case in study.cases for device in case.base.restraints
@@ -218,3 +221,8 @@ def in_print(unit: str) -> str:
     if unit == "1":
         return ""
     return unit.replace("standard_gravity", "g").replace("^2", "²").replace("*", " ")
+
+
+def fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
+    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)

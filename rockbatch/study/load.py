@@ -4,7 +4,6 @@ import os
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -16,23 +15,23 @@ from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError, Problem
+from rockbatch.common.observers import parts
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
-from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.sequences import SEQUENCE
-from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
-from rockbatch.pier.sections import section_heights
+from rockbatch.pier import described, symmetric
 from rockbatch.quantities.catalogue import BROUGHT, COLUMNS, DEMANDS
 from rockbatch.study.both_axes import along_the_axis, with_other_axes
 from rockbatch.study.cases import BASE_KEYS, CASE, read_cases
 from rockbatch.study.motions import FEMA, MOTIONS, PULSE, SELECT, Motions, as_source, read_motions_table
+from rockbatch.study.output import OUTPUT, Output
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
-from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Output, Reference
+from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Reference
 from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
 from rockbatch.study.target import TARGET, VERTICAL_TARGET
-from rockbatch.toml.kinds import Whole, boolean, choice, count, not_negative, positive, share, text, within
+from rockbatch.toml.kinds import choice, count, not_negative, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
@@ -66,50 +65,6 @@ NUMERICS = Section(("numerics",), "How exact the results are.", {
     "write --jobs behind rockbatch run; leave it out": "jobs threads cores workers",
 }), clashes=(
     Clash(("tolerance", "substeps"), "tolerance and substeps are given: a fixed step has no tolerance; keep one", at="substeps"),
-))  # fmt: skip
-OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
-    "histories": Key(choice("worst", "all", "none"), '"all"',
-        'Runs whose histories are kept: the "worst" record of each case, "all", or "none".'),
-    "histories_MB": Key(positive, "50",
-        'How large their file may become with "worst"; the greatest rotations are kept first.', only={"histories": ("worst",)}),
-    "ledger": Key(boolean, "true", "Whether the energy ledger of every run is added to the table."),
-    "forces": Key(boolean, "true",
-        "Whether what designers size is added: base shear, friction, forces of the supports, gaps, impacts, accelerations."),
-    "rocking": Key(boolean, "true",
-        "Whether the rocking about a base that has yielded is separated from its lean in every run, which takes one more."),
-    "least_normal_share": Key(share, "0.1",
-        "Share of the weight that the normal force has to exceed for the friction demand to count: below it, as in a hop, "
-        "shear keys carry the base shear, which is a column of its own.", only={"forces": (True,)}),
-    "both_laws": Key(boolean, "true",
-        "Whether the settlement of Bouc–Wen springs is found by the elastic–perfectly plastic law too, which takes two more "
-        "runs or more; of others it is not a range. A check of a settlement, which takes the worse, has it found too."),
-    "intensity": Key(boolean, "true",
-        "Whether intensity measures of each motion are written, and which of them orders the peaks best."),
-    "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
-        "Periods of the spectral accelerations among the intensity measures.", many=True,
-        only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
-        "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
-        "the greatest over all directions.", many=True, only={"intensity": (True,)}),
-    "half_cycles": Key(boolean, "true",
-        "Whether half_cycles.csv is written: of every run the times of impacts, the angular velocities around them and the "
-        "amplitudes in between; half_cycle 0 begins with the run, such as a release, and not with an impact."),
-    "sections": Key(Whole(2, "a whole number, 2 or above: foot and top of the pier are among them"), "5",
-        "Number of sections of the pier, evenly from its foot to its highest point, in which shear, moment and axial force of "
-        "every run are computed: `sections.csv`."),
-    "sections_m": Key(not_negative, "[0.0, 7.5, 15.0]", "Heights of such sections above the pivots instead.", many=True),
-    "devices_work": Key(boolean, "true",
-        "Whether the work of devices is added: travel, energy and half cycles of the damper that has most, and the strain of "
-        "tendons over their yield strain."),
-    "least_stroke_mm": Key(positive, "20.0",
-        "Stroke, from end to end, from which half cycles of dampers count.", only={"devices_work": (True,)}),
-}, homes=(Output,), also=names({
-    "histories": "timehistories timehistory", "ledger": "energy", "intensity": "intensitymeasures",
-}), instead=names({
-    "write --out FOLDER behind rockbatch run; leave it out": "path folder directory dir out file",
-    "the estimates of design practice are an example now, configs/code_estimates.py; leave it out": "estimate estimates",
-}), clashes=(
-    Clash(("sections", "sections_m"), "sections and sections_m are given, which say the same; keep one", at="sections_m"),
 ))  # fmt: skip
 _OF_TABLES = "|".join(rf"^{what}_[1-9][0-9]*_({'|'.join(keys)})$" for what, keys in {"part": PART, **DEVICES}.items())
 """Keys of tables in a list, by their numbers: "damper_1_f"."""
@@ -303,7 +258,7 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
     varied = varied_pier + varied_case
     references = _references(file, cases, varied)
     table = file.table("output")
-    output = Output(**table.read(OUTPUT)) if table else Output()
+    output = Output.with_keys(**table.read(OUTPUT)) if table else Output()
     if len(motion_spec.polarity) > 1 and not all(symmetric(case.pier, case.base.restraints) for case in cases):
         message = "devices on one side make another run of the reversed motion, not the mirror image"
         file.complain(("motions", "polarity"), f"[motions]: {message}; keep one polarity")
@@ -313,13 +268,11 @@ def _checked(file: TomlFile, motions: Motions) -> Study:
             ("motions", "polarity"),
             f"[motions]: {message}; keep one polarity, and list initial_rotation_rad = [0.05, -0.05] for the other side",
         )
-    _complain_about_sections(file, [pier for pier, _ in piers], output, any(case.base.bends for case in cases))
-    if not output.forces:
-        _complain_without_forces(file)
+    for kind, complain in parts("study.COMPLAINS"):
+        complain(file, output.of(kind), [pier for pier, _ in piers], any(case.base.bends for case in cases))
     along = along_the_axis(cases)
     checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
-    if any(DEMANDS[rule.demand].other_law for rule in checks.rules):
-        output = replace(output, both_laws=True)
+    output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     file.finish()
     return Study(
         title=top.get("title", file.path.stem),
@@ -355,7 +308,7 @@ def _unfit(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
-        output=[key for key in BROUGHT if getattr(output, key) or not _brings(key, cases)],
+        output=[key for key in BROUGHT if output.has(key) or not _brings(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
     if not known_piers:
@@ -373,12 +326,9 @@ def _unfit(
 
 
 def _heights(cases: Sequence[Case], output: Output) -> set[float]:
-    """Return the heights [m] of all sections of all cases; none without any, or of a pier that lacks some, which is noted."""
-    heights = set[float]()
-    for pier in {case.pier for case in cases}:
-        with suppress(InputError):
-            heights.update(section_heights(pier, output.requested_sections or 0))
-    return heights
+    """Return the heights [m] at which rules may be about sections of the cases' piers."""
+    piers = {case.pier for case in cases}
+    return {height for kind, heights in parts("study.HEIGHTS") for height in heights(output.of(kind), piers)}
 
 
 def _numerics(file: TomlFile) -> Numerics:
@@ -389,21 +339,6 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-_OF_FORCES = {
-    "friction": "nothing to hold it against; write forces = true under [output], which computes the friction demand",
-    "contact_stiffness_kN_m": "is of the force of a landing; write forces = true under [output], which computes it",
-}
-"""Keys of a [[case]] that only forces use, and what is missing without them."""
-
-
-def _complain_without_forces(file: TomlFile) -> None:
-    """Note keys that only forces use in a study without, which cost a second run with every step."""
-    for table in file.tables("case", title="name"):
-        for key, problem in _OF_FORCES.items():
-            if key in table.data:
-                table.complain(f"{key}: {problem}, or leave it out", key)
-
-
 def _brings(key: str, cases: Sequence[Case]) -> bool:
     """Return whether a key of [output] brings columns of these cases: those of devices need the device."""
     return any(COLUMNS[name].device in _kinds(cases) for name in BROUGHT[key])
@@ -412,20 +347,6 @@ def _brings(key: str, cases: Sequence[Case]) -> bool:
 def _kinds(cases: Sequence[Case]) -> set[str]:
     """Return the kinds of devices in these cases, and "" of columns that need none."""
     return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
-
-
-def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:
-    """Note sections that some pier does not have, or whose forces are not known, such as those of a shaft that bends."""
-    if output.requested_sections is None:
-        return
-    wrong: dict[str, None] = {NO_SECTIONS: None} if bends else {}
-    for pier in piers:
-        try:
-            section_heights(pier, output.requested_sections)
-        except InputError as error:
-            wrong |= dict.fromkeys(error.messages)
-    for problem in wrong:
-        file.complain(("output", "sections" if output.sections else "sections_m"), f"[output]: {problem}")
 
 
 def _references(file: TomlFile, cases: Sequence[Case], varied: Iterable[str]) -> tuple[Reference, ...]:

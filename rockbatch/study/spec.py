@@ -104,45 +104,6 @@ class Numerics:
     quiet_s: float = 2.0
 
 
-LEAST_NORMAL_SHARE = 0.1
-"""Of the weight: the normal force below which shear keys, not friction, bear the base shear."""
-
-
-LEAST_STROKE_MM = 10.0
-"""Stroke from which half cycles of dampers count."""
-
-
-@dataclass(frozen=True)
-class Output:
-    """[output]: results beyond the peaks, each of which costs time; :data:`rockbatch.study.load.OUTPUT` explains them."""
-
-    histories: str = "worst"
-    histories_MB: float = 20.0  # noqa: N815 (the study's key)
-    ledger: bool = False
-    forces: bool = False
-    rocking: bool = False
-    least_normal_share: float = LEAST_NORMAL_SHARE
-    both_laws: bool = False
-    intensity: bool = False
-    sa_periods_s: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
-    sa_pairs: tuple[str, ...] = ()
-    half_cycles: bool = False
-    sections: int | None = None
-    sections_m: tuple[float, ...] = ()
-    devices_work: bool = False
-    least_stroke_mm: float = LEAST_STROKE_MM
-
-    @property
-    def requested_sections(self) -> int | tuple[float, ...] | None:
-        """Sections of the shaft whose forces are asked for: their number or their heights [m]; None without any."""
-        return self.sections or self.sections_m or None
-
-    @property
-    def least_stroke(self) -> float | None:
-        """Stroke from which half cycles of dampers count [m]; None unless the work of devices is asked for."""
-        return 0.001 * self.least_stroke_mm if self.devices_work else None
-
-
 @dataclass(frozen=True)
 class Case:
     """One pier on one base. ``columns`` holds the values of those varied keys that apply to it.

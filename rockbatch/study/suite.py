@@ -97,7 +97,7 @@ def _azimuths(study: Study) -> tuple[float, ...]:
     study asks for spectra of pairs or for runs on both axes."""
     spec = study.motions
     of_pairs = spec.target is not None and spec.target.pairs != "apart"
-    if not (of_pairs or study.output.sa_pairs or _both_axes(study)) or not spec.azimuths:
+    if not (of_pairs or study.output.has("sa_pairs") or _both_axes(study)) or not spec.azimuths:
         return spec.azimuths
     square = (spec.azimuths[0] + 90.0) % 360.0
     if any(same_azimuth(azimuth, way) for azimuth in spec.azimuths for way in (square, square + 180.0)):

@@ -4,7 +4,7 @@ From them follow the reader (:mod:`reader`), the JSON schemas, the reference in 
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 from rockbatch.common.errors import Problem
@@ -158,6 +158,18 @@ class Section(Mapping[str, Key]):
                 if attribute.name == name and attribute.default not in (MISSING, None, (), ""):
                     return attribute.default
         return self[name].default
+
+
+def joined(section: Section, *more: Section) -> Section:
+    """Return ``section`` with the keys of others, and all that they say of these."""
+    sections = (section, *more)
+    return replace(
+        section,
+        keys_read={name: key for part in sections for name, key in part.items()},
+        homes=tuple(home for part in sections for home in part.homes),
+        also={name: words for part in sections for name, words in part.also.items()},
+        clashes=tuple(clash for part in sections for clash in part.clashes),
+    )
 
 
 _GENERAL = {
