@@ -127,7 +127,7 @@ def test_one_case_is_changed_by_its_name_and_a_list_replaces_all(pier4):
         ({"pier": {1: 2}}, 'study.toml: [pier]: "1": unknown key'),
         ({"motions": "\0"}, "has a NUL character"),
         ({"peir": {"height_m": 3}}, "study.toml: peir: unknown section; did you mean pier?"),
-        ({"motions": []}, "motions: there is none in it; write for example motions = rb.read_motions(folder)"),
+        ({"motions": []}, "motions: there are none; write for example motions = rb.read_motions(folder)"),
         ({"motions": 3}, "motions = 3: must be"),
     ],
 )  # fmt: skip
