@@ -14,16 +14,16 @@ from rockbatch.toml.section import Key, Section
 
 BASES = ("code", "literature", "judgement")
 COUNTING = ("infinite", "unknown", "value", "left out")
-"""Ways in which a run counts that did not go through to its end:
+"""Ways of counting a run that did not go through to its end:
 
 infinite
     Worse than any limit.
 unknown
-    Anything from what is known up to infinity: a peak or a count is at least what it was when the pier overturned or flew.
+    Any value from the known one up to infinity: a peak or a count is at least its value when the pier overturned or flew.
 value
-    What the table has, as if the run had gone through; unknown where it has nothing.
+    The value in the table, as if the run had gone through; unknown if it has none.
 left out
-    Not at all; the verdict says how many.
+    Not counted; the verdict has the number of such runs.
 """
 COUNTS = ("station", "component")
 """Ways to count records:
@@ -44,7 +44,7 @@ srss
     The greater of one with 0.3 of the other.
 """
 EITHER, LESSER = "on either axis", "the lesser of both axes"
-"""Words for events, and for properties of a case of which more is better."""
+"""Ways to combine events, and properties of a case of which more is better."""
 CONFIRMED = ("at_most", "at_least", "above")
 USUAL = {"overturned": "infinite", "flight": "unknown", "failed": "unknown"}
 
@@ -135,7 +135,7 @@ class Rule:
 
     @property
     def limit(self) -> float:
-        """The limit, whichever way it bounds."""
+        """The value of at_most or at_least; NaN without one."""
         return float(next((limit for limit in (self.at_most, self.at_least) if limit is not None), math.nan))
 
     @property
@@ -144,13 +144,13 @@ class Rule:
         return "at most" if self.at_most is not None else "at least"
 
     def counts(self, status: str) -> str:
-        """Return how a run of this status counts, one of :data:`COUNTING`."""
+        """Return the way of counting a run with this status, one of :data:`COUNTING`; the usual one unless the rule gives it."""
         usual = "infinite" if self.statistic == "asce7-16" else USUAL[status]
         return getattr(self, status) or usual
 
     @property
     def on_both_axes(self) -> str:
-        """Return how demands on both axes combine in words: "SRSS of both axes"; of a demand of the case, the worse counts."""
+        """Way to combine the demands on both axes, in words: "SRSS of both axes"; for a property of the case, the worse."""
         if DEMANDS[self.demand].event:
             return EITHER
         return BOTH_AXES[self.both_axes or "greater"] if self.sense == "at most" else LESSER
@@ -166,7 +166,7 @@ class Rule:
         return self.words_at(self.at_m)
 
     def words_at(self, height: float | None) -> str:
-        """Return that name with the height at which the demand is read [m], if it is read at one."""
+        """Return :attr:`words` with the height at which the demand is read [m], without one for None."""
         demand = DEMANDS[self.demand]
         if demand.per_case:
             return self.demand
@@ -182,7 +182,7 @@ class Rule:
 
     @property
     def counting(self) -> str:
-        """Ways in which runs count that do not go through, in words; empty if the demand is about nothing else."""
+        """Ways of counting runs that do not go through, in words; empty for events and properties of the case."""
         if not DEMANDS[self.demand].per_run:
             return ""
         kinds = dict.fromkeys(self.counts(status) for status in USUAL)
@@ -192,7 +192,7 @@ class Rule:
 
 
 def is_ban(demand: str, statistic: str, limit: float) -> bool:
-    """Return whether a check with these asks that an event happens under no record."""
+    """Return whether a check with these asks that an event (``demand``) happens under no record."""
     return demand in DEMANDS and DEMANDS[demand].event and statistic == "max" and 0 <= limit < 1
 
 
@@ -203,73 +203,146 @@ COUNT = (
 PER_EVENT = "Greatest number of stations of one event with which anything passes by a code's statistic"
 AXES = "How the demands of a record on both axes of a pier combine, in cases with `other_width_m`"
 _CALLED = {
-    "demand": names({
-        ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
-        ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
-        ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
-        ("top_drift_m", "top_drift_mm"): "displacement topdisplacement", "friction_demand": "sliding slip",
-        "overturned": "overturning overturn collapse toppling",
-    }),
-    "statistic": names({
-        "mean": "average avg", "max": "maximum envelope worst largest peak", "median": "p50", "count": "number",
-        "p84": "84th 84 84percentile percentile84 84thpercentile", "p84_lognormal": "lognormal",
-        "p84_95": "tolerance", ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
-        "asce7-16": "asce7", "aashto": "aashtolrfd lrfd", "nzs1170.5": "nzs",
-    }),
-    "basis": names({
-        "code": "standard norm", "literature": "paper book", "judgement": "judgment engineeringjudgement expert",
-    }),
-}  # fmt: skip
+    "demand": names(
+        {
+            ("heel_uplift_m", "heel_uplift_mm"): "uplift heeluplift",
+            ("theta_max_rad", "theta_max_over_alpha"): "rotation maxrotation peakrotation thetamax theta",
+            ("theta_res_rad", "theta_res_over_alpha"): "residualrotation residual thetares",
+            ("top_drift_m", "top_drift_mm"): "displacement topdisplacement",
+            "friction_demand": "sliding slip",
+            "overturned": "overturning overturn collapse toppling",
+        }
+    ),
+    "statistic": names(
+        {
+            "mean": "average avg",
+            "max": "maximum envelope worst largest peak",
+            "median": "p50",
+            "count": "number",
+            "p84": "84th 84 84percentile percentile84 84thpercentile",
+            "p84_lognormal": "lognormal",
+            "p84_95": "tolerance",
+            ("en1998-1", "en1998-2"): "ec8 eurocode8 en1998",
+            "asce7-16": "asce7",
+            "aashto": "aashtolrfd lrfd",
+            "nzs1170.5": "nzs",
+        }
+    ),
+    "basis": names(
+        {
+            "code": "standard norm",
+            "literature": "paper book",
+            "judgement": "judgment engineeringjudgement expert",
+        }
+    ),
+}
 _DEMAND = Choice(tuple(DEMANDS), called=_CALLED["demand"], listed_by="rockbatch check --list")
 
-CHECK = Section(("check",), (
-    "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
-), {
-    "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
-    "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
-    "at_m": Key(not_negative, "7.5",
-        "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`."),
-    "statistic": Key(choice(*STATISTICS, called=_CALLED["statistic"]), '"mean"',
-        'How the records are summed up; "max" if it is not given.'),
-    "above": Key(not_negative, "0.5",
-        'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.'),
-    "least": Key(count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."),
-    "count": Key(choice(*COUNTS), '"component"',
-        f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations."),
-    "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
-    "both_axes": Key(choice(*BOTH_AXES), '"srss"',
-        f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
-        "`[suite]` says if it is not given."),
-    "at_most": Key(number, "0.5", "The limit."),
-    "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
-    "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
-    "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
-    "case": Key(text, '["soft", "stiff*"]',
-        "Names of the cases to check, or patterns with * and ?; all if it is not given.", many=True),
-    "scale": Key(positive, "1.0",
-        "Scales of the motions to check, each a suite of its own; all if it is not given.", many=True),
-    "overturned": Key(choice(*COUNTING), '"infinite"',
-        'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
-        '"value", as the table has it; "left out". "infinite" if it is not given.'),
-    "flight": Key(choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'),
-    "failed": Key(choice(*COUNTING), '"unknown"',
-        'How a run counts that has not settled, or was not run; "unknown" if it is not given.'),
-    "other_law": Key(boolean, "true",
-        "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts."),
-    "confirm": Key(choice(*CONFIRMED), '["at_most"]',
-        "Keys of this check that are right though such a limit decides nothing.", many=True),
-}, many=True, homes=(Rule,), also=names({
-    "at_most": "limit max maximum threshold allowable value lessthan", "at_least": "min minimum greaterthan",
-    "demand": "quantity edp measure response parameter variable", "statistic": "stat aggregate",
-    "reason": "source reference clause comment note notes description why", "name": "id label title",
-}), instead=names({
-    "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
-    "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity polarities sign",
-}))  # fmt: skip
+CHECK = Section(
+    ("check",),
+    (
+        "A design check: a demand, how it is summed up over the records, and a limit. `rockbatch check` holds results against it."
+    ),
+    {
+        "name": Key(text, '"overturning margin"', "Its name in the table of verdicts.", required=True),
+        "demand": Key(_DEMAND, '"theta_max_over_alpha"', "What is looked at.", required=True),
+        "at_m": Key(
+            not_negative,
+            "7.5",
+            "Height above the pivots of the section that the demand is about, one of those of `sections` or `sections_m`.",
+        ),
+        "statistic": Key(
+            choice(*STATISTICS, called=_CALLED["statistic"]),
+            '"mean"',
+            'How the records are summed up; "max" if it is not given.',
+        ),
+        "above": Key(
+            not_negative,
+            "0.5",
+            'With statistic = "count": the value that a record has to exceed to count; 0 for events if it is not given.',
+        ),
+        "least": Key(
+            count, "7", "Number of records below which nothing passes; what the statistic asks for if it is not given."
+        ),
+        "count": Key(
+            choice(*COUNTS),
+            '"component"',
+            f"{COUNT}; what `[suite]` says if it is not given. A code's statistic counts stations.",
+        ),
+        "per_event": Key(count, "4", f"{PER_EVENT}; what `[suite]` says if it is not given."),
+        "both_axes": Key(
+            choice(*BOTH_AXES),
+            '"srss"',
+            f'{AXES}: "greater", the greater; "srss", the root of the sum of squares; "100_30", one with 0.3 of the other. What '
+            "`[suite]` says if it is not given.",
+        ),
+        "at_most": Key(number, "0.5", "The limit."),
+        "at_least": Key(number, "2.0", "The limit, for what belongs to the foundation, where more is better."),
+        "basis": Key(choice(*BASES, called=_CALLED["basis"]), '"code"', "Where the limit comes from."),
+        "reason": Key(text, '"EN 1998-2, 7.6.2"', "Clause, source, or why, in words.", required=True),
+        "case": Key(
+            text,
+            '["soft", "stiff*"]',
+            "Names of the cases to check, or patterns with * and ?; all if it is not given.",
+            many=True,
+        ),
+        "scale": Key(
+            positive,
+            "1.0",
+            "Scales of the motions to check, each a suite of its own; all if it is not given.",
+            many=True,
+        ),
+        "overturned": Key(
+            choice(*COUNTING),
+            '"infinite"',
+            'How an overturned run counts: "infinite", beyond any limit; "unknown", any value from the known one upwards; '
+            '"value", as the table has it; "left out". "infinite" if it is not given.',
+        ),
+        "flight": Key(
+            choice(*COUNTING), '"unknown"', 'How a run counts that was ended by flight; "unknown" if it is not given.'
+        ),
+        "failed": Key(
+            choice(*COUNTING),
+            '"unknown"',
+            'How a run counts that has not settled, or was not run; "unknown" if it is not given.',
+        ),
+        "other_law": Key(
+            boolean,
+            "true",
+            "Whether nothing passes without the settlement by the other spring law; where both were run the worse counts.",
+        ),
+        "confirm": Key(
+            choice(*CONFIRMED),
+            '["at_most"]',
+            "Keys of this check that are right though such a limit decides nothing.",
+            many=True,
+        ),
+    },
+    many=True,
+    homes=(Rule,),
+    also=names(
+        {
+            "at_most": "limit max maximum threshold allowable value lessthan",
+            "at_least": "min minimum greaterthan",
+            "demand": "quantity edp measure response parameter variable",
+            "statistic": "stat aggregate",
+            "reason": "source reference clause comment note notes description why",
+            "name": "id label title",
+        }
+    ),
+    instead=names(
+        {
+            "the unit stands in the name of the demand, as in heel_uplift_mm; leave it out": "unit units",
+            "both polarities of a study are mirror images, of which each run counts once; leave it out": "polarity "
+            "polarities sign",
+        }
+    ),
+)
 """A [[check]]; :class:`Rule` says what its keys mean."""
 
 
 def _unknown_words(rule: Rule) -> list[Problem]:
+    """Return the problem of each attribute that is not one of the words that its key allows."""
     wrong = []
     for name, key in CHECK.items():
         value = getattr(rule, name)
@@ -284,7 +357,7 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 
 def _misfits(rule: Rule) -> list[Problem]:
-    """Return what the attributes of a rule say about each other, each problem at the first of them that is wrong."""
+    """Return the contradictions between the attributes of a rule, each at one of these."""
     demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
     two_limits = rule.at_most is not None and rule.at_least is not None
     neither = rule.at_most is None and rule.at_least is None
@@ -355,9 +428,8 @@ def _misfits(rule: Rule) -> list[Problem]:
         (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
         (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
     ]
-    return [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies] + [
-        Problem(name, None, f"{reason}; leave it out", kind=Contradiction)
-        for applies, names, reason in without_place
-        for name in names
-        if applies and getattr(rule, name) is not None
-    ]
+    problems = [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies]
+    for applies, attributes, reason in without_place:
+        given = [name for name in attributes if getattr(rule, name) is not None] if applies else []
+        problems += [Problem(name, None, f"{reason}; leave it out", kind=Contradiction) for name in given]
+    return problems

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from rockbatch.checks.rule_choices import implausible, unmet
+from rockbatch.checks.rule_choices import Available, implausible, unmet
 from rockbatch.checks.rule_files import SUITE, read_checks
 from rockbatch.checks.rules import CHECK, Rule
 from rockbatch.common.analyses import doors
@@ -469,14 +469,14 @@ def _problems_of_rule(
     cases: Sequence[Case], motions: MotionSpec, output: Output, known_piers: bool, rule: Rule
 ) -> Iterator[Problem]:
     """Yield problems of a check: choices that the study lacks, and implausible limits if its piers are known."""
-    yield from unmet(
-        rule,
+    available = Available(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check of a settlement turns it on
         output=[key for key in BROUGHT if getattr(output, key) or not _adds_columns(key, cases)],
         sections=_section_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
+    yield from unmet(rule, available)
     if not known_piers:
         return
     yield from implausible(rule, [_as_in_run_json(case) for case in cases])
