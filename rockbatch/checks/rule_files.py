@@ -8,7 +8,7 @@ from typing import NamedTuple
 from rockbatch.checks.rules import AXES, BOTH_AXES, CHECK, COUNT, COUNTS, PER_EVENT, Rule
 from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import shown
-from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import KeyValues, choice, count, text
 from rockbatch.toml.meant import names
@@ -125,7 +125,7 @@ def _rules(
         if file.is_sound_since(before):
             demand = DEMANDS.get(read.get("demand", ""))
             applying = {"count"} if demand and not demand.per_case else set()
-            applying |= {"both_axes"} if read.get("demand") in DIRECTED else set()
+            applying |= {"both_axes"} if demand and demand.directed else set()
             applying |= {"per_event"} if STATISTICS[read.get("statistic", "max")].code else set()
             read = {name: value for name, value in usual.items() if name in applying} | read
             try:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import Contradiction, Problem, WrongType, refuse
 from rockbatch.common.showing import shown
-from rockbatch.quantities.catalogue import DEMANDS, DIRECTED
+from rockbatch.quantities.catalogue import DEMANDS
 from rockbatch.quantities.statistics import STATISTICS
 from rockbatch.toml.kinds import Choice, KindError, boolean, choice, count, not_negative, number, positive, text
 from rockbatch.toml.meant import names
@@ -94,7 +94,7 @@ class Rule:
         Height of the section that a demand such as section_moment_kNm is about [m].
     both_axes : "greater", "srss", "100_30" or None
         How the demands of a record combine on both axes of a pier, one of :data:`BOTH_AXES`, in cases with ``other_width_m``;
-        "greater" unless given, and of demands that do not add up (:data:`rockbatch.quantities.catalogue.DIRECTED`).
+        "greater" unless given, and of demands that do not add up (:attr:`rockbatch.quantities.demands.Demand.directed`).
     confirm : tuple of str
         Those of at_most, at_least and above that are right though nothing exceeds them (:mod:`rockbatch.checks.rule_choices`).
 
@@ -417,7 +417,7 @@ def _misfits(rule: Rule) -> list[Problem]:
             "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
         ),
         (
-            rule.both_axes not in (None, "greater") and rule.demand not in DIRECTED,
+            rule.both_axes not in (None, "greater") and not demand.directed,
             "both_axes",
             f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
         ),

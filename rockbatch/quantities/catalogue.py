@@ -92,13 +92,12 @@ def _rotation(of: str, name: str, unit: str, times: Lever, words: str = "") -> L
 def _displacements(name: str, lever: Lever) -> tuple[Limit, Limit]:
     """Return limits on the greatest rotation times a length, in m and in mm."""
     in_metres, in_millimetres = product(lever, alpha), product(product(THOUSAND, lever), alpha)
-    return _rotation("theta_max", f"{name}_m", "m", in_metres), _rotation(
-        "theta_max", f"{name}_mm", "mm", in_millimetres
-    )
+    metres = _rotation("theta_max", f"{name}_m", "m", in_metres)
+    return metres, _rotation("theta_max", f"{name}_mm", "mm", in_millimetres)
 
 
 def _top_drift(run: Run) -> float:
-    """Return the greatest drift [m]: of a shaft that bends as its own run has it."""
+    """Return the greatest drift [m], by the rotation of a rigid shaft, or as recorded for one that bends."""
     bent = run.outcome.top_drift_max
     return run.pier.top * run.outcome.theta_max if bent is None else bent
 
@@ -107,16 +106,17 @@ def _bent_as_well(limit: Limit) -> Limit:
     """Return a limit on drift that also holds for a shaft that bends, which drifts by more than it rotates."""
     bent = largest(("top_drift_m",), THOUSAND if limit.unit == "mm" else ONE, "top_drift_error_m")
 
-    def either(rigid: Evaluate | None) -> Evaluate | None:
-        return rigid and (lambda runs, case: (bent if bends(case) else rigid)(runs, case))
+    def bent_or(rigid: Evaluate | None) -> Evaluate | None:
+        if rigid is None:
+            return None
+        return lambda runs, case: bent(runs, case) if bends(case) else rigid(runs, case)
 
-    return limit._replace(
-        evaluate=either(limit.evaluate), reached=either(limit.reached), words="greatest drift", height=top
-    )
+    evaluate, reached = bent_or(limit.evaluate), bent_or(limit.reached)
+    return limit._replace(evaluate=evaluate, reached=reached, words="greatest drift", height=top)
 
 
 def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None) -> Callable[[Run], float | None]:
-    """Return the number of a field of ``PeakForces``, times a factor of the pier if that is known."""
+    """Return the source of a field of ``PeakForces``, times a ``factor`` of the pier; its value is None if either is unknown."""
 
     def value(run: Run) -> float | None:
         force = None if run.outcome.forces is None else getattr(run.outcome.forces, field)
@@ -127,9 +127,19 @@ def _of_forces(field: str, factor: Callable[[Pier], float | None] | None = None)
 
 
 def _force(
-    name: str, words: str, field: str, unit: str, head: str, form: str, factor: int = 1, *, more: str = "", behind: str = "",
-    per: Callable[[Pier], float | None] | None = None, **facts: Any,
-) -> Quantity:  # fmt: skip
+    name: str,
+    words: str,
+    field: str,
+    unit: str,
+    head: str,
+    form: str,
+    factor: int = 1,
+    *,
+    more: str = "",
+    behind: str = "",
+    per: Callable[[Pier], float | None] | None = None,
+    **facts: Any,
+) -> Quantity:
     """Return a quantity of a ``field`` of ``PeakForces``, times ``per`` of the pier."""
     page = ReportFormat(head, form, factor, behind, table="forces")
     source = _of_forces(field, per)
@@ -146,14 +156,14 @@ def _in_kilonewtons(
     behind: str = "",
     **entered: bool,
 ) -> Quantity:
-    """Return the same as the quantity before, for piers whose mass is known."""
+    """Return the quantity of ``field`` in a unit of force, for piers of known mass; ``limit`` is its demand, if it has words."""
     words = f"the same in {in_print(unit)}, if mass_t is given"
     more: dict[str, Any] = {"sometimes": True, "weighed": True, "limits": (limit,) if limit.words else (), **entered}
     return _force(name, words, field, unit, f"{head} [{in_print(unit)}]", ".0f", per=per, behind=behind, **more)
 
 
 _TIMES_MASS = {"m/s^2": "kN", "m/s": "kN*s", "m^2/s^2": "kN*m"}
-"""Units of quantities over the mass [t], and of these."""
+"""Units of quantities over the mass, and of their products with the mass [t]."""
 
 
 def _over_mass(
@@ -167,11 +177,11 @@ def _over_mass(
     behind: str = "",
     **facts: Any,
 ) -> tuple[Quantity, Quantity]:
-    """Return a quantity over the mass, and the same of a pier whose mass is known."""
+    """Return two quantities: over the mass, and times the mass for piers of known mass."""
     first, second = f"{name}_{ENDINGS[unit]}", f"{name}_{ENDINGS[_TIMES_MASS[unit]]}"
     limit = Limit(words=words)
     head = f"{symbol}/M [{in_print(unit)}]"
-    entered = {name: facts[name] for name in ("landing", "bending") if name in facts}
+    entered = {name: facts[name] for name in ("landing", "bending", "directed") if name in facts}
     return (
         _force(
             first,
@@ -190,22 +200,22 @@ def _over_mass(
 
 
 def _half_weight(pier: Pier) -> float | None:
+    """Return half the weight of a pier [kN]; None without a known mass."""
     return None if pier.mass_t is None else 0.5 * pier.mass_t * pier.gravity
 
 
 def _greater(name: str, words: str, *limits: Limit) -> tuple[Limit, ...]:
-    """Return limits on the greater of the left and the right support, in the place of whose side ``name`` has "/".
+    """Return limits on the greater of the left and the right support; "/" in ``name`` stands for "_left" or "_right".
 
     ``words`` have "{}" for "each" or "a".
     """
     stem, _, ending = name.partition("/")
     columns = (f"{stem}_left{ending}", f"{stem}_right{ending}")
-    return tuple(
-        limit._replace(
-            name=f"{stem}_{limit.unit}" if limit.unit else stem + ending, words=words.format("a"), columns=columns
-        )
-        for limit in limits or (Limit(),)
-    )
+    of_greater = []
+    for limit in limits or (Limit(),):
+        name = f"{stem}_{limit.unit}" if limit.unit else stem + ending
+        of_greater.append(limit._replace(name=name, words=words.format("a"), columns=columns))
+    return tuple(of_greater)
 
 
 def _settlement(runs: Rows, case: Case) -> Estimated:
@@ -216,17 +226,23 @@ def _settlement(runs: Rows, case: Case) -> Estimated:
 _SETTLEMENTS = (
     Limit(ceiling=_WIDER, evaluate=_settlement, other_law=lambda runs, case: runs.numbers(OTHER_LAW)),
     Limit(
-        "toe_settlement_m", ceiling=_WIDER, words="settlement of the support that settles more", evaluate=toe_settlement,
+        "toe_settlement_m",
+        ceiling=_WIDER,
+        words="settlement of the support that settles more",
+        evaluate=toe_settlement,
         other_law=toe(OTHER_LAW),
     ),
-)  # fmt: skip
+)
 _TILTS = (
     Limit(ceiling=Ceiling(alpha, _OVERTURNS), evaluate=tilt(ONE)),
     Limit(
-        "differential_settlement_m", "m", ceiling=Ceiling(product(width, alpha), _OVERTURNS),
-        words="settlement of one support against the other", evaluate=tilt(width),
+        "differential_settlement_m",
+        "m",
+        ceiling=Ceiling(product(width, alpha), _OVERTURNS),
+        words="settlement of one support against the other",
+        evaluate=tilt(width),
     ),
-)  # fmt: skip
+)
 
 FIXED = (
     Quantity("record", "ground motion, named after its file or channel", kind="text", page=ReportFormat("record")),
@@ -243,7 +259,7 @@ FIXED = (
     Quantity(
         "theta_max_over_alpha", "greatest rotation over α", "theta_max",
         more="; the run continues until nothing later can exceed it", page=ReportFormat("θ_max/α", ".5f"), over_alpha=True,
-        suite=OfSuite("Largest rotation θ_max/α", ".4f"),
+        directed=True, suite=OfSuite("Largest rotation θ_max/α", ".4f"),
         error="theta_max_error",
         limits=(
             _rotation("theta_max", "theta_max_over_alpha", "", ONE),
@@ -259,7 +275,7 @@ FIXED = (
     Quantity("t_max_s", "time of the greatest rotation", "t_max", "s", ReportFormat("at t [s]", ".2f")),
     Quantity(
         "theta_res_over_alpha", "residual rotation over α", "theta_res", more=", at rest on the deformed base",
-        page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True,
+        page=ReportFormat("θ_res/α", ".5f"), over_alpha=True, bases=TILTS, stood=True, directed=True,
         suite=OfSuite("Residual rotation |θ_res|/α", ".5f"), error="theta_res_error",
         limits=(
             _rotation("theta_res", "theta_res_over_alpha", "", ONE),
@@ -286,7 +302,7 @@ _KNOWN = "; empty with a fixed step, and of a run that failed"
 
 
 def _fact(name: str, words: str, more: str = "", source: Callable[[Run], Any] | None = None, **facts: Any) -> Quantity:
-    """Return a quantity that is 1 where ``words`` hold and 0 where they do not, of the field of ``Outcome`` of its name."""
+    """Return a quantity that is 1 if ``words`` hold and 0 if not, from ``source`` or else the field ``name`` of ``Outcome``."""
     return Quantity(name, f"1 if {words}, 0 if not", source or name, more=more, kind="fact", sometimes=True, **facts)
 
 
@@ -305,7 +321,7 @@ TRAILING = (
     Quantity(
         "base_tilt_rad", "residual tilt of the base", "base_tilt", "rad",
         ReportFormat("base tilt [mrad]", ".3f", 1000, "theta_res_over_alpha"), bases=SPRINGS, stood=True,
-        limits=_TILTS,
+        limits=_TILTS, directed=True,
     ),
     Quantity(
         "ductility_left", _DUCTILITY.format("each"), "ductility_left",
@@ -356,13 +372,14 @@ TRAILING = (
         "top_drift_m", "greatest drift, at the height `drift_height_m`",
         _top_drift, "m", ReportFormat("drift [mm]", ".1f", 1000, "t_max_s"),
         ": that height times the greatest rotation; of a shaft that bends its greatest horizontal way",
-        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)),
+        limits=tuple(_bent_as_well(limit) for limit in _displacements("top_drift", top)), directed=True,
     ),
     Quantity(
         "heel_uplift_m", "greatest rise of the heel above the toe",
         lambda run: 2.0 * run.pier.half_width * run.outcome.theta_max, "m",
         ReportFormat("heel uplift [mm]", ".1f", 1000, "top_drift_m"),
         ": the width between the pivots times the greatest rotation", limits=_displacements("heel_uplift", width),
+        directed=True,
     ),
     Quantity(
         "pga_g", "peak horizontal acceleration of the scaled motion, over g",
@@ -427,17 +444,37 @@ TRAILING = (
 
 
 def _device(
-    name: str, words: str, source: str | Callable[[Run], Any], unit: str, head: str, form: str, factor: int = 1,
-    *limits: Limit, device: str, more: str = "", behind: str = "", kind: Literal["number", "count"] = "number",
+    name: str,
+    words: str,
+    source: str | Callable[[Run], Any],
+    unit: str,
+    head: str,
+    form: str,
+    factor: int = 1,
+    *limits: Limit,
+    device: str,
+    more: str = "",
+    behind: str = "",
+    kind: Literal["number", "count"] = "number",
     weighed: bool = False,
-) -> Quantity:  # fmt: skip
-    """Return a quantity of a kind of devices; checks limit it as it is unless ``limits`` are given."""
+) -> Quantity:
+    """Return a quantity of a kind of devices, with ``limits``, or else a demand of its own name and unit."""
     error = "" if kind == "count" else "devices_error"
     page = ReportFormat(head, form, factor, behind)
     return Quantity(
-        f"{device}_{name}", words, source, unit, page, more, kind, sometimes=True, error=error, limits=limits or (Limit(),),
-        device=device, weighed=weighed,
-    )  # fmt: skip
+        f"{device}_{name}",
+        words,
+        source,
+        unit,
+        page,
+        more,
+        kind,
+        sometimes=True,
+        error=error,
+        limits=limits or (Limit(),),
+        device=device,
+        weighed=weighed,
+    )
 
 
 def _device_force(device: str, symbol: str) -> Quantity:
@@ -448,7 +485,7 @@ def _device_force(device: str, symbol: str) -> Quantity:
 
 
 def _device_force_in_kilonewtons(device: str, symbol: str) -> Quantity:
-    """Return it in kN; checks take it from that over the weight, since earlier results have no other."""
+    """Return the greatest force of a kind of devices in kN; its demand takes the column over the weight, as in older results."""
 
     def value(run: Run) -> float | None:
         force, mass = getattr(run.outcome, f"{device}_force"), run.pier.mass_t
@@ -457,9 +494,19 @@ def _device_force_in_kilonewtons(device: str, symbol: str) -> Quantity:
     kind, over_weight = device.replace("_", " "), f"{device}_force_over_weight"
     limit = Limit(times=weight, columns=(over_weight,))
     return _device(
-        "force_kN", f"greatest force of a {kind}", value, "kN", f"{kind} {symbol} [kN]", ".0f", 1, limit, device=device,
-        more=", if mass_t is given", behind=over_weight, weighed=True,
-    )  # fmt: skip
+        "force_kN",
+        f"greatest force of a {kind}",
+        value,
+        "kN",
+        f"{kind} {symbol} [kN]",
+        ".0f",
+        1,
+        limit,
+        device=device,
+        more=", if mass_t is given",
+        behind=over_weight,
+        weighed=True,
+    )
 
 
 DEVICES = (
@@ -511,10 +558,20 @@ DEVICES = (
 
 
 def _work(
-    name: str, words: str, field: str, unit: str, head: str, form: str, factor: int = 1, *limits: Limit, device: str,
-    more: str = "", kind: Literal["number", "count"] = "number", per: Callable[[Pier], float | None] = lambda pier: 1.0,
+    name: str,
+    words: str,
+    field: str,
+    unit: str,
+    head: str,
+    form: str,
+    factor: int = 1,
+    *limits: Limit,
+    device: str,
+    more: str = "",
+    kind: Literal["number", "count"] = "number",
+    per: Callable[[Pier], float | None] = lambda pier: 1.0,
     behind: str = "",
-) -> Quantity:  # fmt: skip
+) -> Quantity:
     """Return a quantity of a ``field`` of ``DeviceWork``, times ``per`` of the pier if that is known."""
 
     def value(run: Run) -> float | None:
@@ -524,9 +581,20 @@ def _work(
 
     weighed = unit == "kJ"
     quantity = _device(
-        name, words, value, unit, head, form, factor, *limits, device=device, more=more, behind=behind, kind=kind,
+        name,
+        words,
+        value,
+        unit,
+        head,
+        form,
+        factor,
+        *limits,
+        device=device,
+        more=more,
+        behind=behind,
+        kind=kind,
         weighed=weighed,
-    )  # fmt: skip
+    )
     return replace(quantity, needs="devices_work")
 
 
@@ -565,7 +633,7 @@ _SPEED = "greatest speed at which the heel gap opens or closes"
 _FORCES = (
     *_over_mass(
         "base_shear", "greatest base shear V", "base_shear", "m/s^2", "V", more=", without the impulses of impacts", landing=True,
-        bending=True,
+        bending=True, directed=True,
     ),
     *_over_mass(
         "normal_force", "greatest normal force N of all supports", "normal_force", "m/s^2", "N", more=", likewise", landing=True,
@@ -573,7 +641,7 @@ _FORCES = (
     _force(
         "friction_demand", "greatest V over N at the same time", "friction_demand", "1", "V/N", ".4f", unbounded=True,
         limits=_SLIDES, more=", while N is above [output] least_normal_share of the weight, 0.1 unless given", landing=True,
-        bending=True,
+        bending=True, directed=True,
     ),
     _force(
         "pivot_force_left", _PIVOT.format("each"), "pivot_left", "1", "support L/(Mg/2)", ".3f", more=_PIVOT_MORE, landing=True,
@@ -590,17 +658,17 @@ _FORCES = (
     _force("heel_gap_left_m", _GAP.format("each"), "heel_gap_left", "m", "heel gap L [mm]", ".1f", 1000, more=_GAP_MORE),
     _force(
         "heel_gap_right_m", _GAP.format("each"), "heel_gap_right", "m", "heel gap R [mm]", ".1f", 1000, more=_GAP_MORE,
-        limits=_greater("heel_gap/_m", _GAP, *_LENGTHS),
+        limits=_greater("heel_gap/_m", _GAP, *_LENGTHS), directed=True,
     ),
     _force("heel_speed_left_m_s", _SPEED, "heel_speed_left", "m/s", "heel speed L [m/s]", ".3f"),
     _force(
         "heel_speed_right_m_s", _SPEED, "heel_speed_right", "m/s", "heel speed R [m/s]", ".3f",
-        limits=_greater("heel_speed/_m_s", _SPEED),
+        limits=_greater("heel_speed/_m_s", _SPEED), directed=True,
     ),
     _force(
         "deck_acceleration_m_s2", "greatest absolute horizontal acceleration of the deck", "deck_acceleration", "m/s^2",
         "deck [m/s²]", ".3f", more=", or of the top without one", limits=(Limit(), Limit(unit="g", times=per_gravity)),
-        landing=True, bending=True,
+        landing=True, bending=True, directed=True,
     ),
     _force(
         "landing_velocity_m_s", "speed of the landing pivot at the hardest impact", "landing_velocity", "m/s",
@@ -619,10 +687,14 @@ _FORCES = (
         "first_uplift_g", "magnitude of the horizontal ground acceleration then, over g", "uplift_ground",
         "standard_gravity", "ground then [g]", ".4f", per=lambda pier: 1.0 / pier.gravity, sometimes=True,
     ),
-    _force("omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),)),
+    _force(
+        "omega_max_over_p", "greatest angular velocity over p", "omega_over_p", "1", "θ̇_max/p", ".4f", limits=(Limit(),),
+        directed=True,
+    ),
     *_over_mass(
         "key_shear", "greatest base shear on shear keys", "key_shear", "m/s^2", "V of keys",
         more=": V while N is below that share, as in flight", sometimes=True, landing=True, bending=True,
+        directed=True,
     ),
     _force(
         "flight_longest_s", "duration of the longest flight", "flight_longest", "s",
@@ -637,13 +709,14 @@ _FORCES = (
         "; of the vertical forces of supports, dampers and tendons; for a frame the sum over the columns, each about its own "
         "middle",
         "base_shear_kN",
-        landing=True,
+        landing=True, directed=True,
     ),
 )  # fmt: skip
 """Forces and motions for design, until the run ends or the pier leans beyond α for good."""
 
 
 def _estimates_landings(study: Any) -> bool:
+    """Return whether a study has forces, and a case with the stiffness by which those of landings are estimated."""
     return study.output.forces and any(
         "contact_stiffness_kN_m" in case.base.parameters(case.pier) for case in study.cases
     )
@@ -674,7 +747,7 @@ _SLIDES_FACT = _fact(
 
 
 def _energy(term: str, form: str = ".4f") -> Quantity:
-    """Return a term of the energy ledger."""
+    """Return the quantity of a term of the energy ledger."""
 
     def value(run: Run) -> float | None:
         return None if run.outcome.energies is None else run.outcome.energies[term]
@@ -690,6 +763,7 @@ _ROCKING_ERROR = (
 
 
 def _bends(study: Any) -> bool:
+    """Return whether the shaft of a case bends."""
     return any(case.base.bends for case in study.cases)
 
 
@@ -697,7 +771,7 @@ _OF_BENDING = (
     Quantity(
         "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
         ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"), bases=BENDING, error="deflection_error_m",
-        limits=_LENGTHS, requested=_bends,
+        limits=_LENGTHS, requested=_bends, directed=True,
     ),
     Quantity(
         "deflection_error_m", "estimated error of it: the change when the step was halved; empty with a fixed step",
@@ -727,7 +801,7 @@ OPTIONAL = (
         ROCKING,
         "greatest rotation over α about the current position of rest on the base",
         "theta_rocking", page=ReportFormat("rocking/α", ".5f", behind="theta_max_is"), over_alpha=True, needs="rocking",
-        error="theta_rocking_error", limits=(_rotation("theta_rocking", ROCKING, "", ONE),),
+        error="theta_rocking_error", limits=(_rotation("theta_rocking", ROCKING, "", ONE),), directed=True,
     ),
     Quantity(
         "theta_lean_over_alpha", "rotation over α of that position at the time of the greatest rotation, positive to its side",
@@ -764,7 +838,7 @@ OPTIONAL = (
 """Quantities at the end of a table, on request of the study."""
 
 COLUMNS = {quantity.name: quantity for quantity in (*FIXED, *TRAILING, *OPTIONAL)}
-"""All of them, by name, in the order of the file."""
+"""All quantities by name, in the order of the file."""
 
 TEXTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "text")
 FACTS = tuple(quantity.name for quantity in COLUMNS.values() if quantity.kind == "fact")
@@ -802,21 +876,11 @@ DEMANDS: dict[str, Demand] = {
 }
 """Demands by the name that a rule gives them; signs are dropped."""
 
-DIRECTED = (
-    "theta_max_over_alpha", "theta_max_rad", "theta_res_over_alpha", "theta_res_rad", "theta_rocking_over_alpha", "base_tilt_rad",
-    "differential_settlement_m", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm", "heel_gap_m", "heel_gap_mm",
-    "heel_speed_m_s", "omega_max_over_p", "base_shear_m_s2", "base_shear_kN", "base_moment_m2_s2", "base_moment_kNm",
-    "key_shear_m_s2", "key_shear_kN", "friction_demand", "deck_acceleration_m_s2", "deck_acceleration_g", "section_shear_kN",
-    "section_moment_kNm", "deflection_max_m", "deflection_max_mm",
-)  # fmt: skip
-"""Demands that an axis of the pier has by itself, so that those of two axes add up. Of others, such as settlements, axial forces
-and counts, which have the weight or the whole pier in them on either axis, the greater counts."""
-
 BROUGHT = {
     key: [quantity.name for quantity in COLUMNS.values() if quantity.needs == key]
     for key in ("forces", "rocking", "devices_work")
 }
-"""By keys of [output], the columns that each brings."""
+"""Columns that each key of [output] adds."""
 
 
 def names(table: Iterable[Quantity]) -> list[str]:
@@ -825,7 +889,7 @@ def names(table: Iterable[Quantity]) -> list[str]:
 
 
 def in_words(name: str, value: Any) -> str:
-    """Return a value of a column as the report writes it, in the page's unit; empty if it has none."""
+    """Return a value of a column as text, in the report's unit and format; empty for None, NaN, or a column without one."""
     page = COLUMNS[name].page
     if value is None or value != value or page is None:
         return ""
@@ -833,7 +897,7 @@ def in_words(name: str, value: Any) -> str:
 
 
 def report_columns(shown: str = "peaks") -> list[Quantity]:
-    """Return the columns in the report's tables of ``shown``, in their order: beside each other what is read together."""
+    """Return the columns of the report's tables of peaks or forces (``shown``), each behind the column that it belongs to."""
     order: list[str] = []
     for quantity in COLUMNS.values():
         if quantity.page and quantity.page.table == shown:
@@ -854,17 +918,20 @@ def as_markdown() -> str:
 
 def listed() -> dict[str, list[str]]:
     """Return the names of all demands, grouped by what they depend on: the list in the example of checks."""
+    return grouped(DEMANDS, _dependence)
 
-    def group(name: str) -> str:
-        demand = DEMANDS[name]
-        return (
-            "yes or no, 1 or 0" if demand.event
-            else "of the foundation, and not of a run" if demand.per_case
-            else "in the section at the height at_m, with [output] sections" if demand.needs == "sections"
-            else f"with [output] {demand.needs} = true" if demand.needs
-            else f"of a {demand.device}" if demand.device
-            else "of a shaft that bends" if demand.bases == BENDING
-            else "of every run"
-        )  # fmt: skip
 
-    return grouped(DEMANDS, group)
+def _dependence(name: str) -> str:
+    """Return the heading of a demand in the list: the key of [output], device or base on which it depends."""
+    demand = DEMANDS[name]
+    if demand.event:
+        return "yes or no, 1 or 0"
+    if demand.per_case:
+        return "of the foundation, and not of a run"
+    if demand.needs == "sections":
+        return "in the section at the height at_m, with [output] sections"
+    if demand.needs:
+        return f"with [output] {demand.needs} = true"
+    if demand.device:
+        return f"of a {demand.device}"
+    return "of a shaft that bends" if demand.bases == BENDING else "of every run"
