@@ -1,6 +1,7 @@
 """Rules: a demand, its statistic over the suite, a limit, and the source of the limit."""
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from rockbatch.common.arguments import checked
@@ -358,78 +359,76 @@ def _unknown_words(rule: Rule) -> list[Problem]:
 
 def _misfits(rule: Rule) -> list[Problem]:
     """Return the contradictions between the attributes of a rule, each at one of these."""
-    demand, statistic = DEMANDS[rule.demand], STATISTICS[rule.statistic or "max"]
-    two_limits = rule.at_most is not None and rule.at_least is not None
-    neither = rule.at_most is None and rule.at_least is None
-    wrong_way = not demand.per_case and rule.at_most is None and not neither
-    least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
-    example = "at_most = 0.5" if least is None else f"at_least = {least:.10g}"
-    counts = rule.statistic == "count"
-    with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
-    rules = [
-        (two_limits, "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"),
-        (neither, example.split()[0], f"{example.split()[0]} is missing, the limit; write for example {example}"),
-        (
-            wrong_way,
-            "at_least",
-            f"at_least = {rule.limit:g}: more of {rule.demand} is worse; write at_most = {rule.limit:g}",
-        ),
-        (
-            not (neither or wrong_way or math.isfinite(rule.limit)),
-            rule.sense.replace(" ", "_"),
-            f"{rule.sense.replace(' ', '_')} = {rule.limit:g}: must be a finite number",
-        ),
-        (rule.above is not None and not counts, "above", 'above: is for statistic = "count"; leave it out'),
-        (
-            counts and rule.above is None and not (demand.event or demand.per_case),
-            "above",
-            "above is missing, what a record has to exceed to count; write for example above = 0.5",
-        ),
-        (
-            rule.least is not None and rule.least < statistic.least,
-            "least",
-            f"least = {rule.least}: {statistic.code or 'a statistic'} asks for {statistic.least}; leave it out",
-        ),
-        (
-            rule.count == "component" and statistic.code != "",
-            "count",
-            f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
-            'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
-        ),
-        (
-            rule.per_event is not None and not statistic.code,
-            "per_event",
-            "per_event: is for a code's statistic; leave it out",
-        ),
-        (
-            demand.event and statistic.code != "",
-            "statistic",
-            f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no; write "max" or "count"',
-        ),
-        (
-            demand.needs == "sections" and rule.at_m is None,
-            "at_m",
-            "at_m is missing, the height of the section [m]; write for example at_m = 7.5",
-        ),
-        (
-            demand.needs != "sections" and rule.at_m is not None,
-            "at_m",
-            "at_m: is for demands in a section, such as section_moment_kNm; leave it out",
-        ),
-        (
-            rule.both_axes not in (None, "greater") and not demand.directed,
-            "both_axes",
-            f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
-        ),
-        (rule.other_law and demand.other_law is None, "other_law", f"other_law: is for {with_other_law}; leave it out"),
-    ]
-    without_place = [  # attributes that say nothing about such a demand or statistic
+    wrong = (*_wrong_limit(rule), *_wrong_threshold(rule), *_wrong_for_code(rule), *_wrong_for_demand(rule))
+    problems = [Problem(key, None, text, kind=Contradiction, named=False) for key, text in wrong]
+    demand, code = DEMANDS[rule.demand], rule.statistic == "asce7-16"
+    without_effect: list[tuple[bool, Iterable[str], str]] = [
         (demand.per_case, ("statistic", "least", "count"), f"{rule.demand} is the same for all records"),
         (not demand.per_run, USUAL, f"says nothing about {rule.demand}"),
-        (demand.per_run and rule.statistic == "asce7-16", USUAL, "is unacceptable by ASCE 7-16"),
+        (demand.per_run and code, USUAL, "is unacceptable by ASCE 7-16"),
     ]
-    problems = [Problem(key, None, text, kind=Contradiction, named=False) for applies, key, text in rules if applies]
-    for applies, attributes, reason in without_place:
+    for applies, attributes, reason in without_effect:
         given = [name for name in attributes if getattr(rule, name) is not None] if applies else []
         problems += [Problem(name, None, f"{reason}; leave it out", kind=Contradiction) for name in given]
     return problems
+
+
+def _wrong_limit(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield problems of the limit, each with its attribute: none, two, on the wrong side, or not finite."""
+    key = rule.sense.replace(" ", "_")
+    if rule.at_most is not None and rule.at_least is not None:
+        yield "at_least", "at_least: given beside at_most; keep one, and write the other as a check of its own"
+    if rule.at_most is None and rule.at_least is None:
+        least = {"eta": 2.0, "yield_kN": 4e4, "stiffness_kN_m": 2e6}.get(rule.demand)
+        key, example = ("at_most", 0.5) if least is None else ("at_least", least)
+        yield key, f"{key} is missing, the limit; write for example {key} = {example:.10g}"
+    elif rule.at_most is None and not DEMANDS[rule.demand].per_case:
+        limit = rule.limit
+        yield "at_least", f"at_least = {limit:g}: more of {rule.demand} is worse; write at_most = {limit:g}"
+    elif not math.isfinite(rule.limit):
+        yield key, f"{key} = {rule.limit:g}: must be a finite number"
+
+
+def _wrong_threshold(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield the problem of a threshold that is missing beside "count", or given beside another statistic."""
+    demand = DEMANDS[rule.demand]
+    if rule.above is not None and rule.statistic != "count":
+        yield "above", 'above: is for statistic = "count"; leave it out'
+    if rule.above is None and rule.statistic == "count" and not (demand.event or demand.per_case):
+        yield "above", "above is missing, what a record has to exceed to count; write for example above = 0.5"
+
+
+def _wrong_for_code(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield contradictions to what the statistic, or its code, asks of the records, each with its attribute."""
+    statistic = STATISTICS[rule.statistic or "max"]
+    if rule.least is not None and rule.least < statistic.least:
+        asks = f"{statistic.code or 'a statistic'} asks for {statistic.least}"
+        yield "least", f"least = {rule.least}: {asks}; leave it out"
+    if rule.count == "component" and statistic.code:
+        yield (
+            "count",
+            f'count = "component": {statistic.code} asks for {statistic.least} motions, and the components of a station are '
+            'one; write count = "station" in this check, or a statistic of no code, such as "mean"',
+        )
+    if rule.per_event is not None and not statistic.code:
+        yield "per_event", "per_event: is for a code's statistic; leave it out"
+    if DEMANDS[rule.demand].event and statistic.code:
+        text = f'statistic = "{rule.statistic}": is for quantities, and {rule.demand} is yes or no'
+        yield "statistic", f'{text}; write "max" or "count"'
+
+
+def _wrong_for_demand(rule: Rule) -> Iterator[tuple[str, str]]:
+    """Yield attributes that do not apply to the demand, or are missing for it, each with the problem."""
+    demand = DEMANDS[rule.demand]
+    if demand.needs == "sections" and rule.at_m is None:
+        yield "at_m", "at_m is missing, the height of the section [m]; write for example at_m = 7.5"
+    if demand.needs != "sections" and rule.at_m is not None:
+        yield "at_m", "at_m: is for demands in a section, such as section_moment_kNm; leave it out"
+    if rule.both_axes not in (None, "greater") and not demand.directed:
+        yield (
+            "both_axes",
+            f"both_axes: {rule.demand} does not add up over the axes, and the greater counts; leave it out",
+        )
+    if rule.other_law and demand.other_law is None:
+        with_other_law = " and ".join(name for name, candidate in DEMANDS.items() if candidate.other_law)
+        yield "other_law", f"other_law: is for {with_other_law}; leave it out"
