@@ -112,7 +112,8 @@ def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
         row["status"], row["reason"], 0.0, 0.0, int(row["impacts"]), int(row["separations"]), None, row["t_end_s"],
         int(row["substeps"]),
     )  # fmt: skip
-    recording = recorded(run, ended, study.numerics.quiet_s, any(o.histories_of_steps for o in observers))
+    every_step = run.base.remembers or any(o.histories_of_steps for o in observers)
+    recording = recorded(run, ended, study.numerics.quiet_s, every_step)
     return histories(
         recording, row["status"], case.name, case.columns, observers, polarity=planned.polarity, scale=planned.scale
     )

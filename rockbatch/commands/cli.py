@@ -16,7 +16,7 @@ from rockbatch.common.errors import InputError, PlainRemark
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import full_version
-from rockbatch.terminal.streams import is_lost, open_missing, say
+from rockbatch.terminal.streams import is_lost, open_missing, say, show
 
 _COMMANDS_MEANT = {word: name for name, words in {
     "examples": "list ls demo demos samples", "init": "new create start", "run": "simulate compute solve", "motions": "records",
@@ -57,7 +57,7 @@ class _Version(argparse.Action):
     """Prints the version, for which a checkout asks Git, when it is called."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
-        print(f"rockbatch {full_version()}")
+        show(f"rockbatch {full_version()}")
         parser.exit()
 
 

@@ -19,7 +19,7 @@ from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
-from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.bases import BASES, BOUNDS, WORDS
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
 from rockbatch.results.columns import PEAKS, units
@@ -83,7 +83,7 @@ SHAPE = {
                     "shaft_share",
                 )
             },
-            "base": ("rigid", "elastic", "yielding"),
+            "base": tuple(BASES),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},
@@ -151,7 +151,7 @@ def describe(study: Study, motions: MotionSet) -> dict[str, Any]:
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),
-        **({} if target is None else {"target": target.described(fitted, gravity) | _rocking(study, target)}),
+        **({} if target is None else {"target": target.run_json_entry(fitted, gravity) | _rocking(study, target)}),
         **_vertical_target(study, motions, gravity),
         "unusable": [_not_used(file) for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
@@ -210,7 +210,7 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> dict[s
     target = study.motions.vertical_target
     if not isinstance(target, SpectrumTarget):
         return {}
-    return {"vertical_target": target.described(verticals(motions.motions), gravity)}
+    return {"vertical_target": target.run_json_entry(verticals(motions.motions), gravity)}
 
 
 def describe_case(case: Case) -> dict[str, Any]:

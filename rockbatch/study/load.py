@@ -18,7 +18,7 @@ from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
@@ -152,7 +152,7 @@ OUTPUT = Section(
             only={"intensity": (True,)},
         ),
         "sa_pairs": Key(
-            choice(*DIRECTIONS),
+            choice(*TWO_COMPONENT_RULES),
             '["rotd50", "rotd100"]',
             "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and "
             "the median and the greatest over all directions.",
@@ -528,7 +528,7 @@ def _adds_columns(key: str, cases: Sequence[Case]) -> bool:
 
 def _device_kinds(cases: Sequence[Case]) -> set[str]:
     """Return the kinds of devices in these cases, and "", the kind of columns that need no device."""
-    return {"", *(device.what for case in cases for device in case.base.restraints)}
+    return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
 
 
 def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:

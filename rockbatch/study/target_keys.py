@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from rockbatch.common.units import Usual
 from rockbatch.motions.design_spectra import EUROCODE, NZS_1170_5
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, text
@@ -59,7 +59,7 @@ MEASURE = {
         "Damping of the oscillators, as a fraction of critical damping.",
     ),
 }
-PAIRS_OF_SA = {"pairs": Key(choice("apart", *DIRECTIONS), '"rotd100"', "")}
+PAIRS_OF_SA = {"pairs": Key(choice("apart", *TWO_COMPONENT_RULES), '"rotd100"', "")}
 EUROCODE_KEYS = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),

@@ -66,7 +66,7 @@ def test_mistakes_of_tables_name_table_and_key_and_those_of_a_text_its_line():
         "pier.alpha: expected a number, a text, a list or a table, not object"
     ]
     assert problems(rb.Study.from_dict, {"title": 10**5000}) == [
-        "title: a whole number of more than 64 bits, which TOML has not"
+        "title: a whole number of more than 64 bits, which TOML does not have"
     ]
     assert 'study.toml: "a\\n\\"": unknown key' in "".join(problems(rb.Study.from_dict, TABLES | {'a\n"': 3}))
     assert all(len(problem) < 500 for problem in problems(rb.Study.from_dict, TABLES | {"x" * 600: 3}))

@@ -70,7 +70,9 @@ def section(finished: Finished, level: str = "h3") -> Markup:
 
 def in_a_line(finished: Finished) -> str:
     """Return pier, suite and runs in a line, which stands below the title."""
-    given = finished.pier_as_given
+    highest = {case["pier"].get("highest_m") for case in finished.info["cases"]}
+    of_parts = {"height_m": highest.pop()} if "part" in finished.pier_as_given and len(highest) == 1 else {}
+    given = finished.pier_as_given | of_parts
     sizes = [
         f"{plain(float(given[key]), 6)} {words}"
         for key, words in IN_A_LINE.items()
