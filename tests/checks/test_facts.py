@@ -103,7 +103,7 @@ def test_words_of_notes_decide_nothing_on_the_page(results):
 
 
 PRINTING = {
-    "checks/wording.py": "a list of remarks on a verdict, each printed once for all that it is about",
+    "checks/verdicts.py": "remarks on a verdict, which checks.csv has in one cell with semicolons between",
     "commands/motions.py": "the reason for which a record is left out, printed to its first semicolon",
     "reporting/sections/answer.py": "the number of runs that have a remark",
 }
