@@ -6,6 +6,7 @@ checks, docs/columns.md and the list in configs/checks/stepping_pier.toml follow
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -101,15 +102,21 @@ _BY_OTHER_LAW = {name: values for found in parts("quantities.BY_OTHER_LAW") for 
 _SETTLEMENTS = (
     Limit(ceiling=WIDER, evaluate=_settlement, other_law=_BY_OTHER_LAW.get("settlement_m")),
     Limit(
-        "toe_settlement_m", ceiling=WIDER, words="settlement of the support that settles more", evaluate=toe_settlement,
+        "toe_settlement_m",
+        ceiling=WIDER,
+        words="settlement of the support that settles more",
+        evaluate=toe_settlement,
         other_law=_BY_OTHER_LAW.get("toe_settlement_m"),
     ),
 )
 _TILTS = (
     Limit(ceiling=Ceiling(alpha, OVERTURNS), evaluate=tilt(ONE)),
     Limit(
-        "differential_settlement_m", "m", ceiling=Ceiling(product(width, alpha), OVERTURNS),
-        words="settlement of one support against the other", evaluate=tilt(width),
+        "differential_settlement_m",
+        "m",
+        ceiling=Ceiling(product(width, alpha), OVERTURNS),
+        words="settlement of one support against the other",
+        evaluate=tilt(width),
     ),
 )
 
@@ -321,7 +328,7 @@ _OF_BENDING = (
     Quantity(
         "deflection_max_m", "greatest deflection of the shaft's top, across the shaft", "deflection_max", "m",
         ReportFormat("deflection [mm]", ".1f", 1000, "drift_height_m"), bases=BENDING, error="deflection_error_m",
-        limits=LENGTHS, requested=_bends,
+        limits=LENGTHS, requested=_bends, directed=True,
     ),
     Quantity(
         "deflection_error_m", "estimated error of it: the change when the step was halved; empty with a fixed step",
@@ -387,8 +394,9 @@ _OTHERS = (
 )  # fmt: skip
 """Demands that are no column of peaks.csv: events, and properties of the foundation."""
 
+_DIRECTED = {name for names in parts("quantities.DIRECTED") for name in names}
 DEMANDS: dict[str, Demand] = {
-    demand.name: demand
+    demand.name: replace(demand, directed=True) if demand.name in _DIRECTED else demand
     for demand in (
         *(demand for quantity in COLUMNS.values() for demand in quantity.demands()),
         *_OTHERS,
@@ -396,15 +404,6 @@ DEMANDS: dict[str, Demand] = {
     )
 }
 """Demands by the name that a rule gives them; signs are dropped."""
-
-DIRECTED = (
-    "theta_max_over_alpha", "theta_max_rad", "theta_res_over_alpha", "theta_res_rad", "base_tilt_rad",
-    "differential_settlement_m", "top_drift_m", "top_drift_mm", "heel_uplift_m", "heel_uplift_mm", "deflection_max_m",
-    "deflection_max_mm",
-    *(name for directed in parts("quantities.DIRECTED") for name in directed),
-)  # fmt: skip
-"""Demands that an axis of the pier has by itself, so that those of two axes add up. Of others, such as settlements, axial forces
-and counts, which have the weight or the whole pier in them on either axis, the greater counts."""
 
 BROUGHT = {
     key: [quantity.name for quantity in COLUMNS.values() if quantity.needs == key]

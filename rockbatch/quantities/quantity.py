@@ -159,6 +159,8 @@ class Quantity:
         True if the blow of a landing enters it: on rigid ground, where a landing is an impulse, it is a lower bound.
     bending : bool
         True if the bending of the shaft enters it, which a rigid shaft leaves out.
+    directed : bool
+        True if each axis of the pier has one by itself, so that those of two axes add up.
     least_is_worst : bool
         True if the smallest value of several runs is the worst.
     """
@@ -184,6 +186,7 @@ class Quantity:
     requested: Callable[[Any], bool] | None = None
     landing: bool = False
     bending: bool = False
+    directed: bool = False
     least_is_worst: bool = False
 
     @property

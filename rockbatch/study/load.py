@@ -28,8 +28,8 @@ from rockbatch.study.output import OUTPUT, Output
 from rockbatch.study.piers import PART, PIER, read_piers
 from rockbatch.study.restraint_keys import DEVICES
 from rockbatch.study.spec import LEAST_TOLERANCE, Case, MotionSpec, Numerics, Reference
-from rockbatch.study.tables import as_toml, changed, plain, without_lost_cases
-from rockbatch.study.target import TARGET, VERTICAL_TARGET
+from rockbatch.study.tables import as_toml, changed, plain_table, without_lost_cases
+from rockbatch.study.target_keys import TARGET, VERTICAL_TARGET
 from rockbatch.toml.kinds import choice, count, not_negative, positive, text, within
 from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile
@@ -300,7 +300,7 @@ def _checked_study(file: TomlFile, motions: Motions) -> Study:
     for kind, complain in parts("study.COMPLAINS"):
         complain(file, output.of(kind), [pier for pier, _ in piers], any(case.base.bends for case in cases))
     along = along_the_axis(cases)
-    checks = read_checks(file, partial(_unfit, along, motion_spec, output, bool(piers)) if along else None)
+    checks = read_checks(file, partial(_problems_of_rule, along, motion_spec, output, bool(piers)) if along else None)
     output = output.also({key for rule in checks.rules for key in DEMANDS[rule.demand].brings})
     file.finish()
     return Study(
@@ -336,13 +336,19 @@ def _problems_of_rule(
         cases=list(dict.fromkeys(case.name for case in cases)),
         scales=motions.scale,
         other_law=True,  # a check that takes it brings it
-        output=[key for key in BROUGHT if output.has(key) or not _brings(key, cases)],
+        output=[key for key in BROUGHT if output.has(key) or not _adds_columns(key, cases)],
         sections=_heights(cases, output) if known_piers else {rule.at_m or 0.0},
     )
     yield from unmet(rule, available)
     if not known_piers:
         return
     yield from implausible(rule, [_as_in_run_json(case) for case in cases])
+
+
+def _as_in_run_json(case: Case) -> dict[str, object]:
+    """Return the entries of a case in run.json that a limit is compared with."""
+    pier, base = case.pier, case.base
+    return {"case": case.name, "base": base.name, "pier": described(pier), "parameters": base.parameters(pier)}
 
 
 def _heights(cases: Sequence[Case], output: Output) -> set[float]:
@@ -360,9 +366,9 @@ def _numerics(file: TomlFile) -> Numerics:
     return Numerics(**read)
 
 
-def _brings(key: str, cases: Sequence[Case]) -> bool:
-    """Return whether a key of [output] brings columns of these cases: those of devices need the device."""
-    return any(COLUMNS[name].device in _kinds(cases) for name in BROUGHT[key])
+def _adds_columns(key: str, cases: Sequence[Case]) -> bool:
+    """Return whether a key of [output] adds a column for these cases; a column of a device needs the device."""
+    return any(COLUMNS[name].device in _device_kinds(cases) for name in BROUGHT[key])
 
 
 def _device_kinds(cases: Sequence[Case]) -> set[str]:
