@@ -117,7 +117,7 @@ def test_another_solver_finds_the_same_peak(benchmark, package, solver, toleranc
 
 
 @pytest.mark.thorough
-def test_the_bare_step_is_compared_for_every_law_the_rigid_base_every_step_and_component(benchmark):
+def test_the_bare_step_is_compared_for_every_law_step_and_component(benchmark):
     lines = benchmark("bare_step").main(repeats=1, runs=2, seconds=3.0)
     assert lines[0].startswith("vector instructions of ")
     rows = cells(lines)

@@ -558,7 +558,7 @@ def test_help_and_lists_are_there_under_the_words_for_them(words, begin, capsys)
     assert capsys.readouterr().out.startswith(begin)
 
 
-def test_a_demand_that_does_not_exist_is_answered_in_a_line_with_the_command_that_lists_them(tmp_path, capsys):
+def test_an_unknown_demand_is_answered_with_the_command_that_lists_them(tmp_path, capsys):
     for demand, end in (
         ({"demand": "zzz"}, ': demand = "zzz": expected one that `rockbatch check --list` lists'),
         ({}, ': demand is missing; write for example demand = "theta_max_over_alpha"'),
@@ -576,7 +576,7 @@ def test_reading_results_loads_no_record_format():
     assert done.stdout == "[]\n"
 
 
-def test_the_table_in_the_terminal_has_a_line_for_each_record_and_a_column_for_each_value_of_a_case():
+def test_the_terminals_table_has_a_line_a_record_and_a_column_a_value():
     values = {("b", 1.0): 0.3, ("a", 1.0): 0.1, ("b", 2.0): 0.4, ("a", 2.0): 0.2}
     table = pd.DataFrame(
         [

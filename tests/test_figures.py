@@ -65,7 +65,7 @@ def numbers_in(path):
     return [float(number) for number in re.findall(r"-?[\d.]+", path.get("d"))]
 
 
-def test_every_mark_is_drawn_on_the_page_where_its_values_are_with_its_tooltip_and_legend():
+def test_every_mark_is_drawn_at_its_values_with_its_tooltip_and_legend():
     """Read them back by the frame, whose ends are those of the axes; words may stand some pixels beside their point."""
     y = Axis("F [kN]", -1.0, 3.0)
     more = Span("y", 1.5, 2.5, look=Look("strip")), Rule("x", X[1:2], 0.25, 0.5, look=Look("bar low"))
@@ -305,7 +305,7 @@ def test_panels_apart_have_their_captions_and_a_single_one_without_has_none():
     assert [dict(item.attrib) for item in entries] == [{}, {"data-of": "case", "data-value": "pads"}]
 
 
-def test_stretched_panels_have_words_of_one_size_at_shares_of_the_width_in_either_view():
+def test_stretched_panels_have_words_of_one_size_in_either_view():
     x, y = np.linspace(0.0, 10.0, 101), np.sin(np.linspace(0.0, 10.0, 101))
     marks = [Polyline(x, y, "y"), Points(np.full(1, 3.0), np.full(1, 0.5)), Words(8.0, 0.0, "late")]
     panel = Panel(Axis("t [s]", 2.0, 4.0), Axis("y", -1.0, 1.0), marks, width=900.0, reads="time")
@@ -350,7 +350,7 @@ def test_each_piece_of_an_interrupted_curve_is_drawn_as_it_is_alone(seed):
     assert re.search(' d="([^"]*)"', svg.curve(x, y, ""))[1] == "".join(alone)
 
 
-def test_a_level_curve_whose_points_are_repeated_is_one_line_and_a_point_alone_is_a_dot():
+def test_a_level_curve_of_repeated_points_is_one_line_and_a_single_point_a_dot():
     x = np.repeat(np.arange(9.0), 3)
     assert ' d="M0 20l80 0"' in svg.curve(x, np.full(27, 2.0), "")
     assert ' d="M20 0l0 80"' in svg.curve(np.full(27, 2.0), x, "")

@@ -24,7 +24,7 @@ def importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
-def test_errors_are_signs_comparisons_numbers_conditions_and_swaps_but_no_wording_nor_rounding():
+def test_errors_are_of_signs_comparisons_numbers_conditions_and_swaps():
     from places import mutants
 
     source = (
@@ -122,7 +122,7 @@ def test_an_error_is_noticed_by_a_sound_test_that_fails_with_it(tmp_path):
 
 
 @pytest.mark.slow
-def test_errors_are_drawn_from_all_packages_and_what_is_listed_as_equivalent_can_still_be_put_in():
+def test_errors_are_drawn_from_all_packages_and_equivalent_ones_still_fit():
     from run import EQUIVALENT, drawn
 
     places = drawn(seed=1, count=sys.maxsize)

@@ -215,7 +215,7 @@ def test_the_fastest_rate_is_the_largest_root_of_heave_and_rocking_in_full_conta
     assert fastest(pier, ElasticBase(omega, zeta=zeta)) == pytest.approx(np.abs([*heave, *rocking]).max(), rel=1e-6)
 
 
-def test_the_base_tilts_with_the_residual_rotation_less_the_closer_the_pier_is_to_toppling():
+def test_the_base_tilts_less_than_the_residual_the_nearer_to_toppling():
     """THEORY.md, eq. 20; at the least β that carries the pier in rotation, whatever tilt is left topples it."""
 
     def at(omega_v):

@@ -143,7 +143,7 @@ def sheet(name="", **more):
     return Sheet(name, pier, own.equilibria, own.swings_at)
 
 
-def test_the_statics_of_one_pier_have_the_shares_of_its_moment_and_of_several_a_curve_each():
+def test_statics_show_shares_of_one_pier_and_a_curve_each_of_several():
     one = statics([sheet(flexural_period_s=1.5)])
     moment, acceleration, period = one.panels
     assert (moment.y.label, acceleration.y.label, period.y.label) == ("moment [MN m]", "acceleration [g]", "period [s]")

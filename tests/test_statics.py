@@ -176,7 +176,7 @@ def weak_pairs(count, devices=lambda rng: ()):
     return pairs
 
 
-def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form_between_its_points():
+def test_the_curve_of_weak_supports_has_the_strength_of_its_closed_form():
     """Without a point at first yield the curve is 0.9 to 4.2 % low there."""
     for pier, base in weak_pairs(4):
         sheet = rb.statics(pier, base)
@@ -195,7 +195,7 @@ def test_the_curve_of_weak_supports_has_the_printed_strength_and_its_closed_form
 
 
 @pytest.mark.parametrize("kind", ["tendon", "stop", "round"])
-def test_the_curve_has_the_printed_strength_of_weak_supports_with_devices_and_of_round_laws(kind):
+def test_the_curve_has_the_printed_strength_with_devices_and_round_laws(kind):
     """Kinks of tendons that yield and stops that are met, too: between its points the curve is what 4,000 points say."""
     makes = {
         "tendon": lambda rng: (rb.Tendon(psi=0.01, lam=rng.uniform(0.05, 0.5), strength=rng.uniform(0.03, 0.3)),),
@@ -317,7 +317,7 @@ def test_stiff_springs_are_rigid_ground():
         assert stiff.swings["period_s"].to_numpy() == pytest.approx(rigid.swings["period_s"].to_numpy(), rel=1e-4)
 
 
-def test_small_amplitudes_on_springs_have_the_linear_period_and_slender_blocks_housners():
+def test_small_swings_on_springs_have_the_linear_period_and_slender_housners():
     base = ElasticBase(beta=20.0, kinematics="finite")
     linear = 2.0 * math.pi / rocking_frequency(PIER, base)
     assert rb.statics(PIER, base).full_contact_period_s == pytest.approx(linear, rel=1e-6)
@@ -389,7 +389,7 @@ def test_a_swing_on_springs_takes_as_long_as_its_energy_says(kinematics, share):
     assert free.in_full_contact == pytest.approx(linear, rel=1e-6)
 
 
-def test_a_pier_that_no_rotation_overturns_swings_on_stiff_springs_as_on_rigid_ground_far_beyond_its_slenderness():
+def test_a_pier_held_upright_swings_beyond_its_slenderness_as_on_rigid_ground():
     held, far = (rb.Tendon(psi=0.3, lam=2.0),), np.array([0.2, 0.5, 0.9])
     stiff = FreeRocking(PIER, ElasticBase(beta=500.0, kinematics="finite", restraints=held))
     assert stiff.turn.unstable is None

@@ -143,7 +143,7 @@ def test_a_fragility_has_its_shares_and_one_look_for_each_case(tmp_path):
     hold_plot(result, tmp_path)
 
 
-def test_a_cloud_has_its_demands_its_line_with_a_deviation_to_either_side_and_its_limit():
+def test_a_cloud_shows_demands_its_line_with_a_deviation_and_its_limit():
     kinds = ("line", 0.1), ("line", 0.2), ("below", 0.001), ("overturned", None), ("undecided", None)
     runs = [{"x": 0.2 * (n + 1), "counts": counts, "demand": demand} for n, (counts, demand) in enumerate(kinds)]
     line = {"ln_a": math.log(0.4), "b": 1.5, "sigma": 0.3}
@@ -214,7 +214,7 @@ def spectrum(tmp_path_factory):
     return rb.spectrum(study(tmp_path_factory.mktemp("spectrum"), SPECTRUM))
 
 
-def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness_and_record(spectrum, tmp_path):
+def test_a_spectrum_has_a_panel_for_each_case_and_a_curve_for_each_slenderness(spectrum, tmp_path):
     result = spectrum
     figure = spectra(result.spectrum_suite, result.spectrum, result.info)
     assert [panel.caption for panel in figure.panels] == ["rigid", "pads"]
@@ -323,7 +323,7 @@ def test_a_sensitivity_has_the_swings_and_indices_of_its_tables(tmp_path):
     hold_plot(result, tmp_path)
 
 
-def test_a_release_has_its_impacts_at_rest_and_its_amplitudes_on_the_side_of_the_computed_ones():
+def test_a_release_has_its_impacts_at_rest_and_amplitudes_on_the_computed_side():
     t, theta = np.linspace(-0.5, 2.0, 6), np.array([0.1, -0.08, -0.02, 0.06, 0.05, -0.04])
     history = pd.DataFrame(
         {"t_s": np.tile(t, 2), "theta_rad": np.append(theta, 0.5 * theta), "case": np.repeat(["rock", "pads"], 6)}

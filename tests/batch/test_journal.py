@@ -62,7 +62,7 @@ def test_the_table_is_in_the_order_of_the_numbers_however_the_runs_finish(path):
         assert path.with_name("peaks.csv").read_bytes() == TABLE + b",,of no run\n"
 
 
-def test_wherever_the_file_is_cut_the_rows_before_are_kept_and_the_table_ends_with_the_same_bytes(path):
+def test_wherever_the_file_is_cut_the_table_ends_with_the_same_bytes(path):
     interrupted(path, ROWS)
     whole = path.read_bytes()
     _, *ends = (
@@ -181,7 +181,7 @@ def test_a_line_without_end_is_not_held_in_memory(path):
 
 
 @pytest.mark.parametrize("kind", ["link", "pipe", "folder", "second name"])
-def test_a_journal_that_is_no_plain_file_of_its_folder_is_refused_and_what_it_leads_to_stays(path, tmp_path, kind):
+def test_a_journal_that_is_no_plain_file_is_refused_and_its_target_stays(path, tmp_path, kind):
     path.parent.mkdir()
     notes = tmp_path / "notes.txt"
     notes.write_text("precious\n")
@@ -271,7 +271,7 @@ def test_what_a_killed_process_had_not_finished_writing_is_swept_up(path):
         assert len(journal) == 0
 
 
-def test_an_error_while_the_table_is_written_leaves_the_journal_and_the_earlier_table(path):
+def test_an_error_while_writing_leaves_the_journal_and_the_earlier_table(path):
     interrupted(path, ROWS)
     path.with_name("peaks.csv").write_text("earlier")
 

@@ -188,9 +188,7 @@ def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_
 
 
 @unix
-def test_a_file_that_may_not_grow_is_reported_and_with_room_the_same_command_continues(
-    study, tmp_path, undisturbed, capsys
-):
+def test_a_file_that_may_not_grow_is_reported_and_with_room_the_command_continues(study, tmp_path, undisturbed, capsys):
     """In the middle of the runs, by a limit on the size of files."""
     import resource
 
@@ -376,9 +374,7 @@ def test_a_table_without_its_run_json_does_not_count_as_finished(study, tmp_path
 
 
 @unix
-def test_a_changed_study_is_not_mixed_in_and_replaces_finished_results_only_when_whole(
-    study, finished, capsys, monkeypatch
-):
+def test_a_changed_study_replaces_finished_results_only_when_it_is_whole(study, finished, capsys, monkeypatch):
     out = finished
     command = ["run", str(study), "--out", str(out)]
     earlier = {file.name: file.read_bytes() for file in out.iterdir()}

@@ -63,7 +63,7 @@ def test_a_study_that_asks_has_the_sections_of_every_run_and_checks_of_them(tmp_
         _ = rb.open_results(out).sections
 
 
-def test_a_fixed_step_has_no_error_and_a_pier_without_a_mass_no_forces_in_kilonewtons():
+def test_a_fixed_step_has_no_error_and_no_mass_no_forces_in_kilonewtons():
     block = rb.Pier.rectangle(width_m=3.0, height_m=14.0)
     motion = rb.pulse("sine", name="sine", amplitude=4.0, period=0.5, dt=0.01, duration=1.0)
     table = rb.simulate(block, rb.RigidBase(), motion, sections=[7.0], substeps=8).sections

@@ -172,7 +172,7 @@ def test_the_table_goes_when_the_study_has_no_sequence_any_more(tmp_path):
 
 
 @pytest.mark.parametrize("restraints", [(), (rb.Damper("friction", f=0.05),)], ids=["free", "held"])
-def test_what_a_shock_leaves_is_where_the_supports_would_hold_the_pier_or_where_dampers_do(restraints):
+def test_a_shock_leaves_the_pier_where_supports_or_dampers_hold_it(restraints):
     """Moments on supports that tilt by φ: M (β p)² b² (θ − φ) = M g h θ; dampers hold it amid a pause's last quarter."""
     base = rb.YieldingBase(beta=40, eta=2.0, spring="epp", restraints=restraints)
     motion = rb.sequence([shock("a", 8.0), shock("b", 5.0, 1.3)], name="s", pause=5.0)

@@ -183,7 +183,7 @@ def test_of_a_hundred_cases_those_that_overturn_are_named_first_and_all_counted(
     assert line.details[0].endswith(f"and {99 - MOST_NAMES} more, {rest} of them with runs that do not end standing.")
 
 
-def test_overturning_that_checks_leave_out_is_reported_beside_the_green_and_takes_it_if_nothing_stands():
+def test_overturning_that_checks_leave_out_is_reported_beside_the_green():
     eta = verdict("a", "pass", check="capacity", demand="eta")
     (line,) = lines([eta], runs=all_runs(a={"overturned": 3}))
     assert line.details[-1] == "Not every run ends standing: a, 3 of 10 runs overturned."
@@ -213,7 +213,7 @@ def test_missing_stations_come_first_and_take_the_green_from_what_passes():
     assert (second.verdict, second.text) == (NOT_DECIDED, "Every check passes in the only case")
 
 
-def test_missing_stations_come_last_where_nothing_passes_and_are_reported_without_checks_too():
+def test_missing_stations_come_last_and_are_reported_without_checks_too():
     stations = Stations(["s"], {"RSN1633": [LOST]})
     failed = verdict("a", "fail", value=0.6, ratio=1.2)
     assert [line.verdict for line in lines([failed], stations=stations)] == [FAIL, NOT_DECIDED]
@@ -260,7 +260,7 @@ def test_what_passes_comes_first_then_what_fails_then_what_is_open():
     assert [(line.verdict, line.cases) for line in lines(some)] == [(PASS, "c"), (FAIL, "b"), (NOT_DECIDED, "a")]
 
 
-def test_a_check_is_named_with_its_case_where_there_are_several_and_a_ban_without_a_limit():
+def test_a_check_of_several_cases_names_its_case_and_a_ban_has_no_limit():
     ban = {"demand": "overturned", "statistic": "max", "limit": 0.0, "check": "stands"}
     for more, of in (((), ""), ((verdict("b", "does not apply"),), "a, ")):
         (failed, *_) = lines([verdict("a", "fail", ratio=1.2), *more])
@@ -276,7 +276,7 @@ def test_a_check_is_named_with_its_case_where_there_are_several_and_a_ban_withou
     assert not banned.details
 
 
-def test_cases_that_are_not_checked_stand_in_the_order_of_how_many_runs_did_not_end_standing():
+def test_unchecked_cases_stand_in_the_order_of_runs_that_did_not_end_standing():
     ended = {
         "a": {},
         "b": {"overturned": 2},
@@ -323,7 +323,7 @@ def test_a_demand_is_written_without_an_exponent_and_distinguished_from_its_limi
         (0.25, {"high": math.inf}, ("≥ 0.25 ≤ 0.5", "≤ 0.5", "≥ 0.50", "≤ 0.25")),
     ],
 )
-def test_a_verdict_stands_with_signs_of_its_sense_and_digits_that_tell_it_from_its_limit(value, more, words):
+def test_a_verdict_has_its_sign_and_digits_that_tell_it_from_its_limit(value, more, words):
     at_most = "sense" not in more
     ratio, margin = (value / 0.5, 0.5 - value) if at_most else (0.5 / value, value - 0.5)
     one = verdict("a", "pass", **({"value": value, "high": value, "ratio": ratio, "margin": margin} | more))

@@ -44,7 +44,7 @@ def judged(table, *rules, cases=None):
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("way", WAYS)
-def test_the_statistic_is_that_of_each_station_s_combined_demand_and_so_are_its_bounds(way, seed):
+def test_the_statistic_and_its_bounds_are_of_each_stations_combined_demand(way, seed):
     """The worst direction of a station, by its combined demand, and then the mean; errors go the same way."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 9))

@@ -11,7 +11,7 @@ WORDS = {"overturned": "overturned", "flight": "ended by flight", "failed": "fai
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_runs_of_every_case_are_counted_by_scale_and_by_how_they_ended_with_those_that_were_not_run(seed):
+def test_runs_of_every_case_are_counted_by_scale_and_ending(seed):
     """Some rows are lacking, and a case has the runs of both axes of its pier."""
     random = np.random.default_rng(seed)
     scales, polarities = [0.5, 1.0, 2.0][: random.integers(1, 4)], ["+", "-"][: random.integers(1, 3)]

@@ -79,7 +79,7 @@ def test_every_demand_is_what_a_hand_computes_from_the_row(demand):
 
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.needs == "forces"])
-def test_the_error_of_forces_is_a_share_of_each_and_leaves_a_limit_within_it_undecided(demand):
+def test_the_error_of_forces_leaves_a_limit_within_it_undecided(demand):
     value, _ = BY_HAND[demand]
     row = ROW | {"forces_error": 0.02}
     found = judged(runs([0.3], **row), one=TIED, demand=demand, at_most=max(1.01 * value, 1e-3))
@@ -88,7 +88,7 @@ def test_the_error_of_forces_is_a_share_of_each_and_leaves_a_limit_within_it_und
 
 
 @pytest.mark.parametrize("demand", [name for name, demand in DEMANDS.items() if demand.device])
-def test_the_error_of_devices_is_a_share_of_each_demand_but_counts_and_leaves_a_limit_within_it_undecided(demand):
+def test_the_error_of_devices_leaves_a_limit_within_it_undecided(demand):
     value, _ = BY_HAND[demand]
     found = judged(runs([0.3], **ROW, devices_error=0.02), one=TIED, demand=demand, at_most=1.01 * value)
     share = 0.0 if demand in ("tendon_slack", "stop_blows", "deck_spring_blows", "damper_half_cycles") else 0.02
@@ -157,7 +157,7 @@ def test_a_check_of_drift_takes_that_of_a_shaft_that_bends_and_not_its_rotation(
 
 
 @pytest.mark.parametrize(("kind", "applies"), [("friction", True), ("hysteretic", True), ("viscous", False)])
-def test_a_residual_rotation_is_asked_of_a_rigid_base_where_dampers_may_hold_the_pier(kind, applies):
+def test_a_rigid_base_has_a_residual_rotation_if_dampers_may_hold_the_pier(kind, applies):
     damper = Damper(
         kind, **{"viscous": {"nu": 0.1}, "friction": {"f": 0.8}, "hysteretic": {"f": 0.8, "yield_m": 0.01}}[kind]
     )
@@ -168,7 +168,7 @@ def test_a_residual_rotation_is_asked_of_a_rigid_base_where_dampers_may_hold_the
     assert judged(runs([0.3], "rigid", **ROW), one=one, demand="base_tilt_rad").verdict == "does not apply"
 
 
-def test_the_error_in_a_section_is_a_share_of_the_force_and_of_tension_one_of_the_greatest_axial_force():
+def test_a_sections_error_is_a_share_of_its_force_or_of_the_greatest_axial():
     for demand, value, error in (
         ("section_shear_kN", 3000.0, 30.0), ("section_moment_kNm", 40000.0, 400.0), ("section_axial_kN", 30000.0, 300.0),
         ("section_tension_kN", 200.0, 300.0),
@@ -276,15 +276,13 @@ def test_an_event_is_unknown_where_the_run_ended_before(demand, status, flight_s
     ("status", "flight_s", "low", "high"),
     [("ok", math.nan, 0, 0), ("flight", 1.2, 0, INF), ("failed", math.nan, 0, INF)],
 )
-def test_a_run_that_went_through_without_a_flight_has_none_and_one_that_was_cut_short_any(
-    demand, status, flight_s, low, high
-):
+def test_a_whole_run_without_a_flight_has_none_and_a_cut_one_may_have_any(demand, status, flight_s, low, high):
     found = judged(runs([0.1], status=status, flight_s=flight_s), demand=demand, at_most=0.5)
     assert (found.low, found.high) == (low, high)
 
 
 @pytest.mark.parametrize("demand", FLIGHTS)
-def test_a_column_of_flights_is_nothing_for_what_went_through_without_one_and_else_not_known(demand):
+def test_a_column_of_flights_is_zero_without_one_and_unknown_if_not_run(demand):
     table = runs([0.1] * 4, status=["ok", "overturned", "failed", "ok"], flight_s=[math.nan, math.nan, math.nan, 1.0])
     np.testing.assert_array_equal(DEMANDS[demand].evaluate(Rows(table), case()).value, [0.0, 0.0, math.nan, math.nan])
 

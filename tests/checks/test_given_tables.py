@@ -50,7 +50,7 @@ def test_a_table_is_judged_as_its_folder(folder, kept):
     pd.testing.assert_frame_equal(*both, check_dtype=False)
 
 
-def test_rows_of_files_that_could_not_be_used_are_in_no_suite_of_a_table_that_pandas_has_read(folder):
+def test_rows_of_unusable_files_are_in_no_suite_of_a_table_read_by_pandas(folder):
     study, results = folder
     unusable = pd.DataFrame({"record": ["broken"], "status": ["failed"], "reason": ["cut off"]})
     found = rb.check(pd.concat([read(results), unusable]), RULES, study=study)

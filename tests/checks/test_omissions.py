@@ -87,7 +87,7 @@ def test_what_is_finite_in_a_landing_is_decided_on_rigid_ground(name):
     assert judged(table, one=stopped, demand=name, at_most=0.6).verdict == "pass"
 
 
-def test_a_force_beyond_its_limit_without_the_landings_fails_and_says_that_they_are_left_out():
+def test_a_force_beyond_its_limit_without_landings_fails_and_says_so():
     table = runs([0.3], name="rigid", impacts=4, **SHEAR)
     beyond, within_error = (judged(table, one=RIGID, demand="base_shear_kN", at_most=most) for most in (2900.0, 2980.0))
     assert (beyond.verdict, beyond.omitted) == ("fail", [LANDINGS, BENDING])
@@ -249,7 +249,7 @@ STATISTICS = {
 
 
 @pytest.mark.parametrize("seed", range(150))
-def test_random_checks_are_decided_only_where_a_separate_judge_finds_no_force_left_out(seed):
+def test_random_checks_are_decided_only_if_a_separate_judge_omits_no_force(seed):
     """The judge here knows rows only: a run that landed on rigid ground may have any greater force, one mode any at all."""
     rng = np.random.default_rng(seed)
     base = [RigidBase(), RigidBase(shaft="elastic"), RigidBase(restraints=(Damper("hysteretic", f=0.1, yield_m=0.005),)),

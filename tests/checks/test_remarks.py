@@ -31,7 +31,7 @@ def test_supports_are_weak_where_the_statics_never_lift_off(eta, psi):
         assert f"({50.0 * eta / (1.0 + psi):.3g} %)" in weak
 
 
-def test_weak_cases_are_named_once_with_their_values_where_others_of_the_name_are_strong():
+def test_weak_cases_are_named_once_with_the_values_that_tell_them_apart():
     pads = [case("pads", YieldingBase(beta=50.0, eta=eta), eta=eta) for eta in (1.5, 1.8, 2.5)]
     sentence = weak_supports([RIGID, ELASTIC, *pads, case("weak", WEAK, eta=1.7)])
     assert sentence.startswith("pads eta=1.5; pads eta=1.8; weak: one support cannot carry the full ")
@@ -71,7 +71,7 @@ def test_settlement_without_damping_is_qualified_and_only_that():
     assert of(YieldingBase(beta=50.0, eta=2.5, zeta=0.0), **SETTLED)
 
 
-def test_elastic_supports_have_no_settlement_and_those_that_did_not_yield_none_beyond_rounding():
+def test_supports_that_did_not_yield_have_no_settlement_beyond_rounding():
     rounding = {"settlement_m": 6.53e-16, "base_tilt_rad": 1e-17}
     elastic = worst_of_all(worst_of_cases(runs(name="elastic", **rounding), [ELASTIC]))
     assert list(elastic) == ["theta_max_over_alpha", "top_drift_m", "heel_uplift_m"]

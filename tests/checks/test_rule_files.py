@@ -151,7 +151,7 @@ def test_a_study_holds_rules_and_reports_their_mistakes_among_its_own(tmp_path):
     assert re.search(r'pier.toml:23: \[\[check\]\] "margin": at_mots: unknown key; did you mean at_most\?', key)
 
 
-def test_what_a_check_chooses_and_the_study_does_not_have_is_reported_before_it_is_run(tmp_path):
+def test_choices_of_a_check_that_the_study_lacks_are_reported_before_it_is_run(tmp_path):
     """There with its line; by ``rockbatch check`` it would come after hours of work."""
     text = (MARGIN + 'case = "pad"\nscale = 2\n').replace("theta_max_over_alpha", "settlement_m")
     path = rules_file(tmp_path / "pier.toml", STUDY + text)
@@ -353,7 +353,7 @@ def test_without_checks_the_greatest_responses_of_each_case_stand_in_their_order
     ]
 
 
-def test_without_checks_a_case_in_which_more_runs_overturn_stands_behind_however_little_the_others_rotate(tmp_path):
+def test_without_checks_a_case_with_more_overturned_runs_stands_behind(tmp_path):
     fell = {"status": ["overturned", "ok"]}
     table = pd.concat(
         [runs([9.0, 0.05], "weak", **fell), runs([0.5, 0.6], "pads"), runs([9.0, 9.0], "none", status="overturned")]
@@ -479,7 +479,7 @@ def test_checks_csv_gives_the_verdicts_back(tmp_path):
     assert read[2].columns == {}
 
 
-def test_a_text_of_checks_csv_is_what_it_was_and_cannot_command_a_terminal_or_a_spreadsheet(tmp_path):
+def test_a_text_of_checks_csv_commands_no_terminal_and_no_spreadsheet(tmp_path):
     write_verdicts(
         tmp_path,
         [verdict("pads", "pass", check="=1+1", remarks=("two", "parts")), verdict("pads", "pass", check="drift")],

@@ -129,7 +129,7 @@ def test_sentence_and_scorecard_count_the_same_on_random_verdicts():
     assert wording.percent(1.0).startswith("100")
 
 
-def test_the_text_counts_the_columns_it_leaves_out_and_says_which_cases_no_check_applies_to():
+def test_the_text_counts_columns_left_out_and_names_unchecked_cases():
     found = [verdict("a", PASS, check=f"p{i}") for i in range(8)]
     found += [verdict("b", DOES_NOT_APPLY, check=f"p{i}") for i in range(8)]
     a, b = scorecard(found, name_of).rows

@@ -247,7 +247,7 @@ def test_the_command_and_the_page_say_it_first_whatever_the_rules(tmp_path, caps
 
 
 @pytest.mark.usefixtures("no_report")
-def test_a_study_without_checks_is_held_against_its_target_and_nothing_else_is_claimed(tmp_path, capsys):
+def test_a_study_without_checks_is_compared_with_its_target_only(tmp_path, capsys):
     for over, code in ((0.76, 1), (0.9, 0)):
         out = suite(tmp_path / f"{over}", over, "")
         assert main(["check", str(out)]) == code
@@ -326,7 +326,7 @@ def test_pulses_are_in_no_mean_that_is_held_against_a_target(tmp_path, monkeypat
     np.testing.assert_array_equal(with_pulse["spectra"]["mean_sa_g"], info["spectra"]["mean_sa_g"])
 
 
-def test_a_target_beyond_a_limit_of_its_code_and_components_apart_are_remarked_on_and_not_refused(tmp_path, capsys):
+def test_a_target_beyond_its_code_and_components_apart_are_remarked_on(tmp_path, capsys):
     """Z R = 0.74 of NZS 1170.5, which caps it at 0.7, and a code's spectrum for each component of five pairs."""
     near_fault(tmp_path, factors="none")
     assert main(["run", str(tmp_path / "study.toml"), "--out", str(tmp_path / "out")]) == 1

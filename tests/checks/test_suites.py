@@ -30,7 +30,7 @@ def test_each_case_has_the_rows_with_its_values_in_their_order():
     assert chosen == [[0, 2, 5], [0, 2, 3, 5], [1], [1, 4], []]
 
 
-def test_a_record_of_which_only_the_mirror_image_is_there_is_one_whose_run_is_missing():
+def test_a_record_with_only_its_mirror_image_is_one_whose_run_is_missing():
     table = runs([0.1, 0.2, 0.3], mirror_of=["", "", "+"])
     table["polarity"] = ["+", "+", "-"]
     found = judged(table)
@@ -79,7 +79,7 @@ def test_every_scale_is_a_suite_of_its_own():
     assert judged(table, scale=(1.5,)).scale == 1.5
 
 
-def test_cases_of_one_name_are_distinguished_by_their_varied_values_as_peaks_csv_writes_them():
+def test_cases_of_one_name_are_told_apart_by_values_as_peaks_csv_has_them():
     """Ten digits of a number; and a word."""
     thirds = [
         case(base=YieldingBase(beta=b, eta=2.5), beta=b, spring=s)

@@ -56,7 +56,7 @@ def with_count(table, *rules, at_most=1, **more):
 
 
 @pytest.mark.parametrize("status", ENDS)
-def test_a_median_says_nothing_of_the_records_beyond_it_unless_a_check_says_how_many_may_be(status):
+def test_a_median_says_nothing_of_records_beyond_it_unless_a_check_does(status):
     table = runs([0.1, 0.2, 0.3], status=["ok", "ok", status], flight_s=[math.nan, math.nan, 3.0])
     found = judged(table, statistic="median")
     known = 0.1 if status == "failed" else 0.2  # what has not settled may be anything
@@ -79,7 +79,7 @@ def test_a_check_of_other_cases_or_scales_says_nothing_of_this_one():
     assert with_count(scales, median, scale=(1.0,)) == ["pass", "pass", "not decided"]
 
 
-def test_the_one_unacceptable_response_that_asce_allows_is_allowed_to_the_other_checks_too():
+def test_the_one_response_that_asce_allows_is_allowed_to_other_checks_too():
     table = runs([0.1] * 11, status=["overturned", *["ok"] * 10])
     rules = [Rule(name, "theta_max_over_alpha", 0.5, statistic=name) for name in ("asce7-16", "median")]
     assert [found.verdict for found in judge(rules, table, [case()])] == ["pass", "pass"]

@@ -30,7 +30,7 @@ STATES = [
 ]
 
 
-def test_in_finite_kinematics_an_elongation_and_its_derivatives_are_those_of_the_motion(uncompiled):
+def test_finite_elongations_and_their_derivatives_are_those_of_the_motion(uncompiled):
     base, short = ElasticBase(50.0, kinematics="finite"), 1e-4
     m, found = springs(PIER, base), uncompiled(gaps_of, PIER, base, (AT_FOOT, AT_DECK), STATES)
     for of, each in zip((AT_FOOT, AT_DECK), found, strict=True):

@@ -385,7 +385,7 @@ def test_hermite_cubic_and_its_turning_point_reproduce_a_cubic():
     assert (where, value) == pytest.approx((1.0 / math.sqrt(3.0), 2.0 / (3.0 * math.sqrt(3.0))), abs=1e-15)
 
 
-def test_the_greatest_of_random_cubics_is_that_of_a_grid_whatever_was_greatest_before():
+def test_the_greatest_of_random_cubics_is_that_of_a_grid():
     """NumPy's polynomials through both ends, at 4,001 points: the slope changes its sign once, or is 0 at the start."""
     rng = np.random.default_rng(5)
     x = np.linspace(0.0, 1.0, 4001)
@@ -445,7 +445,7 @@ def test_of_event_functions_that_fall_in_a_step_the_first_to_reach_zero_is_the_e
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 @pytest.mark.parametrize("kinematics", ["first-order", "finite"])
-def test_a_pivot_at_its_support_stays_where_contact_presses_it_and_goes_where_freedom_lifts_it(kinematics, side):
+def test_a_pivot_at_its_support_stays_if_pressed_and_goes_if_lifted(kinematics, side):
     """The ground falls away at an acceleration by which the pivot in contact rises by 0.5 m/s², or is pressed down by it."""
     m = springs(FIG5, ElasticBase(50.0, 0.1, kinematics))
     y = State(0.0, 0.01 * side, 0.0, 0.0, -0.4, -0.4)

@@ -45,7 +45,7 @@ def turned(m, theta, lean=0.0, load=G):
 
 @pytest.mark.parametrize("kinematics", ["first-order", "finite"])
 @pytest.mark.parametrize(("lean", "share"), [(0.0, 0.4), (0.0, 2.0), (0.0, 20.0), (3e-4, 0.4), (3e-4, 2.0)])
-def test_a_pier_at_rest_on_elastic_springs_swings_back_as_far_as_it_was_turned_and_no_further(kinematics, lean, share):
+def test_a_pier_at_rest_on_elastic_springs_swings_back_as_far_as_it_was_turned(kinematics, lean, share):
     """About where it rests, to either side; 2 % are what P–Δ moments may give back at these rotations."""
     m = springs(FIG5, ElasticBase(50.0, kinematics=kinematics))
     away = share * m.yield_deflection / m.half_width
@@ -76,7 +76,7 @@ def test_energy_of_motion_counts_as_that_of_height_and_springs():
     assert not peak_is_final(m, bounce, Load(G, 0.0), 1e-6, False, NO_DRIFT)
 
 
-def test_a_base_that_tilts_on_takes_the_pier_beyond_a_peak_that_its_energy_does_not_reach():
+def test_a_base_that_tilts_on_takes_the_pier_beyond_the_peak_of_its_energy():
     m = springs(FIG5, YieldingBase(50.0, eta=3.0))
     amplitude = 0.4 * G / 50.0**2 / m.half_width
     now = Moment(*turned(m, amplitude))
@@ -126,7 +126,7 @@ def potential(m, theta, load, base):
 
 @pytest.mark.parametrize("kinematics", ["first-order", "finite"])
 @pytest.mark.parametrize("seed", range(12))
-def test_a_peak_is_final_from_where_energy_and_what_p_delta_returns_carry_the_pier_no_further(kinematics, seed):
+def test_a_peak_is_final_once_energy_and_p_delta_carry_the_pier_no_further(kinematics, seed):
     """Random moments, leans and loads: that peak by the potential of springs and weight, whose hill is climbed on both sides, and
     2 b h θ/(I0 + h² + b²) of the energy in return (THEORY.md, When a run is over)."""
     rng = np.random.default_rng(seed)
@@ -174,7 +174,7 @@ def test_a_period_of_rocking_is_that_of_full_contact():
         assert rocking_period(springs(FIG5, base)) == pytest.approx(expected, rel=1e-12)
 
 
-def test_a_drift_of_the_base_is_amplified_by_the_lean_and_grows_by_itself_where_supports_creep():
+def test_a_drift_of_the_base_is_amplified_by_lean_and_grows_where_supports_creep():
     """exp(n h a s/b²) − 1 for supports that both sink by s, a the lean over the tilt of the base; by that much of the mean."""
     creeps, holds = (springs(FIG5, YieldingBase(50.0, eta=2.5, spring=law)) for law in ("bouc-wen", "epp"))
     b, h = creeps.half_width, creeps.height

@@ -23,7 +23,7 @@ def test_powers_are_those_of_their_exponent(n):
         assert power(x, n) == pytest.approx(x ** (5 if n is None else n), rel=1e-14)
 
 
-def test_the_ground_is_linear_between_samples_and_rests_from_the_sample_after_the_last():
+def test_the_ground_is_linear_between_samples_and_rests_after_the_last():
     horizontal, vertical = np.array([0.5, -1.0, 2.0]), np.array([0.0, 0.4, 0.1])
     rows = ground_rows(horizontal, vertical, 0.02)
     at = np.arange(4) * 0.02
@@ -39,7 +39,7 @@ def test_the_ground_is_linear_between_samples_and_rests_from_the_sample_after_th
     assert later(Ground(1.0, 2.0, 3.0, -4.0), 0.5) == Ground(2.0, 2.0, 1.0, -4.0)
 
 
-def test_a_cubic_between_rows_has_their_values_and_slopes_and_stays_between_them_where_it_is_steep_one_way():
+def test_a_cubic_between_rows_has_their_values_and_slopes_and_stays_monotonic():
     start, rate, end, rate_end, h = 1.0, 3.0, 2.0, -4.0, 0.5
     assert [cubic(start, rate, end, rate_end, h, s) for s in (0.0, 1.0)] == pytest.approx([start, end])
     for s, slope in ((0.0, rate), (1.0, rate_end)):

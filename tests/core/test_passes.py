@@ -126,7 +126,7 @@ def hold_pivot(m, side, contact, supports, path, rates_at_ends, h):
     ],
     ids=[*PIERS, *SLOW_PIERS],
 )
-def test_where_the_pass_on_springs_sees_nothing_no_pivot_separates_lands_yields_or_turns_back(changes):
+def test_the_pass_on_springs_misses_no_event_of_a_pivot(changes):
     """Of cubics through both ends of the sub-step at 200 places; of velocities, and of dashpots, in 16 parts of it."""
     rng, calm, dips = np.random.default_rng(5), 0, 0
     m = springs(Pier(0.2, 1.0), YieldingBase(50.0, eta=2.2))._replace(**changes)

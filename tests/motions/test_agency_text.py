@@ -222,7 +222,7 @@ def test_values_that_touch_are_separated_by_their_columns():
         np.testing.assert_allclose(component.acceleration, values / 100)
 
 
-def test_raw_records_say_that_the_instruments_zero_is_in_them_and_corrected_ones_do_not():
+def test_only_raw_records_say_that_the_instruments_zero_is_in_them():
     raw = {case.name + case.suffix: read(case.text, f"x{case.suffix}")[0].raw for case in CASES}
     assert raw == {
         "GEONET.V1A": True,
@@ -295,7 +295,7 @@ def test_a_record_of_unam_with_an_impossible_time_begins_at_none(key):
     assert read(unam_text(**{key: "23:75:00"}), "x.012")[0].start is None
 
 
-def test_usc_times_from_film_are_interpolated_and_a_mark_between_channels_is_read_over():
+def test_usc_times_from_film_are_interpolated_across_marks():
     times = np.cumsum([0, *np.random.default_rng(1).integers(4, 7, NPTS - 1)]) / 1000
     channels = [usc_channel("N90E", A / 100, times, ("/& END",)), usc_channel("DOWN", C / 100, times)]
     east, down = read("\n".join(line for channel in channels for line in channel), "x.s0a")
@@ -314,7 +314,7 @@ def test_the_reference_database_of_europe_is_read_in_its_own_layout():
     assert (up.orientation.vertical, up.station) == (True, north.station)
 
 
-def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_velocity_of_its_series():
+def test_uscs_second_volume_has_the_peak_and_initial_velocity_of_its_series():
     east, up, north = read(usc_corrected_text(), "x.s0a")
     assert [c.orientation.label for c in (east, up, north)] == ["N90E", "UP", "N00E"]
     assert (east.dt, east.processed, east.raw, east.findings) == (0.02, True, False, ())
@@ -324,7 +324,7 @@ def test_uscs_second_volume_has_corrected_samples_with_the_peak_and_the_initial_
 
 
 @pytest.mark.parametrize("declared", [True, False])
-def test_caltechs_second_volume_is_read_with_or_without_lines_that_declare_its_series(declared):
+def test_caltechs_second_volume_is_read_with_or_without_declared_series(declared):
     south, up, west = read(caltech_text(declared), "IIA001.V2")
     assert [(c.orientation.azimuth, c.orientation.vertical) for c in (south, up, west)] == [
         (180.0, False),

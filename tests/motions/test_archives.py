@@ -65,7 +65,7 @@ KINDS = {
 @pytest.mark.parametrize(
     ("kind", "inside"), [*((kind, "records/") for kind in KINDS), ("zip", ""), ("zip", "records\\"), ("tar.gz", "./")]
 )
-def test_an_archive_gives_what_its_files_give_in_a_folder_under_names_that_lead_to_it(tmp_path, kind, inside):
+def test_an_archive_gives_what_its_files_give_in_a_folder(tmp_path, kind, inside):
     archive = packed_in(kind, tmp_path, inside)
     (tmp_path / "folder").mkdir()
     for name, seed in NAMES.items():
@@ -174,7 +174,7 @@ def test_names_that_lead_out_of_the_archive_are_refused_and_cost_no_other_file(t
     assert "leads out of the archive" in reason
 
 
-def test_links_packed_files_double_names_and_other_packing_are_refused_each_with_its_reason(tmp_path):
+def test_links_double_names_and_other_packing_are_refused_with_reasons(tmp_path):
     inner = io.BytesIO()
     with zipfile.ZipFile(inner, "w") as archive:
         archive.writestr("x.AT2", at2("x.AT2", 1))

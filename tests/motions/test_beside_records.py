@@ -35,9 +35,7 @@ def write_sac(path, channel: str = "", idep: int | None = None, rate: float = 10
 
 @pytest.mark.parametrize(("channel", "idep"), [("HNN", 6), ("HNN", 7), ("HHN", 8), ("BHN", None)])
 @pytest.mark.parametrize("order", ["<", ">"])
-def test_a_sac_file_that_says_velocity_or_displacement_is_refused_until_a_manifest_says_otherwise(
-    tmp_path, channel, idep, order
-):
+def test_a_sac_file_of_velocity_or_displacement_needs_a_manifest(tmp_path, channel, idep, order):
     write_sac(tmp_path / "x.sac", channel, idep, order=order)
     options = ReadOptions(unit="m/s2")
     assert "accelerations are expected; if it does hold them" in only_reason(read_motions(tmp_path, options=options))
@@ -280,7 +278,7 @@ def test_turned_pairs_of_a_station_keep_their_sensor_in_their_names(tmp_path):
     assert sorted(names) == ["TST.EW1_az030", "TST.EW2_az030"]
 
 
-def test_a_series_whose_header_states_its_count_needs_no_layout_and_its_numbers_may_touch(tmp_path):
+def test_a_series_with_a_stated_count_needs_no_layout_and_numbers_may_touch(tmp_path):
     values = np.round(wiggle(43), 5)
     rows = ["".join(f"{value:8.5f}" for value in values[i : i + 8]) for i in range(0, 43, 8)]
     head = "Corrected record\nNumber of points: 43\nSampling interval: 0.01 s\nunits: g\n"
@@ -315,7 +313,7 @@ def test_degrees_may_have_an_r_behind_in_csmip_files(tmp_path):
     assert [motion.azimuth for motion in read_motions(tmp_path).motions] == [270.0]
 
 
-def test_film_with_a_gap_beside_the_corrected_record_of_its_station_is_left_out_and_of_another_one_was_meant(tmp_path):
+def test_film_with_a_gap_is_left_out_beside_the_corrected_record_of_its_station(tmp_path):
     (tmp_path / "film.smc").write_text(film_text(times=np.r_[0:0.2:42j, 9.0]), encoding="latin-1")  # with a gap
     other = smc_text().replace("      1675", "      1676")
     for text, left in ((other, 0), (smc_text(), 1)):

@@ -163,7 +163,7 @@ def test_one_column_takes_step_and_unit_from_the_study_and_direction_from_its_na
     assert (motion.dt, motion.name, motion.vertical_source) == (0.01, "STA_N", "STA_Z.dat")
 
 
-def test_two_columns_of_which_one_grows_evenly_are_time_and_acceleration_and_it_is_said(tmp_path):
+def test_two_columns_of_which_one_grows_evenly_are_time_and_acceleration(tmp_path):
     write(tmp_path, "", T, NS, name="STA_E.acc")
     motion = one(tmp_path, unit="gal")
     assert motion.dt == 0.005
@@ -244,7 +244,7 @@ def test_steps_up_to_twenty_times_apart_come_on_one_grid_and_more_are_a_gap():
             on_even_steps(np.cumsum([0.0, *[usual] * 30, other, *[usual] * 5]), t[:, None])
 
 
-def test_uneven_times_without_a_common_step_go_to_the_shortest_and_the_lost_peak_is_said(tmp_path):
+def test_uneven_times_take_the_shortest_step_and_the_lost_peak_is_said(tmp_path):
     t = np.cumsum(np.random.default_rng(7).uniform(0.004, 0.008, 60))
     write(tmp_path, "# time(s) NS(gal)", t, NS, form="{:.12e}")
     motion = one(tmp_path)
@@ -349,9 +349,7 @@ def test_rows_that_are_read_at_once_are_those_read_one_by_one(rows, separator, w
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("meant_for_others", [None, 0.02])
-def test_a_column_in_seconds_is_time_in_any_language_and_a_label_may_end_with_its_unit(
-    tmp_path, head, dt, meant_for_others
-):
+def test_a_column_in_seconds_is_time_in_any_language(tmp_path, head, dt, meant_for_others):
     """Its own times win over the step that the study states for other files."""
     between = next(sign for sign in ";\t," if sign in head)
     scale = 981.0 if "cm" in head else 1.0
@@ -414,7 +412,7 @@ def test_what_is_no_table_is_not_asked_to_be_called_text(tmp_path):
 
 
 @pytest.mark.parametrize(("stated", "told"), [("EW", False), ("090", False), ("NS", True), ("UD", True)])
-def test_columns_that_are_stated_otherwise_than_a_header_has_them_are_those_of_other_files(tmp_path, stated, told):
+def test_columns_stated_otherwise_than_in_a_header_are_of_other_files(tmp_path, stated, told):
     write(tmp_path, "# time(s) EW(cm/s2)", T, EW)
     motion = one(tmp_path, columns=("time", stated))
     assert motion.horizontal == pytest.approx(EW / 100, rel=1e-6, abs=1e-12)
@@ -430,7 +428,7 @@ def test_decimal_commas_are_read_between_tabs_and_commas_between_columns_too(tmp
 
 
 @pytest.mark.parametrize(("words", "kind"), [(3, InputError), (300, NoRecord)])
-def test_a_text_with_some_numbers_in_it_is_no_record_and_a_table_that_is_damaged_is_one(words, kind):
+def test_a_text_with_some_numbers_is_no_record_and_a_damaged_table_is_one(words, kind):
     rows = [f"{t:.3f} {value:.4f}" for t, value in zip(T, EW, strict=True)]
     text = "\n".join([*rows[:30], *["more words, and 3 of them"] * words, *rows[30:], ""])
     with pytest.raises(InputError) as refused:
@@ -445,7 +443,7 @@ def test_times_that_fall_do_not_grow_evenly():
 
 
 @pytest.mark.parametrize("rest", ["", "\n\n", "\n9.5 10.5 11.5", "\n9.5 10.5 11.5\n12.5 13.5 14.5"])
-def test_a_shorter_row_is_refused_with_its_line_and_ends_a_wrapped_table_only_at_its_end(rest):
+def test_a_shorter_row_is_refused_but_at_the_end_of_a_wrapped_table(rest):
     text = "1.5 2.5 3.5\n4.5 5.5 6.5\n7.5 8.5" + rest
     with pytest.raises(InputError, match="line 3: found 2 numbers; expected 3"):
         table.read_table(text)

@@ -114,7 +114,7 @@ def sac(change) -> tuple[list[str], list[str]]:
     return [unusable.reason for unusable in found.unusable], remarks
 
 
-def test_extremes_of_a_sac_header_may_be_stale_and_are_no_more_than_a_factor_of_two_off():
+def test_extremes_of_a_sac_header_may_be_off_by_a_factor_of_two_at_most():
     def scaled(by: float):
         return lambda data: data[:632] + (by * np.frombuffer(data, "<f4", offset=632)).astype("<f4").tobytes()
 
@@ -198,7 +198,7 @@ def test_a_duration_of_what_the_samples_are_not_is_a_warning_at_most(name, data)
     assert all("duration" in {finding.what for finding in motion.findings} for motion in found)
 
 
-def test_the_time_of_a_peak_counts_from_the_recorders_first_sample_where_corrected_data_begin_earlier(tmp_path):
+def test_the_time_of_a_peak_counts_from_the_recorders_first_sample(tmp_path):
     (tmp_path / "x.ASC").write_text(dyna_text(TIME_PGA_S="0.300"))
     (refused,) = read_motions(tmp_path).unusable
     assert "its header states its peak after 0.300 s, and its samples have 0.115 s: check its step" in refused.reason

@@ -87,7 +87,7 @@ def test_blank_lines_between_channels_and_the_order_of_comments_change_nothing()
             )
 
 
-def test_one_file_per_channel_is_one_station_too_but_not_with_another_location_or_version(tmp_path):
+def test_one_file_per_channel_is_one_station_but_not_another_location(tmp_path):
     for name, values, direction in (("HNE", A, "90 Deg"), ("HNZ", C, "Up")):
         text = cosmos_text(values, direction, scnl=f"8040.{name}.NP.D0")
         (tmp_path / f"NP8040.{name}.V1c").write_bytes(text.encode("latin-1"))

@@ -147,11 +147,11 @@ def test_north_south_in_a_name_is_north_and_not_south():
         ),
     ],
 )
-def test_dates_stations_and_numbers_of_files_are_no_azimuths_and_two_directions_are_none(stem):
+def test_dates_stations_and_numbers_are_no_azimuths_and_two_directions_none(stem):
     assert split_stem(stem) == (stem, None)
 
 
-def test_files_counted_from_008_are_numbers_and_pairs_square_to_each_other_are_azimuths():
+def test_files_counted_from_008_are_numbers_and_perpendicular_pairs_azimuths():
     assert counted(["GM_008", "GM_009", "GM_010", "L01021", "L01111", "CPM000", "CPM090"]) == {
         "GM_008",
         "GM_009",
@@ -179,7 +179,7 @@ def test_a_series_of_numbered_files_asks_though_single_numbers_could_be_azimuths
         ("mine.txt", ""),
     ],
 )
-def test_a_component_of_unknown_direction_is_not_used_and_the_reason_says_what_to_write(tmp_path, name, header):
+def test_a_component_of_unknown_direction_is_refused_with_what_to_write(tmp_path, name, header):
     write_text(tmp_path, name, header=header)
     found = read_motions(tmp_path, options=ReadOptions() if header else ReadOptions(unit="g"))
     assert not found.motions

@@ -117,7 +117,7 @@ def test_records_in_archives_and_beside_them_are_used_once(tmp_path):
     assert set(left_out(found)) == {"x.AT2.gz", "peer.zip/x.AT2"}
 
 
-def test_files_of_one_recording_that_are_whole_sets_are_used_once_if_their_samples_are_alike(tmp_path):
+def test_whole_sets_of_one_recording_are_used_once_if_samples_are_alike(tmp_path):
     """Read off again, with other noise, from the same recorder at another gain: one recording. A coda: another part."""
     noise = np.random.default_rng(1).standard_normal((3, len(A)))
     sets = {
@@ -144,7 +144,7 @@ def test_the_same_recording_in_another_unit_is_recognised_by_its_header(tmp_path
     assert left_out(found)["RSN7_X_STA000.AT2"].startswith("the same recording as sta.AT2")
 
 
-def test_of_two_files_that_claim_one_component_with_other_samples_none_is_used_until_somebody_says(tmp_path):
+def test_none_of_two_files_that_claim_one_component_is_used_until_named(tmp_path):
     strong, weak = wiggle(60, 1), wiggle(60, 2) / 20
     write_at2(tmp_path, "a_part1.AT2", weak, title=title("0"))
     write_at2(tmp_path, "a_part2.AT2", strong, title=title("0"))
@@ -218,7 +218,7 @@ def test_a_sensor_is_recognised_by_what_both_headers_say_of_it(one, two, same):
     assert one.may_be_same_as(two) == two.may_be_same_as(one) == same
 
 
-def test_of_a_csmnc_record_the_corrected_file_is_used_and_another_point_is_another_record(tmp_path):
+def test_the_corrected_file_of_a_csmnc_record_is_used(tmp_path):
     raw, corrected = csmnc_text(A), csmnc_text(A * 0.99, kind="CORRECTED ACCELERATION")
     roof = csmnc_text(B).replace("POINT: GROUND", "POINT: ROOF")
     write(tmp_path, raw_dat=raw, corrected_dat=corrected, roof_dat=roof)
@@ -260,9 +260,7 @@ def test_of_real_recordings_in_several_files_one_is_used():
 
 
 @pytest.mark.parametrize(("stage", "used"), [("Corrected", "cosmos.v2c"), ("Uncorrected", "unknown.AT2")])
-def test_a_copy_of_unknown_processing_is_used_before_an_uncorrected_one_and_after_a_corrected_one(
-    tmp_path, stage, used
-):
+def test_a_copy_of_unknown_processing_ranks_between_corrected_and_uncorrected(tmp_path, stage, used):
     values = np.round(wiggle(1500, 4, 90.0) * np.hanning(1500), 3)
     text = cosmos_text(values, "90 Deg", stage=stage, scnl="")
     (tmp_path / "cosmos.v2c").write_text(text, encoding="latin-1")

@@ -101,7 +101,7 @@ def test_a_header_that_was_copied_holds_all_back_where_names_tell_nothing(tmp_pa
         ({"NORTE-SUR.AT2": "Este-Oeste", "x090.AT2": "90", "UP.AT2": "UP"}, ('"Este-Oeste"', "NORTE-SUR.AT2")),
     ],
 )
-def test_a_title_and_a_name_that_contradict_each_other_hold_the_set_back_and_both_are_named(tmp_path, titles, said):
+def test_a_title_and_a_name_that_contradict_each_other_hold_the_set_back(tmp_path, titles, said):
     write_titled(tmp_path, titles)
     reasons = held(tmp_path)
     assert len(reasons) == 3
@@ -251,7 +251,7 @@ def test_angles_are_believed_but_for_those_that_programs_write_by_default(tmp_pa
         ({"HN1": (45.0, 0.0), "HN2": (45.0, 0.0), "HNZ": (0.0, -90.0)}, ("azimuth 45°", "other samples")),
     ],
 )
-def test_angles_that_contradict_codes_or_samples_hold_the_set_back_and_both_are_named(tmp_path, angles, said):
+def test_angles_that_contradict_codes_or_samples_hold_the_set_back(tmp_path, angles, said):
     write_channels(tmp_path, **angles)
     reasons = held(tmp_path)
     assert len(reasons) == 3

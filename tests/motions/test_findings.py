@@ -140,7 +140,7 @@ def test_the_drafted_manifest_has_the_line_that_confirms_it(tmp_path, kind):
     assert len(read_motions(tmp_path).motions) == 1
 
 
-def test_motions_of_no_file_are_asked_about_their_unit_unless_somebody_has_looked_at_it():
+def test_motions_of_no_file_are_asked_about_their_unit_until_confirmed():
     high = Motion("m", 0.01, np.array([0.0, 5.0 * G, -5.1 * G]))
     (asked,) = unlikely_samples(high, G)
     assert asked.startswith('motion "m": PGA 5.1 g')

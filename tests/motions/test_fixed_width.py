@@ -34,7 +34,7 @@ def test_numbers_of_one_layout_are_those_of_float_to_the_bit(layout):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_damaged_field_is_left_to_the_reader_of_single_numbers_or_read_as_float_reads_it(seed):
+def test_a_damaged_field_is_read_as_float_reads_it_or_left_to_the_slow_reader(seed):
     rng = random.Random(seed)
     left = 0
     for _ in range(100):

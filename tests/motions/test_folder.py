@@ -112,7 +112,7 @@ def test_a_coarse_horizontal_is_brought_to_the_vertical_samples():
 
 
 @pytest.mark.parametrize(("finer", "parts"), [(0.5, 2), (0.4, 3), (1.0 - 1e-7, 1)])
-def test_steps_of_the_horizontal_are_cut_until_they_are_no_coarser_than_those_of_the_vertical(finer, parts):
+def test_horizontal_steps_are_cut_to_no_coarser_than_vertical_ones(finer, parts):
     """The last are the same but for rounding, and begin a quarter of a step apart."""
     h = component([0, 6, 0, 6], 0.01, start=1e9)
     v = component(np.arange(40.0), 0.01 * finer, True, start=1e9 - 0.0025)
@@ -124,7 +124,7 @@ def test_steps_of_the_horizontal_are_cut_until_they_are_no_coarser_than_those_of
 
 
 @pytest.mark.parametrize("late", [1e-4, -1e-4, 4.9e-4, 0.01 + 1e-4])
-def test_starts_that_jitter_by_less_than_a_tenth_of_a_step_count_as_simultaneous_and_cost_no_peak(late):
+def test_starts_within_a_tenth_of_a_step_count_as_simultaneous(late):
     """0.1 ms between two clocks; the motion is linear between samples, so the error is below a tenth of a step's."""
     h, v = np.array([0.0, 0.3, 1.0, 0.2, -0.5, 0.1]), np.array([0.1, -0.9, 0.7, 0.4, 0.0, 0.2])
     (motion,) = to_motions(

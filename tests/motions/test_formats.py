@@ -150,7 +150,7 @@ def test_a_gap_costs_that_channel_and_no_other(tmp_path):
 
 
 @pytest.mark.parametrize("together", [True, False])
-def test_two_events_in_a_file_are_two_records_each_with_its_vertical_and_turned_on_its_own(tmp_path, together):
+def test_two_events_in_a_file_are_two_records_each_with_its_vertical(tmp_path, together):
     gap = 600.0  # s, between records of 5 s
     channels = {code: COUNTS * factor for code, factor in (("HNN", 1), ("HNE", 2), ("HNZ", 3))}
     traces = {
@@ -380,7 +380,7 @@ def test_a_pickle_is_never_opened_as_one_whatever_its_suffix(tmp_path):
     assert sprung.exists()  # the trap was set
 
 
-def test_texts_of_a_sac_header_end_where_the_next_begins_and_without_a_station_there_is_none(tmp_path):
+def test_texts_of_a_sac_header_end_where_the_next_begins(tmp_path):
     path, sent = tmp_path / "e.sac", trace("HNE", wiggle(300).astype(np.float32))
 
     def read():
@@ -405,7 +405,7 @@ def test_a_blockette_beside_that_of_the_record_length_has_none(tmp_path):
 
 
 @pytest.mark.parametrize("exponent", [8, 12])
-def test_a_seed_volume_is_read_from_its_first_data_record_on_whose_place_its_header_tells(exponent):
+def test_a_seed_volume_is_read_from_its_first_data_record(exponent):
     record = io.BytesIO()
     trace("HNE", (1000 * wiggle(300)).astype(np.int32)).write(record, format="MSEED", reclen=512)
     header = f"000001V 0100094 2.4{exponent:02d}".encode().ljust(2**exponent)

@@ -34,7 +34,7 @@ def of_cosmos(text: str):
     return component.initial
 
 
-def test_of_cosmos_from_the_series_beside_the_accelerations_whichever_header_they_have():
+def test_cosmos_begins_with_the_series_beside_whichever_header_they_have():
     head = cosmos_header("Corrected acceleration", A, "90 Deg")
     velocities = cosmos_series("velocity", V, unit="cm/sec(05)", layout="1E15.6")
     displacements = cosmos_series("displacement", D, unit="cm(06)", layout="1E15.6")
@@ -80,7 +80,7 @@ def csmip_text(velocities=None, displacements=None) -> str:
     return "\n".join([*lines, ""])
 
 
-def test_of_csmip_from_its_velocities_and_not_from_its_header_whose_sign_agencies_take_otherwise():
+def test_csmip_begins_with_its_velocities_not_with_its_header():
     dt = 0.01
     v, d = (100 * series(A / 100, dt, BEGINS) for series in (measures.velocity, measures.displacement))
     (component,) = read(csmip_text(v, d), "x.V2")

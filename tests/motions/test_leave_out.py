@@ -53,7 +53,7 @@ def test_a_station_is_left_out_by_its_name_its_files_their_records_or_their_fold
     assert f'leave_out = ["{patterns[0]}"]' in found.left_out[0].reason
 
 
-def test_a_record_that_could_be_used_is_left_out_and_one_of_a_manifest_counts_as_named_too(folder):
+def test_a_usable_record_is_left_out_and_one_of_a_manifest_counts_as_named(folder):
     found = read_motions(folder, leave_out=["RSN7*"])
     assert not found.motions
     assert {file.name for file in found.left_out} == {"RSN7_A_B000", "RSN7_A_B090", "RSN7_A_B-UP"}

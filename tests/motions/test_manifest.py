@@ -200,7 +200,7 @@ def test_mistakes_in_a_csv_have_their_lines_too(tmp_path):
     assert fourth.startswith('motions.csv:4: [[record]] "a09.AT2": file = "a09.AT2": no such file in ')
 
 
-def test_a_unit_for_counts_has_no_meaning_and_an_azimuth_for_two_components_is_ambiguous(tmp_path):
+def test_counts_take_no_unit_and_two_components_no_single_azimuth(tmp_path):
     (tmp_path / "TST.EW").write_text(knet_text("E-W")[0])  # counts, with their scale in the header
     rows = "\n".join(f"{i / 100} {v} {2 * v}" for i, v in enumerate(wiggle(50, 1)))
     (tmp_path / "x.txt").write_text(f"# time(s) NS(g) EW(g)\n{rows}\n")
@@ -249,7 +249,7 @@ def test_the_draft_of_a_header_with_odd_characters_is_a_manifest(tmp_path):
     assert [motion.name for motion in read_motions(tmp_path).motions] == [motion.name for motion in before.motions]
 
 
-def test_the_draft_has_a_line_to_fill_in_for_each_unit_and_interval_that_a_file_lacks(tmp_path):
+def test_the_draft_has_a_line_for_each_unit_and_interval_that_a_file_lacks(tmp_path):
     """What is asked for is enough: with the lines filled in, every file is a record."""
     timed, plain, nothing = ([f"{value:.6f}" for value in wiggle(50, seed)] for seed in (1, 2, 3))
     (tmp_path / "timed_000.txt").write_text("".join(f"{i / 100} {value}\n" for i, value in enumerate(timed)))

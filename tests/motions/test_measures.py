@@ -73,7 +73,7 @@ def test_velocity_and_displacement_begin_where_the_file_says():
     assert measures.pgd(a, dt) > 4 * amplitude / omega**2  # from rest it drifts away
 
 
-def test_the_state_at_a_time_is_that_of_the_series_and_of_the_finer_one_between_samples():
+def test_the_state_at_a_time_is_that_of_the_series_and_of_a_finer_one():
     a, dt, initial = np.random.default_rng(3).normal(size=50), 0.02, Initial(0.4, -0.1)
     fine = np.interp(np.arange(49 * 8 + 1) / 8, np.arange(50), a)
     for k in (0, 7, 8, 101, 391, 392):
@@ -130,7 +130,7 @@ def test_arias_intensity_of_whole_cycles_of_a_sine_is_its_closed_form():
     assert found == pytest.approx(math.pi / 20.0 * amplitude**2 * 2.5, rel=1e-12)
 
 
-def test_significant_duration_of_a_constant_acceleration_is_nine_tenths_of_its_length():
+def test_significant_duration_of_constant_acceleration_is_nine_tenths():
     padded = np.concatenate((np.zeros(300), np.full(1001, -2.0), np.zeros(500)))
     # the two slopes at the ends hold a third of a sample's energy each
     assert measures.significant_duration(padded, 0.01) == pytest.approx(9.0, abs=0.01)
@@ -215,7 +215,7 @@ def test_spectra_of_a_suite_are_in_g_and_in_order():
     )
 
 
-def test_a_displacement_that_runs_away_is_no_peak_unless_the_ground_was_in_motion_before():
+def test_a_displacement_that_runs_away_is_no_peak_unless_the_ground_moved_before():
     """A sine from rest leaves the ground with the velocity a/ω, and one that begins with its reverse stays where it is."""
     t, dt = np.arange(20_001) * 0.001, 0.001
     sine = 3.0 * np.sin(10.0 * t)

@@ -79,7 +79,7 @@ def test_motion_along_one_line_has_a_median_of_one_over_the_root_of_two(directio
     np.testing.assert_allclose(found["rotd50_g"], alone / math.sqrt(2.0), rtol=1e-12)
 
 
-def test_motion_in_a_circle_has_one_value_in_all_directions_which_is_the_steady_state():
+def test_motion_in_a_circle_has_the_steady_state_in_all_directions():
     t = np.arange(16000) * 0.01
     rising = 0.5 - 0.5 * np.cos(np.pi * np.clip(t / 100.0, 0.0, 1.0))  # slowly: no transient is above the steady state
     a, b = (Motion(n, 0.01, rising * f(2.0 * math.pi * t)) for n, f in (("a", np.cos), ("b", np.sin)))

@@ -158,7 +158,7 @@ def test_every_real_record_swings_about_zero_by_a_wide_margin():
 
 
 @pytest.mark.slow
-def test_what_some_files_of_a_folder_need_costs_none_of_the_formats_that_always_have_theirs():
+def test_needs_of_some_files_cost_nothing_to_formats_that_have_theirs():
     """SAC files need a unit; those beside them from GeoNet, CGS, USGS, DYNA have theirs, in mm/s² and cm/s²."""
     before = {motion.name: motion for motion in real_motions("formats").motions}
     after = {m.name: m for m in real_motions("formats", unit="g").motions}

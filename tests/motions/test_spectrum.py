@@ -11,7 +11,7 @@ from rockbatch.motions.measures import pgd
 from rockbatch.motions.spectrum import spectral_acceleration
 
 
-def test_a_stiff_oscillator_feels_the_peak_of_the_ground_and_a_soft_one_its_displacement():
+def test_a_stiff_oscillator_feels_ground_acceleration_and_a_soft_one_displacement():
     """An undamped oscillator overshoots a slow change by nothing: T is 1/1000 of the pulse's period, then 1000 times it."""
     motion = rb.pulse("sine", name="one-sine", amplitude=3.0, period=1.0, dt=0.01, duration=2.0)
     stiff, soft = spectral_acceleration(motion.horizontal, 0.01, [0.001, 1000.0], damping=0.0)

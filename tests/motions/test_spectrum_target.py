@@ -143,7 +143,7 @@ def test_a_suite_gets_the_least_factor_by_which_its_mean_is_nowhere_below_the_sh
     assert over.min() == pytest.approx(share)
 
 
-def test_both_fits_each_and_raises_all_where_the_mean_is_too_low_but_never_lowers_them():
+def test_both_fits_each_and_raises_all_if_the_mean_is_too_low_but_lowers_none():
     each = SpectrumTarget(TABLE, (0.3, 3.0), "each").factors_of(SUITE, 10.0)
     high = SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=1.2)
     ratio = np.array(high.factors_of(SUITE, 10.0)) / each

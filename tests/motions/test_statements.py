@@ -86,7 +86,7 @@ def test_a_step_that_cannot_be_and_two_of_them_are_refused(lines, message):
 
 
 @pytest.mark.parametrize(("line", "dt"), STEPS)
-def test_the_step_of_a_header_is_read_as_people_write_it_and_its_words_name_no_columns(tmp_path, line, dt):
+def test_the_step_of_a_header_is_read_as_people_write_it(tmp_path, line, dt):
     width = min(4, len(line.split()))
     write(tmp_path, f"# {line}\n# unit: g", *[np.roll(A, k) for k in range(width)], name="x.txt")
     names = ("000", "090", "up", "-")[:width]
@@ -145,7 +145,7 @@ def test_the_unit_of_a_file_wins_over_that_of_the_study_and_a_note_tells_both(tm
         assert f"{stated} is for files without a unit" in told[0]
 
 
-def test_a_study_states_the_unit_of_the_one_file_that_lacks_it_and_loses_none_of_the_others(tmp_path):
+def test_a_study_states_the_unit_that_one_file_lacks_and_loses_no_other(tmp_path):
     write_at2(tmp_path, "at2_000.AT2", A)
     write(tmp_path, "# time(s) N(cm/s2)", 0.01 * np.arange(120), 981 * B, name="columns.txt")
     write(tmp_path, "", 0.01 * np.arange(120), 9.81 * C, name="bare_N.txt")
@@ -190,7 +190,7 @@ def test_the_unit_of_a_peak_and_words_behind_in_are_no_unit_of_the_data(tmp_path
     np.testing.assert_allclose(one(tmp_path, unit="m/s2").horizontal, A, atol=1e-6)
 
 
-def test_a_manifest_stays_the_word_for_one_file_and_says_so_whatever_the_study_states(tmp_path):
+def test_a_manifest_decides_for_its_file_whatever_the_study_states(tmp_path):
     write(tmp_path, "# dt = 0.01\n# unit: g", A)
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "x_N.txt"\nunit = "m/s2"\ndt = 0.02\n')
     for options in ({}, {"unit": "gal", "dt": 0.005}):

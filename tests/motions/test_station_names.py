@@ -75,7 +75,7 @@ def test_two_formats_of_one_recording_are_one_record_by_their_headers():
 
 
 @pytest.mark.parametrize("short", [-10.0, 1.0])
-def test_recordings_on_both_sides_of_a_full_hour_are_of_one_earthquake_if_they_share_a_moment(short):
+def test_recordings_across_a_full_hour_are_one_earthquake_if_they_overlap(short):
     """The long one lasts from 15 s before it to 15 s after it; what begins with its last sample is another."""
     long = component("long", sensor=Sensor("S", location="00"), start=HOUR - 15.0, samples=3000)
     found = [
@@ -116,7 +116,7 @@ def test_what_headers_and_names_say_decides(more, stations):
 
 
 @pytest.mark.parametrize("when", [lambda i: {"event": f"E{i}"}, lambda i: {"start": 1e9 + 86400.0 * i}, lambda i: {}])
-def test_records_of_one_station_in_many_earthquakes_are_not_all_compared_to_each_other(monkeypatch, when):
+def test_records_of_a_station_in_many_earthquakes_are_not_all_compared(monkeypatch, when):
     compared = []
     together = stations._share_record
     monkeypatch.setattr(stations, "_share_record", lambda a, b: compared.append(1) or together(a, b))

@@ -192,7 +192,7 @@ def test_records_that_lack_the_vertical_that_was_asked_for_are_named(tmp_path):
     assert ground_motions(study_of(tmp_path, pulse)).without_vertical == ["lacks000"]  # a pulse has none to miss
 
 
-def test_a_required_vertical_costs_a_record_that_has_none_and_a_strict_study_everything(tmp_path):
+def test_a_required_vertical_costs_a_record_without_it_and_a_strict_study_all(tmp_path):
     with_one_vertical(tmp_path / "records")
     found = ground_motions(study_of(tmp_path, 'vertical = "required"\n'))
     assert [motion.name for motion in found.motions] == ["has000"]

@@ -97,7 +97,7 @@ def test_t_is_time_or_the_transverse_component_as_its_unit_and_its_numbers_have_
         np.testing.assert_allclose(motion.horizontal, expected[motion.name], atol=1e-6)  # six decimals
 
 
-def test_velocities_and_displacements_beside_accelerations_are_left_out_and_it_is_said(tmp_path):
+def test_velocities_and_displacements_are_left_out_and_it_is_said(tmp_path):
     write(tmp_path, "time acc_N vel_N disp_N", T, A, B, C)
     (motion,) = read_motions(tmp_path, options=ReadOptions(unit="g")).motions
     assert motion.notes == (
@@ -118,7 +118,7 @@ def test_a_series_that_never_changes_sign_is_used_only_when_it_is_confirmed(tmp_
     assert len(read_motions(tmp_path, confirmed=["x_*"]).motions) == 1
 
 
-def test_a_series_with_an_offset_is_used_only_when_it_is_confirmed_or_the_offset_is_taken_off(tmp_path):
+def test_a_series_with_an_offset_has_it_confirmed_or_taken_off(tmp_path):
     from rockbatch.motions.baseline import Offset
 
     write(tmp_path, "# time(s) N(g)", T, A + 0.3 * np.abs(A).max())
@@ -133,7 +133,7 @@ def test_a_vertical_that_never_changes_sign_is_asked_for_too(tmp_path):
     assert "its vertical component never changes sign" in reason(tmp_path)
 
 
-def test_an_instruments_offset_that_its_format_leaves_in_the_data_is_taken_off_before_it_is_judged(tmp_path):
+def test_an_instruments_offset_is_taken_off_before_the_record_is_judged(tmp_path):
     from agency_files import knet_text
 
     text, counts = knet_text("E-W")

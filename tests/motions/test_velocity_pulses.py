@@ -49,7 +49,7 @@ def test_the_filter_is_orthogonal_and_has_four_vanishing_moments():
     assert h[:2] == pytest.approx([0.23037781, 0.71484657], abs=1e-8)  # Daubechies (1992), Table 6.1
 
 
-def test_the_wavelet_has_unit_norm_vanishing_moments_and_the_central_frequency_five_sevenths():
+def test_the_wavelet_has_unit_norm_and_central_frequency_five_sevenths():
     x, psi = _daubechies()
     step = x[1]
     assert x[-1] == 7.0

@@ -35,7 +35,7 @@ def given(motions):
     return {motion.name: motion.vertical for motion in motions}
 
 
-def test_a_target_of_one_measure_is_met_by_every_vertical_whatever_the_horizontals_have():
+def test_every_vertical_meets_a_target_of_one_measure():
     motions = MotionSet([motion.times(2.0) for motion in suite()])
     found = scale_verticals(motions, given(suite()), Target(pga_g=0.3), 1.0, G).motions
     for motion, before in zip(found[:3], motions, strict=False):

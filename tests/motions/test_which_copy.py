@@ -66,7 +66,7 @@ def test_dates_of_unam_s_sister_institutes_are_read(tmp_path, key, date):
 # Scaled copies
 
 
-def test_of_a_scaled_and_an_unscaled_copy_the_unscaled_one_is_used_and_the_factor_named(tmp_path):
+def test_the_unscaled_of_two_copies_is_used_and_the_factor_named(tmp_path):
     write_at2(tmp_path, "scaled.AT2", 2.0 * wiggle(60), title=title("0"))
     write_at2(tmp_path, "unscaled.AT2", wiggle(60), title=title("0"))
     found = read_motions(tmp_path)
@@ -90,9 +90,7 @@ def test_where_nothing_tells_which_factor_is_right_it_is_asked_for(tmp_path):
 @pytest.mark.parametrize(
     ("factor", "waits"), [(9.81, True), (9.80665, True), (100.0, True), (-9.81, True), (2.0, False), (9.5, False)]
 )
-def test_of_copies_a_unit_apart_under_other_names_neither_is_used_until_it_is_said_which_is_right(
-    tmp_path, factor, waits
-):
+def test_neither_of_copies_a_unit_apart_is_used_until_one_is_named(tmp_path, factor, waits):
     """0.089 g and 0.874 g: in one of the files m/s² are called g."""
     small = 0.02 * wiggle(60)
     write_at2(tmp_path, "one_000.AT2", small, title="EVENT, 1/17/1994, ONE, 000")
@@ -265,7 +263,7 @@ def test_a_copy_in_another_frame_is_left_out_whole(tmp_path, frame):
     assert sorted(double.source.partition("/")[0] for double in found.left_out) == ["longer"] * 3
 
 
-def test_a_cut_copy_is_left_out_whole_though_one_of_its_components_is_another_by_its_growth(tmp_path):
+def test_a_cut_copy_is_left_out_whole_though_one_component_has_grown(tmp_path):
     first, second, upright = (a * np.hanning(1500) ** 4 for a in shaken(5))
     second = second + 0.012 * np.random.default_rng(1).standard_normal(
         1500
@@ -340,7 +338,7 @@ def test_a_copy_without_a_vertical_of_which_no_component_is_alike_is_left_out_wh
         assert double.reason.startswith(f"the same recording as {used}/")
 
 
-def test_the_likeness_of_two_sets_is_the_greatest_of_all_shifts_rotations_and_reflections():
+def test_the_likeness_of_two_sets_is_the_greatest_of_all_alignments():
     """By trying them: half a degree apart, of which the cosine costs 1e-5."""
     rng = np.random.default_rng(4)
     a, b = rng.standard_normal((2, 2, 400)) * np.hanning(400) ** 2

@@ -151,7 +151,7 @@ def test_the_legend_says_of_which_statistic_a_check_is_but_not_of_a_ban(tmp_path
     assert "Mean over records (margin, tilt). The mark on a bar is the limit." in shown.text
 
 
-def test_of_many_cases_the_six_nearest_to_passing_stand_open_and_the_others_follow_folded(tmp_path):
+def test_the_six_cases_nearest_to_passing_stand_open_and_others_are_folded(tmp_path):
     some = [verdict(f"c{i}", "fail", ratio=1.0 + i / 10, check="drift") for i in range(1, 41)]
     write_results(tmp_path)
     write_verdicts(tmp_path, [*some, *(verdict(f"c{i}", "pass") for i in range(1, 6))])
@@ -178,7 +178,7 @@ def test_of_very_many_cases_a_page_has_the_best_and_the_worst_verdicts_and_says_
     assert [row[1] for row in shown.tables["checks"][-1000:]] == [f"c{i}" for i in range(1100, 100, -1)]
 
 
-def test_checks_that_pass_everywhere_are_counted_beyond_the_seventh_and_what_fails_comes_first(tmp_path):
+def test_failures_come_first_and_passes_beyond_the_seventh_are_counted(tmp_path):
     passing = [verdict("1", "pass", check=f"c{i}", ratio=i / 20) for i in range(10)]
     failing = [verdict("1", "fail", check=f"f{i}", ratio=1.5 + i) for i in range(2)]
     head, row = card(page(tmp_path, *passing, *failing))
@@ -188,7 +188,7 @@ def test_checks_that_pass_everywhere_are_counted_beyond_the_seventh_and_what_fai
     assert len(row) == 1 + 9
 
 
-def test_the_bar_of_a_cell_reaches_the_mark_in_the_middle_at_the_limit_and_ends_at_twice_that(tmp_path):
+def test_the_bar_of_a_cell_is_half_at_the_limit_and_full_at_twice_it(tmp_path):
     write_results(tmp_path)
     ratios = (0.5, 1.0, 1.16, 2.0, 5.46, math.inf)  # cases with larger ones stand further below
     fates = [verdict(f"c{r}", "fail" if r > 1 else "pass", ratio=r, value=0.5 * r) for r in ratios]

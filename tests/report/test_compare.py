@@ -213,7 +213,7 @@ def test_two_studies_begin_with_which_is_better_by_how_much_and_in_which_record(
     assert "smaller in 1 of 30 pairs of runs, larger in 0; it changes to 0.5 times (SYL360, 2) at least" in told
 
 
-def test_neither_is_better_where_one_response_grows_and_another_shrinks_or_nothing_changes(tmp_path):
+def test_neither_is_better_if_responses_move_both_ways_or_not_at_all(tmp_path):
     same = answered(two(tmp_path))
     assert same.startswith("Neither is better: from A to B, worst rotation +0 %")
     other = tmp_path / "mixed"

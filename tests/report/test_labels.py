@@ -80,7 +80,7 @@ TIED = RigidBase(restraints=(Tendon(psi=0.1, lam=0.5),))
         ({f"pads {k}": replace(PAD, eta=2.0 + k) for k in range(28)}, None, [*"abcdefghijklmnopqrstuvwxyz", "27", "28"], []),
     ],
 )  # fmt: skip
-def test_foundations_have_short_names_of_their_own_or_letters_and_rigid_ground_is_a_line(bases, keyed, ticks, lines):
+def test_foundations_have_short_names_or_letters_and_rigid_ground_is_a_line(bases, keyed, ticks, lines):
     """Rigid ground is a line that others are compared with: not if there is nothing else, and not with devices."""
     found = [*named({(name,): [case(name, base)] for name, base in bases.items()}, (), {}).values()]
     assert keyed is None or [one.keyed.replace("\u00a0", " ") for one in found] == keyed

@@ -57,7 +57,7 @@ def rows(text, section):
     ]
 
 
-def test_a_strip_has_every_peak_where_it_is_on_the_axis_the_greatest_first_and_says_its_ends(tmp_path):
+def test_a_strip_has_every_peak_at_its_place_and_says_its_ends(tmp_path):
     """Places in percent grow with θ_max/α, from the grid's first line at zero, its marks between the others."""
     changes = {("ERZ-NS", case): {"status": "overturned"} for case in ("rigid", "1", "2", "3", "4")}
     changes |= {("RRS228", case): {"status": "failed", "theta_max_over_alpha": ""} for case in ("rigid", "1", "2", "3")}
@@ -94,7 +94,7 @@ def test_a_strip_has_every_peak_where_it_is_on_the_axis_the_greatest_first_and_s
     )
 
 
-def test_a_hundred_cases_have_a_row_for_each_record_on_the_first_screen_and_the_best_in_a_picture_of_their_own(
+def test_a_hundred_cases_fit_the_first_screen_and_the_best_have_a_picture(
     hundred,
 ):
     text = hundred.read_text(encoding="utf-8")

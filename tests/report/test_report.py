@@ -298,7 +298,7 @@ def test_the_largest_rotation_and_the_events_are_marked(tmp_path):
     assert [len(stroke.split("M")) - 1 for stroke in strokes] == [1]  # the one separation of the sample
 
 
-def test_a_picture_is_cut_to_the_time_in_which_a_pier_moves_and_holds_the_whole_record(tmp_path):
+def test_a_picture_is_cut_to_the_time_in_which_a_pier_moves(tmp_path):
     write_results(tmp_path)
     drawn = response("ERZ-NS", "1", FOUNDATIONS[1][1])
     late = drawn.history.assign(t=drawn.t + 60.0)
@@ -386,7 +386,7 @@ def test_of_many_responses_the_worst_of_each_case_is_drawn(tmp_path, monkeypatch
         assert sum(f"θ/α {name}" in names_of(svg) for svg in readable(text)) == len(worst)
 
 
-def test_of_many_cases_under_one_motion_the_worst_are_drawn_and_the_number_of_the_others_is_said(tmp_path):
+def test_the_worst_of_many_cases_are_drawn_and_the_others_counted(tmp_path):
     pier = Pier(alpha=0.2, p=1.0)
     bases = [(f"pad{i}", YieldingBase(beta=50.0, eta=2.0 + 0.1 * i)) for i in range(9)]
     cases = [case_entry("rigid", {}, pier, RigidBase()), *(case_entry(name, {}, pier, base) for name, base in bases)]
@@ -441,7 +441,7 @@ def test_the_same_results_give_the_same_bytes(tmp_path):
     assert write_report(tmp_path, responses).read_text(encoding="utf-8") == first
 
 
-def test_fifty_records_on_five_foundations_stay_below_half_a_megabyte_and_each_has_a_row_on_request(tmp_path):
+def test_fifty_records_on_five_foundations_stay_below_half_a_megabyte(tmp_path):
     records = [(f"RSN{i}_EVENT_STATION{i:03d}_WITH_A_LONG_NAME", 0.1 + 0.02 * i) for i in range(50)]
     text = report(tmp_path, records=records)
     assert len(text.encode()) < 5e5
@@ -594,7 +594,7 @@ def test_a_remark_stands_once_below_the_table_under_the_number_that_its_runs_hav
     assert {run: listed[int(number) - 1] for run, number in found.items() if number} == notes
 
 
-def test_the_worst_comes_first_overturned_then_ended_by_flight_failed_and_then_by_rotation(tmp_path):
+def test_the_worst_comes_first_overturned_flight_failed_then_rotation(tmp_path):
     changes = {
         ("CPM000", "4"): {"status": "failed", "theta_max_over_alpha": ""},
         ("SYL360", "3"): {"status": "flight", "theta_max_over_alpha": 0.001, "flight_s": 2.0},
@@ -609,7 +609,7 @@ def test_the_worst_comes_first_overturned_then_ended_by_flight_failed_and_then_b
 
 
 @pytest.mark.parametrize("count", [1, 3, 20])
-def test_the_suite_s_spectra_are_drawn_with_names_while_they_are_few_and_as_a_spread_beyond(tmp_path, count):
+def test_few_spectra_are_drawn_with_names_and_many_as_a_spread(tmp_path, count):
     names = [(f"record {i}", 0.1 + 0.01 * i) for i in range(count)]
     spectra = {"damping": 0.05, "period_s": [0.1, 1.0, 5.0], "sa_g": [[1.0, 0.5 + 0.1 * i, 0.1] for i in range(count)]}
     write_results(tmp_path, records=names, spectra=spectra)

@@ -67,7 +67,7 @@ def test_a_folder_without_a_run_has_notes_and_the_study_file_alone(tmp_path):
     assert Page(page(Contents(tmp_path, STUDY | {"notes": "", "title": ""}))).headings == ["The study file"]
 
 
-def test_analyses_go_into_the_report_of_their_study_and_without_its_table_onto_a_page_of_their_own(tmp_path):
+def test_analyses_go_into_the_report_of_their_study_or_a_page_of_their_own(tmp_path):
     study = load_study(write_study(tmp_path, study_text()))
     write_results(tmp_path, study=describe_study(study))
     assert write_analyses(tmp_path, study).name == "report.html"
@@ -172,7 +172,7 @@ def test_the_error_of_the_answer_is_a_plain_number_that_no_run_exceeds(tmp_path,
     assert f"Error of rotations: at most {said} α (0.0001 α allowed)." in told
 
 
-def test_the_answer_says_for_which_peaks_an_error_is_known_and_which_runs_have_remarks(tmp_path):
+def test_the_answer_says_which_peaks_have_errors_and_which_runs_remarks(tmp_path):
     noted = {("ERZ-NS", "1"): {"note": "impacts not settled: 8 or 9"}, ("RRS228", "2"): {"note": "flew up to 9 mm"}}
     write_results(tmp_path, changes=noted)
     assert "2 runs have remarks." in Page(section_of(tmp_path, answer)).text
@@ -227,7 +227,7 @@ def test_forces_on_rigid_ground_are_said_to_leave_landings_out_where_a_run_lands
     assert "single mode" not in text
 
 
-def test_the_greatest_is_claimed_of_the_runs_that_end_standing_and_a_missing_row_is_none_that_stands(tmp_path):
+def test_the_greatest_is_claimed_of_the_runs_that_end_standing(tmp_path):
     write_results(tmp_path, changes={("ERZ-NS", "1"): {"status": "failed"}, ("SYL360", "1"): {"status": "overturned"}})
     assert "Greatest values of 28 of 30 runs that end standing" in Page(section_of(tmp_path, answer)).text
     assert "30 runs, 28 end standing" in page(read(tmp_path, ()))

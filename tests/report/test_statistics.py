@@ -27,7 +27,7 @@ def test_mean_median_and_percentiles_are_those_of_the_magnitudes():
     assert (result.mean, result.low, result.median, result.high, result.largest) == pytest.approx(expected, rel=1e-14)
 
 
-def test_an_overturned_or_flying_run_counts_as_larger_than_any_and_leaves_the_mean_to_those_that_stood():
+def test_overturned_and_flying_runs_count_as_larger_and_are_in_no_mean():
     result = suite(np.array([0.1, 0.2, 0.3, 7.0, 0.05]), ["ok", "ok", "ok", "overturned", "flight"])
     assert (result.count, result.standing, result.overturned, result.flight, result.failed) == (5, 3, 1, 1, 0)
     assert result.mean == pytest.approx(0.2, rel=1e-14)

@@ -172,7 +172,7 @@ def test_forces_of_a_case_with_runs_that_did_not_go_through_are_marked_as_bounds
     assert (whole[1], whole[place]) == ("6 of 6", "2.500")
 
 
-def test_components_of_one_station_count_as_one_and_those_without_a_station_each_by_itself(asked, tmp_path):
+def test_components_count_by_station_and_each_by_itself_without_one(asked, tmp_path):
     info = json.loads((asked / "run.json").read_text(encoding="utf-8"))
     for record, station, pulse in zip(info["records"], ("S", "S", None, None, None, "T"), "yynnnn", strict=True):
         record |= {"station": station, "pulse_period_s": {"y": 2.0, "n": None}[pulse]}

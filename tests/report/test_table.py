@@ -85,7 +85,7 @@ def test_what_is_the_same_in_every_row_of_a_long_table_stands_above_it_once():
     ]
 
 
-def test_a_table_of_the_first_or_worst_rows_says_of_how_many_and_what_is_the_same_in_these():
+def test_a_table_of_some_rows_says_of_how_many_and_what_they_share():
     heads = [Head("name"), Head("status")]
     rows = [[f"r{i}", "ok"] for i in range(MOST_ROWS + 1)]
     assert f"The first {MOST_ROWS:,} of {MOST_ROWS + 1:,} rows are shown." in table(heads, rows)

@@ -35,7 +35,7 @@ def test_a_case_is_known_by_its_values_in_the_digits_of_the_table():
     assert case_key("pads", {}, ["beta"]) == ("pads", "")
 
 
-def test_rows_of_runs_are_without_unusable_files_and_mirror_images_and_have_the_digits_of_peaks():
+def test_rows_of_runs_have_the_digits_of_peaks_and_no_mirror_images():
     peaks = pd.DataFrame({"record": ["a", "a", "b"], "case": ["pads", "pads", ""], "mirror_of": ["", "a +", ""]})
     assert with_case(peaks)["record"].tolist() == ["a", "a"]
     assert with_case(peaks[:2]) is not peaks

@@ -204,7 +204,7 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
         assert column.sometimes or filled[applies].all(), name
 
 
-def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
+def test_the_table_has_the_fixed_columns_first_and_those_asked_for_last(study, table):
     of_devices = (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"])  # it has no device
     unasked = (*of_devices, COLUMNS["landing_force_kN"], COLUMNS["slides"])
     asked = [column for column in OPTIONAL if column not in unasked and column.bases not in (BENDING, FOOTING)]

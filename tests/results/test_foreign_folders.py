@@ -78,7 +78,7 @@ def test_a_file_that_is_no_plain_one_is_not_opened(foreign, tmp_path, name, kind
 
 
 @pytest.mark.parametrize("name", ["peaks.csv", "run.json", "report.html", "checks.csv", "histories.h5"])
-def test_a_link_where_a_result_is_to_be_written_is_refused_and_what_it_leads_to_stays(tmp_path, finished, name, capsys):
+def test_a_link_in_the_place_of_a_result_is_refused_and_its_target_stays(tmp_path, finished, name, capsys):
     notes = tmp_path / "notes.txt"
     notes.write_text("precious")
     out = tmp_path / "out"

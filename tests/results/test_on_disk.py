@@ -207,7 +207,7 @@ def test_flight_is_the_last_event_of_a_run_that_it_ends(tmp_path):
         assert same(stored(tmp_path, response)[0], response)
 
 
-def test_rigid_ground_of_an_earlier_version_which_did_not_say_so_ended_runs_at_their_flight(tmp_path):
+def test_rigid_ground_of_an_earlier_version_ended_runs_at_their_flight(tmp_path):
     responses = stored(tmp_path, at_rest())
     assert responses[0].base == rb.RigidBase()
     with altered(tmp_path / "histories.h5") as file:
@@ -324,7 +324,7 @@ def worst_of(*rows_of_cases):
     return [divmod(number, cases) for number in worst(table, cases)]
 
 
-def test_the_worst_of_a_case_is_its_greatest_rotation_also_of_a_run_that_flight_ended():
+def test_the_worst_of_a_case_is_its_greatest_rotation_of_any_status():
     rotations = [row("ok", 0.1), row("flight", 0.3), row("ok", 0.2)]
     assert worst_of(rotations, rotations[::-1], [rotations[0]] * 3) == [(1, 0), (1, 1), (0, 2)]
 

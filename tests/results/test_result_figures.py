@@ -145,7 +145,7 @@ def test_distributions_are_those_of_the_table_and_end_below_one_by_what_overturn
     results.plot_cdf(88.0).draw_without_rendering()
 
 
-def test_a_distribution_climbs_by_a_share_at_each_peak_and_leaves_a_gap_for_what_fell(results):
+def test_a_distribution_climbs_at_each_peak_and_leaves_a_gap_for_overturned_runs(results):
     """The gap, from what stood to one, stands in a band beyond the axis, with what it means; without falls there is neither."""
     runs = own(results)
     figure = distributions(list(groups_of(runs.runs, runs.piers)), runs.series, "station")
@@ -181,7 +181,7 @@ def test_a_distribution_climbs_by_a_share_at_each_peak_and_leaves_a_gap_for_what
     assert {type(mark) for mark in panel.marks} == {Polyline}
 
 
-def test_self_similar_axes_have_every_run_at_its_intensity_and_frequency_with_its_rotation_as_tone(results):
+def test_self_similar_axes_have_every_run_at_its_intensity_and_frequency(results):
     """PGA/(g tan α) over ω_g/p with ω_g = PGA/PGV; at 1 a pier lifts off rigid ground."""
     figure, records = (
         figures.self_similar(own(results), results.info),

@@ -98,7 +98,7 @@ def test_counts_that_have_not_settled_are_a_note_with_their_spread_and_no_failur
     assert outcome.note == "impacts not settled: 700 or 784; separations not settled: 700 or 784"
 
 
-def test_an_early_peak_that_agrees_proves_nothing_where_what_follows_it_differs_by_as_much(monkeypatch):
+def test_an_early_peak_that_agrees_proves_nothing_if_later_ones_differ(monkeypatch):
     """It takes four halvings in a row that agree in the peak, and the fifth run shows that it overturns."""
     early = [ok(0.1, windows=[0.1, later]) for later in (0.09, 0.05, 0.08, 0.06)]
     fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5, "windows": [0.1, 0.09]}
@@ -165,7 +165,7 @@ def test_rotations_that_have_not_settled_withdraw_the_error_of_a_later_peak_only
     assert (outcome.theta_max_error is not None) == claimed
 
 
-def test_parts_of_a_run_that_neither_of_two_steps_has_reached_agree_and_those_of_one_do_not():
+def test_parts_of_a_run_that_only_one_step_has_reached_do_not_agree():
     fine, coarse = (trial(2, ok(0.1, windows=[0.1, late, math.nan])) for late in (0.05, math.nan))
     assert windows(fine, coarse)[1][:3].tolist() == [0.0, math.inf, 0.0]
 
@@ -187,7 +187,7 @@ def test_no_error_is_claimed_of_a_peak_that_either_sign_of_a_change_moves(monkey
 
 
 @pytest.mark.parametrize("earlier", ["a probe", "rotations before the peak"])
-def test_overturning_under_a_changed_motion_is_noted_though_the_error_was_withdrawn_before(monkeypatch, earlier):
+def test_overturning_under_a_changed_motion_is_noted_without_an_error(monkeypatch, earlier):
     fallen = {"status": "overturned", "theta_max": math.pi / 2, "impacts": 4, "separations": 5}
     moved = ok(0.1 + 0.6e-4 * FIG5.alpha) if earlier == "a probe" else None
     wanders = [ok(0.1, t_max=4.9, windows=[0.0, rotation]) for rotation in (0.010, 0.012, 0.011)]
@@ -243,7 +243,7 @@ def test_a_peak_whose_rivals_follow_the_step_has_no_error_if_the_run_magnifies(m
 ON_SPRINGS = YieldingBase(5.0 * FIG5.least_beta, eta=3.0)
 
 
-def test_residuals_that_a_changed_motion_moves_have_no_error_and_the_peak_keeps_its_own(monkeypatch):
+def test_residuals_that_a_changed_motion_moves_have_no_error(monkeypatch):
     residuals = {"theta_res": 0.001, "settlement": 0.01}
     trials = [
         ok(0.1, impacts, **residuals) for impacts in (4, 5)
@@ -341,7 +341,7 @@ def test_outcomes_that_differ_are_never_settled(monkeypatch):
     assert len(asked) == 4
 
 
-def test_a_run_that_does_not_settle_fails_with_its_best_values_and_says_what_still_changed(monkeypatch):
+def test_a_run_that_does_not_settle_fails_with_its_best_values_and_the_reason(monkeypatch):
     asked = scripted(monkeypatch, *(ok(0.1 + 0.01 * (-1) ** i) for i in range(50)))
     outcome = run_to_tolerance(FIG5, RigidBase(), SINE, 1e-4)
     assert len(asked) == error_control.HALVINGS + 1
@@ -518,7 +518,7 @@ def test_steps_respect_how_fast_devices_let_a_block_vibrate_or_slow_it(devices, 
     assert first_substeps(FIG5, base, dt) == (25 if rate else 2)  # up to 0.2
 
 
-def test_a_damper_whose_force_is_a_root_of_the_speed_may_slow_a_block_at_a_hundred_times_p():
+def test_a_damper_of_the_root_of_speed_may_slow_a_block_at_a_hundred_times_p():
     base = RigidBase(restraints=(Damper("viscous", nu=3.0, at=0.0, exponent=0.5),))
     assert [fastest_rate(pier, base) / pier.p for pier in (FIG5, TOWER)] == pytest.approx([100.0, 100.0], rel=1e-9)
 
@@ -609,7 +609,7 @@ def test_two_runs_agree_in_times_to_a_hundredth_of_1_over_p_and_in_how_they_end(
     assert extent(unsettled, unsettled) == "NONE"
 
 
-def test_what_differs_is_harmless_three_times_its_change_below_the_peak_and_counts_in_the_same_course():
+def test_a_difference_is_harmless_three_times_its_change_below_the_peak():
     for below, name in ((0.0029, "RESULTS"), (0.0031, "APART")):
         lower = 0.1 - below
         assert extent(ok(0.1, windows=[0.1, lower - 0.001]), ok(0.1, windows=[0.1, lower])) == name
@@ -653,7 +653,7 @@ def test_a_probe_raises_the_errors_that_it_shows_to_be_too_small_or_withdraws_th
     ("one", "other", "apart"),
     [(0.1, 0.3, 0.2), (0.3, 0.1, 0.2), (None, None, 0.0), (0.1, None, math.inf), (None, 0.1, math.inf)],
 )
-def test_residuals_lie_apart_by_their_difference_and_settlements_by_theirs_over_half_the_width(one, other, apart):
+def test_residuals_differ_by_rotation_and_settlements_over_half_the_width(one, other, apart):
     tilted = [
         Outcome(**vars(trial(2, ok(0.1)).outcome) | {"theta_res": value, "settlement": None}) for value in (one, other)
     ]

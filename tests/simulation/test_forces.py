@@ -129,7 +129,7 @@ def test_no_interface_has_less_than_no_friction(tmp_path, friction):
         rb.simulate(rb.Pier(0.2, 1.0), rb.RigidBase(friction=friction), rb.Motion("still", 0.01, np.zeros(9)))
 
 
-def test_a_list_of_frictions_is_a_case_each_and_the_table_and_the_report_say_which_slide(tmp_path, capsys):
+def test_a_list_of_frictions_is_a_case_each_and_those_that_slide_are_named(tmp_path, capsys):
     cases = (RIGID | {"friction": [0.1, 0.9]}, ON_PADS | {"friction": 0.9, "flight": "guided"})
     check = [{"name": "keys", "demand": "friction_demand", "at_most": 0.3, "reason": "r", "case": "rigid"}]
     path = study(tmp_path, cases=cases, check=check)

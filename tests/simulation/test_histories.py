@@ -66,7 +66,7 @@ def test_springs_stay_within_their_law():
         assert z[0] == pytest.approx(-1 / 2.2, rel=1e-14)
 
 
-def test_forces_of_damped_supports_are_those_of_their_deflections_and_reach_the_peaks_of_the_row():
+def test_forces_of_damped_supports_follow_deflections_and_reach_the_row():
     """F/M = ω_v² v/2 + ζ ω_v dv/dt with ω_v = β p of both supports, the rate by differences: 0.02 m/s² are their error."""
     t, base = 0.01 * np.arange(500), rb.ElasticBase(30.0, zeta=0.1)
     motion = rb.Motion("shaken", 0.01, 2.4 * np.sin(4.0 * t), 3.0 * np.sin(11.0 * t))
@@ -118,7 +118,7 @@ def test_an_impossible_pier_is_refused_with_the_limit():
     assert len(error.value.messages) == 2
 
 
-def test_the_figure_shows_the_histories_over_their_units_and_each_loop_while_its_spring_is_loaded(response, tmp_path):
+def test_the_figure_shows_histories_in_units_and_loops_of_loaded_springs(response, tmp_path):
     panels = of_one(response, "title").panels
     assert [panel.y.plain for panel in panels[:4]] == ["θ/α", "θ̇/(αp)", "E/M [J/kg]", "üg/g"]
     rotation, *events = panels[0].marks
@@ -297,7 +297,7 @@ def test_strokes_of_events_stand_in_lanes_of_their_piers_beyond_the_curves(count
             assert max(high for _, high in ends) < lowest if at == 0.0 else min(low for low, _ in ends) > highest
 
 
-def test_the_largest_peak_has_its_value_on_the_side_where_there_is_room_and_ends_stand_at_the_edge():
+def test_the_largest_peak_has_its_value_where_there_is_room():
     for t, side in ((7.4, 1), (7.6, -1)):
         small, large = one_of(peak=(3.0, 0.4)), one_of(peak=(t, -0.6), look=2, moving=(0.0, 10.0))
         marks = together([small, large], "a record")[0].panels[0].marks

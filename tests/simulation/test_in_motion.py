@@ -69,7 +69,7 @@ def test_of_a_peak_within_the_motion_it_is_the_peak_and_loses_its_error_with_it(
     assert outcome.noted("chaotic", theta_max_error=None).theta_max_in_motion_error is None
 
 
-def test_a_pier_that_falls_after_its_motion_has_one_with_an_error_and_one_that_falls_before_has_no_error():
+def test_only_a_pier_that_falls_after_its_motion_has_a_peak_with_an_error():
     for end, later in ((1.0, True), (10.0, False)):
         outcome = run_to_tolerance(FIG5, RigidBase(), pulse("sine", 1.0, 1.5, dt=0.01, end=end), 1e-4)
         assert outcome.status == "overturned"

@@ -80,7 +80,7 @@ def test_a_peak_that_is_lean_is_said_to_be_with_the_rocking_before_it():
     assert f"by {leaned.theta_rocking / PIER.alpha:.4f} alpha at most, at 1." in leaned.note
 
 
-def test_who_does_not_ask_has_the_note_all_the_same_and_pays_for_it_where_the_peak_may_be_lean_only():
+def test_an_unasked_note_on_lean_costs_only_where_the_peak_may_be_lean():
     leaned, asked = (outcome_of(PADS, pulse_and_vibration(0.5), rocking=rocking) for rocking in (False, True))
     assert leaned == replace(asked, theta_rocking_error=None, theta_lean_error=None)
     assert (leaned.theta_max_is, "mostly lean" in leaned.note) == ("lean", True)
@@ -100,7 +100,7 @@ def test_where_nothing_yields_all_of_the_rotation_is_rocking(base):
     assert abs(outcome.theta_lean or 0.0) < 1e-12
 
 
-def test_rocking_and_lean_have_the_error_that_a_run_of_a_quarter_of_the_step_confirms():
+def test_the_error_of_rocking_and_lean_holds_against_a_quarter_of_the_step():
     """Of pads that yield; a fixed step has none, and where nothing yields it is that of the peak."""
     motion = pulse_and_vibration(0.5)
     outcome = outcome_of(PADS, motion, rocking=True)

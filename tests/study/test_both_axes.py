@@ -85,7 +85,7 @@ def test_devices_are_in_the_middle_of_the_other_width_with_their_stiffness():
     assert (stop.at, stop.gap_m, stop.lam) == (0.0, 0.05, pytest.approx(Stop.of(other, 50.0, 4e5).lam))
 
 
-def test_both_components_have_one_axis_and_one_factor_each_and_are_those_of_turned_records(tmp_path):
+def test_both_components_have_one_axis_and_factor_and_are_of_turned_records(tmp_path):
     for azimuth, seed, size in (("000", 1, 4.0), ("090", 2, 2.8)):
         title = f"Made-up, 1/17/1994, Station A, {azimuth}"
         write_at2(tmp_path / "records", f"RSN1_A_{azimuth}.AT2", size * wiggle(800, seed), title=title)

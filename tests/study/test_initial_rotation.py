@@ -28,7 +28,7 @@ def test_a_list_of_rotations_is_a_pier_for_each(tmp_path):
     assert (motion.name, motion.pga, motion.duration) == ("still", 0.0, 5.0)
 
 
-def test_a_rotation_beyond_alpha_is_refused_where_it_stands_and_one_in_degrees_is_translated(tmp_path):
+def test_a_rotation_beyond_alpha_is_refused_and_one_in_degrees_translated(tmp_path):
     pier = {"alpha": 0.2, "p": 2.0, "initial_rotation_rad": 0.25}
     (problem,) = problems_of(tmp_path, pier=pier, motions=STILL)
     assert "initial_rotation_rad = 0.25: must be below alpha = 0.2 rad in magnitude" in problem

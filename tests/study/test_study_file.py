@@ -181,7 +181,7 @@ def test_every_base_takes_what_flight_does_and_how_high_it_may_be(tmp_path, base
     assert "flight_limit_mm = 0: expected a number above 0" in told
 
 
-def test_a_key_that_varies_somewhere_shows_its_default_elsewhere_but_only_where_it_applies(tmp_path):
+def test_a_key_that_varies_shows_its_default_elsewhere_where_it_applies(tmp_path):
     study = study_of(
         tmp_path,
         PIER,
@@ -643,7 +643,7 @@ def test_the_example_s_comments_name_every_key_there_is():
 
 
 @pytest.mark.parametrize("name", ["example", "first_study"])
-def test_the_devices_in_comments_of_a_study_to_begin_with_have_all_their_keys_and_can_be_put_in(name):
+def test_the_devices_in_comments_of_a_first_study_can_be_put_in(name):
     """Those of the text in comments, and then the ratios that it gives instead."""
     (block,) = re.findall(
         r"(?:^#     .*\n|^#\n)+(?=\n# (?:What|---))", (CONFIGS / f"{name}.toml").read_text(), re.MULTILINE

@@ -115,7 +115,7 @@ def test_rainflow_does_not_depend_on_points_between_reversals_nor_on_pauses():
     assert [list(part) for part in rainflow([0.0, 1.0, 3.0])] == [[3.0], [1.0]]
 
 
-def test_work_of_a_linear_viscous_damper_under_a_harmonic_stroke_is_pi_c_omega_a_squared_a_cycle():
+def test_work_of_a_viscous_damper_a_harmonic_cycle_is_pi_c_omega_a_squared():
     c, omega, a, cycles = 3.0, 2.0, 0.05, 4
     t = np.linspace(0.0, cycles * 2.0 * math.pi / omega, 40_001)
     stroke, speed = a * np.sin(omega * t), a * omega * np.cos(omega * t)
@@ -210,7 +210,7 @@ def test_work_closes_the_energy_balance_of_the_run():
     assert row["damper_work_J_kg"] == pytest.approx(lost, rel=1e-5)
 
 
-def test_a_tendon_that_yields_is_strained_beyond_its_yield_strain_by_what_it_stays_longer():
+def test_a_tendon_that_yields_is_strained_beyond_yield_by_what_it_stays_longer():
     base = RigidBase(restraints=(Tendon(psi=0.1, lam=1.0, strength=0.13),))
     row = rb.simulate(FIG5, base, SHAKEN, devices_work=True).row
     assert row["tendon_yield_m"] > 0.0

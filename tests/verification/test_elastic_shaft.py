@@ -156,7 +156,7 @@ def test_modes_have_the_integrals_of_a_beam_under_a_force_at_its_top():
     np.testing.assert_allclose(cut, uncut, rtol=1e-13)
 
 
-def test_a_pier_that_stands_is_an_oscillator_and_lifts_off_at_the_moment_of_its_weight(uncompiled):
+def test_a_standing_pier_is_an_oscillator_that_lifts_off_at_its_weights_moment(uncompiled):
     """A sudden constant a deflects an undamped mode by 2 a Γ/ω²; it lifts off above a = g b/(h + λΓ + 2 g μ1 Γ/ω²)."""
     pier, base = pier_of(*TOWER), rb.RigidBase(shaft="elastic", flexural_damping=0.0)
     mode, frequency = mode_of(pier), 2.0 * math.pi / 0.9
@@ -328,7 +328,7 @@ def test_a_column_of_finite_elements_rotates_as_far_before_and_behind_an_impact(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("damping", [0.0, 0.05])
-def test_a_pier_that_only_vibrates_is_not_waited_for_nor_said_to_have_energy_for_a_rotation(damping):
+def test_a_pier_that_only_vibrates_is_not_waited_for(damping):
     """Its run ends with the quiet time; one that may still lift off goes on."""
     base, pier = rb.RigidBase(shaft="elastic", flexural_damping=damping), pier_of(*TOWER)
     run = rb.simulate(pier, base, shaken(0.2, 0.9))

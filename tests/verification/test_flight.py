@@ -174,7 +174,7 @@ def test_no_plastic_landing_gains_energy():
 
 
 @pytest.mark.parametrize("epsilon", [0.0, 0.3, 1.0])
-def test_a_landing_keeps_the_angular_momentum_about_its_pivot_and_returns_a_share_of_its_velocity(epsilon):
+def test_a_landing_keeps_angular_momentum_and_returns_a_share_of_its_velocity(epsilon):
     """I0/M θ̇ + z ẋ − x ż of the centre of mass: ẋ = H θ̇ with the key of the pivot that bears, before and after."""
     m = MODEL._replace(epsilon=epsilon)
     for y, pivot, bore in random_landings(100):

@@ -133,7 +133,7 @@ def jumps() -> Motion:
 @pytest.mark.slow
 @pytest.mark.parametrize("epsilon", [0.0, 1.0])
 @pytest.mark.parametrize("motion", [pulse("cosine", 1.0, dt=0.01, end=2.0), jumps()], ids=["full", "jumps"])
-def test_impacts_that_lose_all_or_nothing_under_motions_that_jump_follow_the_reference(motion, epsilon):
+def test_impacts_that_lose_all_or_nothing_follow_the_reference(motion, epsilon):
     """A start at full amplitude is a kick, a jump within dt a steep line: both are linear between samples.
 
     No step straddles a sample, so the peak meets twice the tolerance of 1e-6 α as under any other motion.
@@ -221,7 +221,7 @@ def dropping_ground(g_down: float, until: float, end: float) -> Motion:
 
 
 @pytest.mark.parametrize("kinematics", ["first-order", "finite"])
-def test_a_flight_of_five_seconds_is_ballistic_and_ends_on_both_pivots_at_one_instant(kinematics):
+def test_a_flight_of_five_seconds_is_ballistic_and_ends_on_both_pivots(kinematics):
     """v̈_g = −2 g for 1.5 s. Elastic springs let go at cos ω_v t = ½, with √3 g/ω_v; then polynomials: 22 m, 5.12 s.
 
     By symmetry the pier stays upright, and both pivots separate and land together. RK4 at ω_v h = 0.016: the separation
@@ -438,7 +438,7 @@ def critical_amplitude(base, low: float, high: float) -> tuple[float, float]:
     return low, high
 
 
-def test_a_rigid_block_overturns_at_the_amplitude_at_which_its_energy_reaches_the_summit():
+def test_a_rigid_block_overturns_where_its_energy_reaches_the_summit():
     """After the pulse ½ θ̇² = p² (1 − cos(α − |θ|)): the amplitude at which the reference meets that, to 1e-8.
 
     The bracket of 1e-9 is there, and the two pulses of configs/hard_cases.toml, 1e-6 either way, enclose it. Below it
@@ -460,7 +460,7 @@ def test_a_rigid_block_overturns_at_the_amplitude_at_which_its_energy_reaches_th
 
 
 @pytest.mark.slow
-def test_a_pier_on_springs_overturns_on_the_side_of_the_hair_on_which_the_reference_does():
+def test_a_pier_on_springs_overturns_on_the_side_of_the_reference():
     """Bracket of 1e-9, then 1e-6 either way (the pulses of configs/hard_cases.toml): standing at 0.9985 α, and fallen.
 
     Near the summit a difference grows by e^(t p), so the standing peak is right to the error control's 1e-4.

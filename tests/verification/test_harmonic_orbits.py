@@ -87,7 +87,7 @@ def test_harmonic_shaking_ends_in_the_steady_orbit_of_spanos_and_koh(w, amplitud
 
 
 @pytest.mark.parametrize(("w", "e"), [(3.0, 0.9), (4.0, 0.9), (6.0, 0.85)])
-def test_shaking_too_weak_to_lift_a_block_keeps_one_rocking_down_to_the_least_amplitude(w, e):
+def test_weak_shaking_keeps_a_block_rocking_down_to_the_least_amplitude(w, e):
     """A = 2 sets it rocking; at 1.1 of the least one it goes on in the orbit, at 0.98 it comes to rest. 1e-3: by 200 samples."""
     pier, samples = rb.Pier(SLENDER, 1.0), 200
     t = np.arange(300 * samples + 1) * 2.0 * math.pi / w / samples

@@ -104,7 +104,7 @@ def test_amplitudes_of_overturning_approach_the_slender_limit_as_alpha_squared(s
     assert gaps[1] / gaps[2] == pytest.approx(4.0, abs=0.05)
 
 
-def test_a_one_sine_overturns_with_and_without_an_impact_and_spares_the_block_in_between():
+def test_a_one_sine_overturns_with_and_without_impact_and_spares_in_between():
     """Four amplitudes around the three transitions: survival, fall after an impact, survival, fall outright."""
     assert [overturns("sine", SLENDER, amplitude, 400) for amplitude in (3.0, 5.0, 6.7, 7.2)] == [
         False,

@@ -210,7 +210,7 @@ def test_devices_at_the_base_act_below_all_sections():
 
 
 @pytest.mark.parametrize("name", BASES)
-def test_forces_at_the_foot_are_those_of_the_ground_turned_into_the_axes_of_the_shaft(name):
+def test_forces_at_the_foot_are_the_grounds_in_the_axes_of_the_shaft(name):
     """Shear and normal force of ``forces`` with their moment about the middle of the footing, from which the foot has moved."""
     rng = np.random.default_rng(7)
     pier, base = random_pier(rng), BASES[name]
@@ -237,7 +237,7 @@ def test_forces_at_the_foot_are_those_of_the_ground_turned_into_the_axes_of_the_
         assert np.allclose(found.moment[0][rocking], (side * pier.half_width * found.axial[0])[rocking], atol=1e-9)
 
 
-def test_the_top_of_a_free_block_bears_nothing_and_that_of_a_pier_what_its_deck_weighs_and_moves():
+def test_a_free_top_bears_nothing_and_one_under_a_deck_its_weight_and_inertia():
     rng = np.random.default_rng(8)
     block = rb.Pier.rectangle(width_m=4.0, height_m=20.0)
     run, rows = recorded(block, BASES["rigid"], random_motion(rng, block, 0.5), substeps=6)
@@ -316,7 +316,7 @@ def error_at_foot(run, outcome, error):
     return row["sections_error"]
 
 
-def test_forces_in_sections_of_a_chaotic_run_and_of_an_odd_number_of_steps_have_no_error():
+def test_sections_of_a_chaotic_run_or_of_odd_steps_have_no_error():
     rng = np.random.default_rng(10)
     run, _ = recorded(random_pier(rng), BASES["rigid"], random_motion(rng, random_pier(rng), 0.5), substeps=8)
     for substeps, chaotic, claimed in ((8, None, True), (8, True, False), (7, None, False)):
@@ -325,7 +325,7 @@ def test_forces_in_sections_of_a_chaotic_run_and_of_an_odd_number_of_steps_have_
     assert error_at_foot(run, outcome.changed(substeps=8, chaotic=None), error=False) is None
 
 
-def test_a_motion_that_begins_with_a_jump_bends_the_foot_by_no_more_than_its_normal_force_can():
+def test_a_motion_with_a_jump_bends_the_foot_no_more_than_its_normal_force_can():
     """All of N is at the pivot: |moment| = b N, though 0.5 g at once would ask for h ü_g, twice as much."""
     pier = rb.Pier.rectangle(width_m=3.0, height_m=15.0)
     motion = rb.pulse("cosine", name="cosine", amplitude=0.5 * G, period=0.5, dt=0.01, duration=2.0)

@@ -129,7 +129,7 @@ def test_free_rocking_takes_the_period_of_its_amplitude(base, amplitude_g, withi
     assert periods == pytest.approx(free.periods(amplitudes), rel=within)
 
 
-def test_rocking_on_rigid_ground_takes_the_period_and_loses_by_impacts_what_the_sheet_says():
+def test_rocking_on_rigid_ground_has_the_period_and_losses_of_the_sheet():
     """After two impacts the amplitude is down by exp(−2π ζ); 1e-3: zero crossings between rows, straight."""
     base = rb.RigidBase(restraints=(rb.Tendon(psi=0.3, lam=0.5),))
     free, measured = FreeRocking(TOWER, base), swings(base, 0.4)

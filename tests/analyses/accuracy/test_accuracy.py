@@ -281,7 +281,7 @@ FIXED = OWN | {"method": "located", "substeps": "2", "tolerance": "", "error_max
     ({"reference_change": "1e-5"}, "", ["the references themselves are known to 1e-05 only"]),
     ({"error_max": ""}, "", ["no run was measured with it that stands as its reference does"]),
 ])  # fmt: skip
-def test_the_page_opens_with_error_and_time_of_the_study_and_marks_what_they_leave_out(tmp_path, change, words, marked):
+def test_the_page_opens_with_error_and_time_and_marks_omissions(tmp_path, change, words, marked):
     with open(tmp_path / "accuracy.csv", "w", encoding="utf-8", newline="") as file:
         rows = csv.DictWriter(file, COLUMNS)
         rows.writeheader()

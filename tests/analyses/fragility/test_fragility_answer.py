@@ -84,7 +84,7 @@ def test_a_limit_that_no_record_reaches_has_no_median_and_that_is_no_flaw(cases,
     assert not marked
 
 
-def test_undecided_runs_at_the_highest_level_are_said_beside_a_limit_that_no_decided_record_reaches():
+def test_undecided_runs_at_the_highest_level_are_said_beside_the_limit():
     (line,), marked = said(curve(exceeded=(0, 0, 0, 0), undecided=(0, 0, 4, 10)))
     assert line == "Overturning is not reached up to PGV 1 m/s by any of 10 records; 14 of 40 runs undecided."
     assert marked == ["14 of 40 runs undecided"]
@@ -100,12 +100,12 @@ def test_without_a_decided_run_nothing_is_claimed():
     assert lost.startswith("1 of 2 curves could not be fitted")
 
 
-def test_without_medians_the_weakest_is_where_half_of_the_decided_records_exceed_the_limit_first():
+def test_without_medians_the_weakest_case_is_where_half_exceed_first():
     pads, rock = curve("pads", exceeded=(4, 4, 4, 5)), curve("rock", exceeded=(3, 1, 4, 3), undecided=(0, 0, 2, 0))
     assert said(pads, rock)[0][0].startswith("Overturning has no median for rock")
 
 
-def test_too_many_undecided_runs_stand_in_the_sentence_with_the_median_that_they_allow():
+def test_too_many_undecided_runs_are_said_with_the_median_that_they_allow():
     open_ = {"says_little": True, "median_undecided": [0.3, None], "undecided": (0, 5, 5, 0)}
     (line,), marked = said(curve(median=0.8, **open_))
     assert (
@@ -222,7 +222,7 @@ def test_names_of_limits_and_hazards_are_text_and_no_elements():
         assert "<b>" not in answer
 
 
-def test_a_record_that_exceeds_between_the_levels_only_does_not_count_as_withstanding():
+def test_a_record_that_exceeds_between_levels_does_not_count_as_withstanding():
     (line,), _ = said(curve(exceeded=(0, 0, 0, 0), capacities=[[0.5, 0.6], [2.0, None]]), method="ida")
     assert line == "Overturning has no median: no curve could be fitted."
 

@@ -77,7 +77,7 @@ def test_records_that_never_overturned_are_censored_as_in_a_truncated_analysis()
     assert found.most_likely_dispersion == pytest.approx(math.exp(searched.x[1]), rel=1e-6)
 
 
-def test_intervals_end_where_the_profile_likelihood_has_fallen_as_far_as_students_quantile_says():
+def test_intervals_end_where_the_profile_likelihood_meets_students_quantile():
     """By n/2 ln(1 + t²/n) with n = 320 records; β times that of the sample over that of the likelihood.
 
     The profile over the other parameter is by a bounded search, its ends by root finding; 1e-4: between two of 360 rays.
@@ -125,7 +125,7 @@ def test_intervals_hold_the_truth_about_as_often_as_they_say():
 
 
 @pytest.mark.slow
-def test_the_same_records_at_every_level_keep_the_curve_and_do_not_count_as_many_suites():
+def test_the_same_records_at_every_level_do_not_count_as_many_suites():
     """100 suites of 30 records at 12 levels: as fresh ones they would hold the median about 60 times in 100, not 95."""
     rng = np.random.default_rng(5)
     levels = np.linspace(0.4, 1.8, 12)
@@ -189,7 +189,7 @@ def test_intervals_that_the_data_leave_open_are_infinite():
 
 
 @pytest.mark.parametrize(("slope", "rises"), [(3e-3, True), (3e-4, False)])
-def test_a_share_that_hardly_grows_has_a_median_up_to_a_thousand_times_what_was_sampled(slope, rises):
+def test_a_share_that_hardly_grows_has_a_median_up_to_a_thousand_times_the_levels(slope, rises):
     """Two levels are fitted exactly: z = ±slope at one deviation of ln x to either side of its mean."""
     levels, records = np.array([0.5, 2.0]), np.full(2, 1e9)
     found = fit(fresh_records(levels, records, np.round(records * norm.cdf([-slope, slope]))))

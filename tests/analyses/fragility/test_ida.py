@@ -64,7 +64,7 @@ def test_bisection_goes_in_waves_and_closes_every_bracket_to_the_tolerance():
     assert waves == [["a", "b"]] * 7  # ln 2 / ln 1.01 = 69.7 < 2⁷
 
 
-def test_the_hunt_finds_a_window_below_the_first_level_that_exceeds_and_leaves_other_records_alone():
+def test_the_hunt_finds_a_window_below_the_first_level_that_exceeds():
     """Both overturn from 0.243 to 0.25 and from 0.7 on; a step of 2 % is narrower than that window, the levels are not."""
     seen = []
 
@@ -95,7 +95,7 @@ def test_bisection_goes_on_beyond_what_is_undecided_to_both_of_its_ends():
     assert one.decided == (one.if_exceeded.low, one.if_withstood.high)
 
 
-def test_one_undecided_level_on_the_way_does_not_move_the_capacity_that_the_bisection_finds():
+def test_an_undecided_level_does_not_move_the_capacity_of_the_bisection():
     found, _ = bisected({"a": {0.2: WITHSTOOD, 0.4: UNDECIDED, 0.8: EXCEEDED}}, 1e-3, lambda _, x: 2 if x >= 0.7 else 0)
     one = found["a"]
     assert one.if_withstood.low < 0.7 <= one.if_withstood.high == one.decided.high

@@ -184,7 +184,7 @@ def curve_of(fitted, readings=None):
 
 
 @pytest.mark.parametrize(("levels", "is_open"), [([0.25, 0.5], True), ([0.25], False)])
-def test_an_upper_bound_above_the_rate_of_the_lowest_point_says_nothing_where_there_are_two(levels, is_open):
+def test_an_upper_bound_above_the_rate_of_the_lowest_point_says_nothing(levels, is_open):
     """ν ∝ x⁻² either way, and a region that reaches down to a median of 0.05: ν(θ) exp(2β²)."""
     rates = [0.25**2 / 475 / x**2 for x in levels]
     hazard = HazardCurve(levels, rates, slope=None if len(levels) > 1 else 2.0)

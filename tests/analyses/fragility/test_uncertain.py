@@ -178,7 +178,7 @@ def test_two_inputs_that_go_together_contribute_what_they_do_as_one():
 
 
 @pytest.mark.parametrize("known", [20, 19])
-def test_inputs_that_leave_nothing_to_chance_have_no_error_where_enough_capacities_are_known(known):
+def test_inputs_without_chance_have_no_error_if_enough_capacities_are_known(known):
     scores = np.random.default_rng(1).standard_normal((25, 2))
     x, correlation = 0.5 * np.exp(scores @ [0.6, -0.2]), np.array([[1.0, 0.5], [0.5, 1.0]])
     low, high = x / 1.01, np.where(np.arange(25) < known, 1.01 * x, np.inf)
@@ -199,7 +199,7 @@ def test_few_runs_do_not_tell_what_inputs_contribute():
     assert contribution(*made_capacities(20, np.random.default_rng(1)), np.eye(2)).dispersion > 0.0
 
 
-def test_an_amplitude_of_overturning_proportional_to_a_lognormal_slenderness_is_lognormal(tmp_path):
+def test_overturning_in_proportion_to_a_lognormal_slenderness_is_lognormal(tmp_path):
     """Slender block under a half-sine, e = 0.9, ω_p/p = 5: it overturns from 3.289147 α g on (test_overturning).
 
     With α lognormal each capacity is that with its own α, all of the dispersion is that of α, and the fit is that of the drawn

@@ -135,7 +135,7 @@ def test_undecided_runs_alone_make_no_curve_but_an_open_interval(tmp_path):
     assert Readings(NoCurve("none"), beyond).medians == (0.0, beyond.median)
 
 
-def test_a_check_for_which_flight_and_failure_are_infinite_leaves_them_undecided_here(tmp_path):
+def test_a_check_with_infinite_flights_and_failures_leaves_them_undecided(tmp_path):
     path = written(tmp_path, STRIPES)
     text = path.read_text(encoding="utf-8").replace(
         'at_most = 0.5\n', 'at_most = 0.5\nflight = "infinite"\nfailed = "value"\n'

@@ -42,7 +42,7 @@ def test_a_share_is_the_part_of_the_window_that_is_in_an_island():
     assert found.undecided == (0, 0, 0, 0, 0)
 
 
-def test_the_curve_through_the_shares_has_the_greatest_binomial_likelihood_of_fractional_counts():
+def test_the_curve_has_the_greatest_binomial_likelihood_of_its_counts():
     """Nelder–Mead over θ and β; 1e-5: how far such a search goes."""
     rng = np.random.default_rng(1)
     edges = np.exp(rng.normal(-0.2, 0.3, 12))
@@ -59,7 +59,7 @@ def test_the_curve_through_the_shares_has_the_greatest_binomial_likelihood_of_fr
     assert (found.fitted.median, found.fitted.most_likely_dispersion) == pytest.approx(tuple(searched.x), rel=1e-5)
 
 
-def test_undecided_runs_are_in_no_share_and_records_without_a_decided_run_do_not_count():
+def test_undecided_runs_are_in_no_share_nor_records_without_a_decided_one():
     one, other, out = (looks_of(lambda x: x > 0.7) for _ in range(3))
     for i, x in enumerate(samples(1.0, 0.02)):
         one[x] = UNDECIDED if i < 5 else EXCEEDED if i < 10 else WITHSTOOD
@@ -114,7 +114,7 @@ def test_a_finer_hunt_lowers_the_first_exceedances_and_leaves_the_shares(tmp_pat
     assert fine.windows.above(fine.fitted) == pytest.approx(1 / 0.9 - 1, abs=0.03)
 
 
-def test_the_default_hunt_goes_in_steps_of_a_quarter_of_a_percent_and_each_capacity_says_so(tmp_path):
+def test_the_default_hunt_has_steps_of_a_quarter_percent_and_says_so(tmp_path):
     curve, spec, _ = made_up(tmp_path)
     shares = [cap.decided.high / CAPACITIES[m] for (_, m), cap in curve.capacities if 0.4 < 0.9 * CAPACITIES[m] < 1.19]
     assert 15 < len(shares) < 30

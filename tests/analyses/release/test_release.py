@@ -134,7 +134,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(block, spread, reading):
     assert np.mean([fit.high - fit.low for fit in tests]) / (2 * 1.96 * scatter) == pytest.approx(1.2, abs=0.3)
 
 
-def test_times_that_share_the_error_of_the_first_are_fitted_as_a_line_whose_start_was_measured_too():
+def test_times_with_the_error_of_the_first_are_fitted_as_a_line():
     """t_k = k θ without scatter from impact to impact: slope and standard error of least squares with a free intercept."""
     number, random = np.arange(1.0, 9.0), np.random.default_rng(5)
     misses = number + 0.3 * random.standard_normal(8) - 0.3 * random.standard_normal()
@@ -354,7 +354,7 @@ def test_a_file_of_measured_values_is_refused_with_its_line(tmp_path, content, w
     assert any(words in problem for problem in error.value.messages), error.value.messages
 
 
-def test_an_amplitude_in_a_file_that_cannot_be_is_reported_where_the_study_names_the_file(tmp_path):
+def test_an_impossible_amplitude_in_a_file_is_reported_where_it_is_named(tmp_path):
     (tmp_path / "a.csv").write_text(f"impact_s,amplitude_rad\n0.3,{START}\n", encoding="utf-8")
     study = rb.Study.from_toml(rb.Study.from_dict(tomllike(measured="a.csv")).text, tmp_path / "study.toml")
     (line,) = [number for number, text in enumerate(study.text.splitlines(), 1) if text.startswith("measured")]
@@ -412,7 +412,7 @@ def test_the_page_opens_with_the_value_and_marks_what_puts_it_in_doubt(tmp_path)
         assert ("undecided" in first) == bool(doubt)
 
 
-def test_the_density_of_ratios_and_the_parts_of_the_posterior_are_those_of_residuals_without_the_parameters():
+def test_the_density_of_ratios_is_that_of_residuals_without_parameters():
     """Given the ratios, whitened least squares; their density is that of contrasts to which the parameters do not matter, times
     the root of its Fisher information (Jeffreys)."""
     random = np.random.default_rng(2)

@@ -191,7 +191,7 @@ def varying(uniform, *, cases=(TIED,), pier=PIER, **more):
     return study_text(pier=pier, pulses=[SINE | {"duration_s": 1.0}], cases=cases, sensitivity=asked)
 
 
-def test_parameters_of_dampers_tendons_and_damped_supports_answer_as_runs_of_their_own(tmp_path):
+def test_parameters_of_devices_and_damped_supports_answer_as_separate_runs(tmp_path):
     uniform = {
         "zeta": [0.02, 0.1], "damper": {"f": [0.01, 0.1]}, "damper_2": {"nu": [0.1, 0.5]}, "tendon": {"psi": [0.1, 0.4]},
     }  # fmt: skip
@@ -394,7 +394,7 @@ def test_another_statistic_of_finished_runs_takes_no_run(folder, tmp_path, monke
     assert (out / "sensitivity.csv").read_bytes() != (folder / "sensitivity.csv").read_bytes()
 
 
-def test_an_input_vertical_without_any_vertical_component_is_said_to_have_nothing_to_change(folder):
+def test_an_input_vertical_without_vertical_components_is_said_to_do_nothing(folder):
     info = json.loads((folder / "sensitivity.json").read_text(encoding="utf-8"))
     told = section(Contents(folder, info["study"]))
     assert "No record has a vertical component" in told

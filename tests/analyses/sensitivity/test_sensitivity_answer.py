@@ -33,7 +33,7 @@ def said(cases, **more):
     return [html.unescape(re.sub("<.*?>", "", line)).replace("\u00a0", " ") for line in lines], marked
 
 
-def test_inputs_are_said_in_the_order_of_their_total_index_and_the_greatest_swing_by_itself():
+def test_inputs_are_ordered_by_total_index_and_the_greatest_swing_stands_apart():
     """The order of the table is that of the swings, in which a choice comes first here."""
     (line,), marked = said(
         {
@@ -100,7 +100,7 @@ def test_of_many_cases_it_is_said_in_how_many_an_input_comes_first():
     )
 
 
-def test_up_to_four_inputs_are_named_of_those_that_matter_and_one_at_the_threshold_is_among_them():
+def test_up_to_four_inputs_that_matter_are_named():
     inputs = [(name, 0.2, 0.01, 0.1, 0.3) for name in ("p", "beta", "eta", "epsilon", "alpha")]
     (line,), _ = said({"rock": inputs})
     assert line.count(" ± ") == 4
@@ -112,7 +112,7 @@ def test_up_to_four_inputs_are_named_of_those_that_matter_and_one_at_the_thresho
     assert "n may matter, too (0.05 at most)" in line
 
 
-def test_an_interval_that_just_reaches_another_does_not_tell_them_apart_and_half_a_total_is_narrow_enough():
+def test_intervals_that_touch_do_not_tell_inputs_apart():
     apart = [("p", 0.5, 0.125, 0.1, 0.3), ("beta", 0.25, 0.125, 0.1, 0.3)]
     assert said({"rock": apart})[1] == ["more samples would tell p and β apart"]
     assert said({"rock": [apart[0], ("beta", 0.25, 0.0625, 0.1, 0.3)]})[1] == []
@@ -127,7 +127,7 @@ def test_three_cases_have_their_sentences_and_four_share_one_and_one_motion_is_o
     assert "none" not in line
 
 
-def test_an_input_that_moves_nothing_alone_has_no_sentence_and_one_that_lowers_the_answer_has():
+def test_only_an_input_that_moves_the_answer_alone_has_a_sentence():
     (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.2, 0.2)]})
     assert line.endswith("(total Sobol index 0.90 ± 0.10).")
     (line,), _ = said({"rock": [("p", 0.9, 0.1, 0.3, 0.1), ("n", 0.1, 0.1, 0.25, 0.2)]})

@@ -22,7 +22,7 @@ def suite(*rows, count=3, axis="two_pi_over_p_s", **more):
     return pd.DataFrame(points)
 
 
-def test_the_largest_piers_that_overturn_are_those_of_the_worst_panel_for_each_slenderness():
+def test_the_largest_piers_that_overturn_are_of_the_worst_panel():
     """On rock those with α = 0.1 overturn up to 6 s, on pads those with α = 0.2; a smaller one that stands is none of them."""
     sentences, remarks = of_spectra(
         INFO,
@@ -49,7 +49,7 @@ def test_where_nothing_overturns_that_is_said_and_one_motion_has_no_median(motio
     assert ("median" in greatest, "16 to 84 %" in greatest) == (motions > 1, motions > 1)
 
 
-def test_where_the_largest_overturns_larger_ones_may_and_without_a_standing_one_there_is_no_rotation():
+def test_larger_piers_than_the_largest_that_overturns_may_overturn_too():
     sentences, remarks = of_spectra(INFO, suite(("rock", 0.1, 4, 3, math.inf), ("rock", 0.1, 8, 2, math.inf)))
     assert len(sentences) == 1
     assert remarks == ["The largest piers that were run overturn: larger ones may, too."]

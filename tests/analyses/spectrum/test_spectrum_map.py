@@ -69,7 +69,7 @@ def test_a_one_sine_has_both_modes_of_zhang_and_makris_at_the_closed_forms():
         assert all(region.high_error <= 0.5 * TOLERANCE for region in column[:-1])
 
 
-def test_a_half_sine_overturns_a_slender_block_outright_at_the_closed_form_for_every_frequency():
+def test_a_half_sine_overturns_a_slender_block_at_the_closed_form():
     """√(A² − 1) + A exp(−(π − asin 1/A)/W) = W, linearised (THEORY.md, Rocking spectra, overturning maps, sensitivity)."""
     spec = MapSpec("half-sine", "half-sine", (2.0, 6.0), (1.05, 6.0), 5, 12, TOLERANCE)
     by_frequency = found(spec, Pier(SLENDER, 1.0), RigidBase(E))
@@ -128,7 +128,7 @@ def test_a_third_outcome_on_the_way_gets_boundaries_of_its_own():
     assert [each.high for each in regions(columns[0.0])] == pytest.approx([0.4, 0.6, 1.0], abs=1e-6)
 
 
-def test_a_window_between_two_ways_of_overturning_is_found_though_both_have_one_outcome():
+def test_a_window_between_two_ways_of_overturning_is_found():
     def ends(points):
         return [End("stands") if 0.50 < a < 0.51 else End("falls", 1 if a < 0.505 else 2) for _, _, a in points]
 
@@ -136,7 +136,7 @@ def test_a_window_between_two_ways_of_overturning_is_found_though_both_have_one_
     assert outcomes(columns[0.0]) == ["falls", "stands", "falls"]
 
 
-def test_what_is_narrower_than_the_tolerance_belongs_to_the_boundary_whose_error_says_so():
+def test_islands_below_the_tolerance_belong_to_the_boundary_and_its_error():
     points = [(a, End(outcome)) for a, outcome in [(0.0, "a"), (0.4, "a"), (0.401, "b"), (0.402, "c"), (1.0, "c")]]
     assert outcomes(points) == ["a", "b", "c"]
     below, above = regions(points, 0.002)
@@ -150,7 +150,7 @@ def test_what_is_narrower_than_the_tolerance_belongs_to_the_boundary_whose_error
     assert [each.high for each in regions(exactly, 2.0)] == [0.3125, 0.5625, 0.875]  # where all are narrow
 
 
-def test_frequencies_are_bisected_to_the_width_where_the_outcomes_change_and_nowhere_else():
+def test_frequencies_are_bisected_only_where_outcomes_change():
     """A slit that ends at a frequency of π: straight boundaries elsewhere need no column."""
     columns, _ = searched(
         lambda f, a: "falls" if a > 1.0 + 0.1 * f and not (f < math.pi and 1.9 < a < 2.2) else "stands",
@@ -233,9 +233,7 @@ STUDY = study_text(
 )  # fmt: skip
 
 
-def test_the_command_writes_regions_and_goes_on_after_a_kill_in_the_middle_of_the_bisection(
-    tmp_path, monkeypatch, capsys
-):
+def test_the_command_writes_regions_and_goes_on_after_a_kill(tmp_path, monkeypatch, capsys):
     """Ctrl-C in the third wave; undisturbed and interrupted tables have the same bytes."""
     write_study(tmp_path, STUDY)
     command = ["spectrum", str(tmp_path / "study.toml"), "--jobs", "1", "--out"]
