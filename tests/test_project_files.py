@@ -83,3 +83,14 @@ def test_no_test_has_a_name_of_more_than_80_characters():
     names = [name for text in texts for name in re.findall(r"def (test_\w+)", text)]
     assert len(names) > 2000
     assert [name for name in names if len(name) > 80] == []
+
+
+@pytest.mark.parametrize(
+    ("subject", "passes"), [("Say it once", True), ("x" * 72, True), ("x" * 73, False), ("", False)]
+)
+def test_the_hook_of_commits_takes_subjects_of_up_to_72_characters(tmp_path, subject, passes):
+    hooks = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
+    (entry,) = re.findall(r"id: subject\n.*\n +entry: (.+)", hooks)
+    message = tmp_path / "message"
+    message.write_text(f"{subject}\n\nA body of any length: {'y' * 100}\n", encoding="utf-8")
+    assert (subprocess.run([*shlex.split(entry), str(message)], check=False).returncode == 0) == passes
