@@ -8,8 +8,8 @@ from studies import PADS, RIGID, SINE, study_text, write_study
 
 import rockbatch as rb
 from rockbatch.common.errors import InputError
+from rockbatch.observers.shocks import section as shocks
 from rockbatch.reporting.finished import read
-from rockbatch.reporting.sections import shocks
 from rockbatch.results.shocks import SHOCKS
 
 STRONG = SINE | {"name": "strong", "amplitude_g": 2.0, "period_s": 2.0}  # overturns the pier
