@@ -587,7 +587,7 @@ def test_results_of_others_open_no_file_that_they_name(tmp_path):
     info = json.loads(file.read_text(encoding="utf-8"))
     del info["study"]["checks"]
     file.write_text(json.dumps(info), encoding="utf-8")
-    with pytest.raises(InputError, match=r"run\.json does not keep .*limits\.toml; run the study again"):
+    with pytest.raises(InputError, match=r"run\.json has no copy of .*limits\.toml; run the study again"):
         rb.check(tmp_path / "out")
 
 

@@ -241,7 +241,7 @@ def test_the_command_and_the_page_say_it_first_whatever_the_rules(tmp_path, caps
     )
     assert [row[0] for row in page.tables["answer"]] == ["Case", "rigidnot decided, under a suite that fails"]
     assert "suite to target" in [row[0] for row in page.tables["checks"]]
-    assert ": below the 0.9 that is asked for." in page.text
+    assert ": below the 0.9 required." in page.text
     both = Page(rb.report(met, below, out=tmp_path / "two.html").path.read_text(encoding="utf-8")).text
     assert both.index("✓ Every check passes") < both.index("✗ The suite is below its target.")
 

@@ -178,7 +178,7 @@ def test_the_answer_says_for_which_peaks_an_error_is_known_and_which_runs_have_r
     assert "30 runs, all end standing" in page(read(tmp_path, ()))
     write_results(tmp_path, changes={("SYL360", "1"): {"theta_max_error": ""}})
     told = Page(section_of(tmp_path, answer)).text
-    assert "(0.0001 α allowed); of one run it is not known." in told
+    assert "(0.0001 α allowed); unknown in one run." in told
     assert "remarks" not in told
     write_results(tmp_path, numerics={"tolerance": None, "substeps": 4, "quiet_s": 2.0})
     assert (

@@ -437,7 +437,7 @@ def test_a_response_is_found_by_whatever_distinguishes_it_from_the_others(result
         ({"record": "weak", "case": "rigid", "alpha": 0.3}, r"no history with alpha = 0\.3; there are 0\.2; 0\.25"),
         (
             {"polarity": "+", "beta": 50},
-            "beta: does not distinguish runs; choose by record, case, polarity, scale, alpha, spring",
+            "beta: not a key of runs; choose by record, case, polarity, scale, alpha, spring",
         ),
         (
             {"record": "weak", "case": "rigid", "alpha": 0.2},
