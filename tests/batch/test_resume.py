@@ -184,7 +184,7 @@ def test_an_interrupt_says_what_is_kept_and_the_same_command_goes_on(study, tmp_
     assert (out / "peaks.csv").read_bytes() == undisturbed
     assert json.loads((out / "run.json").read_text())["kept"] == kept // 2
     assert main(["report", str(out)]) == 0
-    assert f"{kept // 2} runs had been finished before" in (out / "report.html").read_text(encoding="utf-8")
+    assert f"{kept // 2} runs had been finished earlier" in (out / "report.html").read_text(encoding="utf-8")
 
 
 @unix
@@ -335,7 +335,7 @@ def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(study, tm
     assert (
         main(["report", str(out), "--out", str(tmp_path / "page.html")]) == 0
     )  # its words are shown, and that is told
-    assert "it was edited, or is damaged; what it says now is shown" in capsys.readouterr().err
+    assert "it was edited, or is damaged; its present values are shown" in capsys.readouterr().err
     assert main([*command, "--fresh"]) == 0
     assert (out / "peaks.csv").read_bytes() == undisturbed
 
