@@ -110,6 +110,7 @@ def _tried(
     stop, begun = Stop(), 0
 
     def carried_out(share: Sequence[int]) -> list[Outcome | None]:
+        """Simulate the runs of one thread; None for those stopped."""
         return outcomes_of([runs[i] for i in share], study.numerics, observers, stop)
 
     with listener.progress(len(chosen)) as progress, ThreadPoolExecutor(jobs) as pool:

@@ -296,6 +296,7 @@ class Journal:
         return Written(rows, digest.hexdigest())
 
     def _lines_in_order(self, extra_rows: Iterable[Mapping[str, object]]) -> Iterator[bytes]:
+        """Yield the lines of the table: head, finished runs in rising order, extra rows."""
         yield _encoded(csv_line(self.columns[: len(self.columns) - len(self.beside)]))
         with os.fdopen(os.dup(self._rows.file.fileno()), "rb", BUFFER) as buffered:
             for number in self:
@@ -312,6 +313,7 @@ class Journal:
         return (_encoded(f"{line}\n") for line in csv_lines([columns.get(name, empty) for name in self.columns]))
 
     def _add(self, rows: Iterable[tuple[int, bytes]]) -> None:
+        """Append rows as one block, and index them."""
         block = bytearray()
         places = []
         for number, row in rows:
@@ -324,6 +326,7 @@ class Journal:
             self._rows.remember(*place)
 
     def _append(self, block: bytes | bytearray) -> None:
+        """Write a block at the end of the file and onto the disk."""
         with naming_full_disk(self.path, f"the {self._rows.count} rows that are finished are kept"):
             self._rows.file.seek(self._rows.end)
             rest = memoryview(block)

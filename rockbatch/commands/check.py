@@ -162,6 +162,7 @@ def _numbers(verdicts: Sequence[Verdict]) -> list[str]:
 
 
 def _cells(verdict: Verdict) -> tuple[str, ...]:
+    """Return the cells of a verdict under the heads of :func:`_numbers`."""
     return (
         wording.name_of(verdict),
         str(verdict.records) if verdict.records else "",

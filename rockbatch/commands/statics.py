@@ -76,6 +76,7 @@ def rotations(sheet: Statics) -> str:
         return [format(scale * value, form) for value in np.interp(angles, curve.theta, values)]
 
     def of_swings(values: Array, form: str) -> list[str]:
+        """Format values at the amplitudes of swings; "" at other angles and for NaN."""
         known = dict(zip(swings.amplitude, values, strict=True))
         return ["" if np.isnan(known.get(theta, np.nan)) else format(known[theta], form) for theta in angles]
 

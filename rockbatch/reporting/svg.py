@@ -264,6 +264,7 @@ def _room_left(panel: Panel) -> float:
 
 
 def _panel(box: Box, captioned: bool) -> Iterator[Markup]:
+    """Draw the marks of a panel, areas behind its frame, the others before it, and its labels."""
     panel = box.panel
     behind = [mark for mark in panel.marks if isinstance(mark, Span | Area)]
     named = [mark for mark in panel.marks if isinstance(mark, Polyline) and mark.name and panel.reads]
@@ -390,6 +391,7 @@ def _(mark: Points, box: Box) -> Markup:
 
 
 def _error_bars(mark: Points, box: Box) -> Iterator[Markup]:
+    """Draw the positive errors of points as bars, clipped to the axis."""
     axis, errors = box.panel.y, np.zeros(len(mark.x)) if mark.error is None else mark.error
     for x, y, error in zip(mark.x, mark.y, errors, strict=True):
         if error > 0.0:

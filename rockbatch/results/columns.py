@@ -114,6 +114,7 @@ def read_cells(cells: Mapping[str, str]) -> dict[str, float | str | None]:
 
 
 def _value(name: str, text: str) -> float | str | None:
+    """Convert a cell of column ``name``; words of a varied key stay."""
     if name in TEXTS:
         return text
     if text == "":
@@ -149,7 +150,7 @@ NEEDED = (
 
 
 def given_table(table: object, varied: Sequence[str]) -> "pd.DataFrame":
-    """Return a user's rows of peaks.csv, filtered or from ``pandas.read_csv``, with the column types of :func:`as_table`.
+    """Return a user's rows of peaks.csv, filtered or from ``pandas.read_csv``, with "" for missing texts and numbers as floats.
 
     Raises ``InputError`` if it is no DataFrame, lacks a column of :data:`NEEDED`, has words for numbers, or repeats a run.
     """

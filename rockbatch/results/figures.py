@@ -148,6 +148,7 @@ def distributions_of_all(results: Labelled, count: str) -> Figure:
 
 
 def _distribution(words: str, runs: "pd.DataFrame", series: Sequence[Series], count: str, eventful: bool) -> Panel:
+    """Return a panel with the distribution of each foundation's peaks; ``eventful`` adds a band for runs without a peak."""
     values, status = runs["theta_max_over_alpha"].to_numpy(np.float64), runs["status"].to_numpy(object)
     counted_as = counts_as(Rows(runs), count)[0]
     top = 1.04 * float(np.nanmax(values[status == "ok"], initial=0.0)) or 1.0

@@ -75,6 +75,7 @@ def attribute(item: "h5py.Group", name: str) -> Any:
 
 
 def _member(group: "h5py.Group", name: str) -> "h5py.h5g.GroupID | h5py.h5d.DatasetID":
+    """Return the object ``name`` of a group by a hard link; raise ``ValueError`` for other links."""
     encoded = _encoded(name)
     if not group.id.links.exists(encoded):
         raise ValueError(f"{name} is missing")

@@ -170,6 +170,7 @@ def _group_name(number: int) -> str:
 
 
 def _write(group: "h5py.Group", response: Response) -> None:
+    """Write a response into its group."""
     _set(group, {name: getattr(response, name) for name in _OF_RUN})
     _set(group.create_group("varied"), response.columns)
     parts = json.dumps(response.pier.parts) if response.pier.parts else None
@@ -280,6 +281,7 @@ class Responses(Sequence[Response]):
             plain.seek(0)
 
     def _check(self, file: "h5py.File") -> None:
+        """Raise ``InputError`` unless the file holds the histories of the run in ``info``."""
         if attribute(file, "format") != FORMAT:
             raise _NotTheseError(f"{self.path}: not the histories of a study; start `rockbatch run` again")
         created = attribute(file, "created")
@@ -291,6 +293,7 @@ class Responses(Sequence[Response]):
 
 
 def _read(group: "h5py.Group") -> Response:
+    """Read a response from its group; raise ``ValueError`` for inconsistent data."""
     base = attributes_of(group_in(group, "base"))
     kind = _BASES[base.pop("name")]
     if "restraints" in base:

@@ -146,6 +146,7 @@ def _as_input_error(path: Path, line: str, kind: str, *damages: type[Exception])
 
 
 def _read_info(path: Path) -> dict[str, Any]:
+    """Read run.json; raise ``InputError`` with every part that does not fit :data:`SHAPE`."""
     with _as_input_error(path, ":1", "JSON", ValueError, RecursionError):
         info: Any = _legible(json.loads(read_text(path)))
     misfits = list(unfit(info, SHAPE, MOST_PROBLEMS))
@@ -167,6 +168,7 @@ def _legible(value: Any) -> Any:
 
 
 def _read_peaks(path: Path, varied: Sequence[str]) -> "pd.DataFrame":
+    """Read peaks.csv with the types of its columns; raise ``InputError`` with every bad cell and its line."""
     with _as_input_error(path, ":1", "a table", UnicodeDecodeError, csv.Error), opened_text(path) as file:
         head = next(csv.reader(file), [])
     if missing := [name for name in (*names(FIXED), *varied) if name not in head]:

@@ -54,6 +54,7 @@ def fits(value: object, shape: object) -> bool:
 
 
 def _unfit(value: object, shape: object, place: str) -> Iterator[Misfit]:
+    """Yield the parts of ``value`` that do not fit; ``place`` is its path, "" for the whole."""
     if isinstance(shape, dict):
         yield from _unfit_object(value, shape, place)
     elif isinstance(shape, list):

@@ -127,6 +127,7 @@ def run(
 
 
 def _in_memory(study: Study, engine: Engine, listener: Listener) -> "pd.DataFrame":
+    """Carry out a study without a folder; return its table."""
     motions = ground_motions(study)
     listener.motions(motions)
     runs, rows = Plan(study, motions), InMemory(columns(study))

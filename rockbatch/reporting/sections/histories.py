@@ -71,6 +71,7 @@ def _pictures(finished: Finished) -> list[Picture]:
 
 
 def _picture(title: str, runs: Sequence[Drawn], left_out: int) -> Picture:
+    """Draw the curves and loops of ``runs`` under one motion."""
     figure, whole = together(runs, title)
     panels = [(run.name, panel) for run in runs for panel in (*run.history.springs, *run.history.devices)]
     loops = [replace(panel, caption=f"{name}, {panel.caption}") for name, panel in panels]

@@ -118,6 +118,7 @@ def _heads(sides: Sequence[str], form: str) -> list[Head]:
 
 
 def _cell(s: Statistics | None, name: str, form: str) -> object:
+    """Return the cell of statistic ``name``; None without statistics, "∞" in bold if infinite."""
     if s is None:
         return None
     value = getattr(s, name)

@@ -100,6 +100,7 @@ def _mean_over(target: Target) -> MeanOverTarget:
 
 
 def _horizontal(finished: Finished, target: Target, records: Sequence[Item]) -> Markup:
+    """Compare the horizontal components with their target, and describe pulses and distances."""
     pulses = [record for record in records if record.get("pulse_period_s") is not None]
     distances = [record["distance_km"] for record in records if record.get("distance_km") is not None]
     caption = "their mean, and the target; shaded: the range over which they are fitted."

@@ -111,6 +111,7 @@ def statistics_in_words(finished: Finished) -> str:
 
 
 def _row(finished: Finished, card: Card, row: Row, columns: Sequence[int], class_: str | None) -> Markup:
+    """Return the row of a case; checks without a column are counted as "3 more" if passed."""
     cells = [_cell(finished, card.columns[i], row.cells[i]) for i in columns]
     others = [cell for i, cell in enumerate(row.cells) if i not in columns]
     if others:
@@ -149,6 +150,7 @@ def _tooltip(finished: Finished, verdict: Verdict) -> str:
 
 
 def _requirements(verdicts: Sequence[Verdict]) -> Markup:
+    """Return a table of each check's requirement and reason, and notes on counting."""
     asked = wording.requirements(verdicts)
     firsts = {name: of_check[0] for name, of_check in grouped(verdicts, wording.name_of).items()}
     rows = [[name, "; ".join(asked[name]), BASIS.get(row.basis, row.basis), row.reason] for name, row in firsts.items()]
