@@ -75,11 +75,11 @@ class Rocking:
         self.end = self.samples * self.dt
         omega_v, deflection = base.beta * pier.p, self.m.yield_deflection
         self.scale = np.array([deflection, pier.alpha, deflection * omega_v, pier.alpha * pier.p, 1.0, 1.0])
-        self.cells = np.array([*self.m[:13], *[0.0] * 7, self.rest, self.dt])  # as :func:`_unpacked` reads them
+        self.cells = np.array([*self.m[:15], *[0.0] * 7, self.rest, self.dt])  # as :func:`_unpacked` reads them
 
     def put(self, contact: Contact, supports: Supports) -> None:
         """Contacts and supports of the next stretch, for the compiled functions."""
-        self.cells[13:18], self.cells[18:20] = contact, supports[:2]
+        self.cells[15:20], self.cells[20:22] = contact, supports[:2]
 
     def tolerances(self, tolerance: float) -> dict[str, Any]:
         """Relative, and absolute in units of δ_y for v, α for θ, these times ω_v and p for their rates, and 1 for z."""
@@ -122,11 +122,11 @@ def _unpacked(t, y, cells, ground):
     """What the core's functions take, from plain arrays, which cross from Python to compiled code at the least cost."""
     m = Springs(
         cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8], cells[9], cells[10], cells[11],
-        cells[12], cells[20], None, None, None, None,
+        cells[12], cells[13], cells[14], cells[22], None, None, None, None,
     )  # fmt: skip
-    contact = Contact(cells[13], cells[14], cells[15], cells[16], cells[17])
-    i = int(t / cells[21])
-    x = t - i * cells[21]
+    contact = Contact(cells[15], cells[16], cells[17], cells[18], cells[19])
+    i = int(t / cells[23])
+    x = t - i * cells[23]
     under = Ground(ground[i, 0] + x * ground[i, 1], 0.0, ground[i, 2] + x * ground[i, 3], 0.0)
     return m, State(y[0], y[1], y[2], y[3], y[4], y[5]), contact, under
 
@@ -142,8 +142,8 @@ def _rates(t, y, y_rates, cells, ground):
 @numba.njit(error_model="numpy")
 def _events(t, y, values, cells, ground):
     m, state, contact, under = _unpacked(t, y, cells, ground)
-    rest = cells[20]
-    found = signals(m, state, contact, Supports(cells[18], cells[19], -1.0, -1.0), under)
+    rest = cells[22]
+    found = signals(m, state, contact, Supports(cells[20], cells[21], -1.0, -1.0), under)
     for i in range(4):
         values[i] = found[i] if abs(found[i]) > rest else rest  # rounding does not cross
     values[4] = 0.5 * math.pi - abs(state.theta)

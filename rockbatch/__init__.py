@@ -16,7 +16,7 @@ _NAMES = {
     ),
     "motions": "Motion MotionSet ReadOptions pair_spectrum pulse read_motions sequence",
     "motions.hazard": "HazardCurve",
-    "pier": "Damper DeckSpring ElasticBase Part Pier RigidBase Stop Tendon YieldingBase",
+    "pier": "Damper DeckSpring ElasticBase FootingBase Part Pier RigidBase Stop Tendon YieldingBase",
     "pier.statics": "Statics statics",
     "reporting": "report",
     "results.opened": "open_results",

@@ -38,6 +38,7 @@ from rockbatch.outcome.response import Response as Response
 from rockbatch.pier import Damper as Damper
 from rockbatch.pier import DeckSpring as DeckSpring
 from rockbatch.pier import ElasticBase as ElasticBase
+from rockbatch.pier import FootingBase as FootingBase
 from rockbatch.pier import Part as Part
 from rockbatch.pier import Pier as Pier
 from rockbatch.pier import RigidBase as RigidBase

@@ -33,7 +33,9 @@ def test_files_of_a_results_folder_are_opened_by_one_door():
 
 def test_commands_print_by_one_door():
     found = [
-        place for place, line in lines_of("commands", "analyses") if re.search(r"\bprint\(|sys\.std\w+\.write", line)
+        place
+        for place, line in lines_of("commands", "analyses", "terminal")
+        if re.search(r"\bprint\(|sys\.std\w+\.write", line)
     ]
     assert {place.partition(":")[0] for place in found} <= {"terminal/streams.py"}
 

@@ -58,8 +58,9 @@ CALLS = {  # what is called, and arguments that it takes
     "load_study": (rb.load_study, {"path": "study.toml"}),
     **{name: (getattr(rb, name), MISSING) for name in ("run", "fragility", "spectrum", "sensitivity", "accuracy", "release")},
 }  # fmt: skip
-MADE_BY_OTHERS = {"InputError", "Part", "MotionSet", "Response", "Statics", "Study"}
-"""Results of other calls; the numbers of a part are checked by the pier."""
+ERRORS = {name for name in rb.__all__ if isinstance(kind := getattr(rb, name), type) and issubclass(kind, Exception)}
+MADE_BY_OTHERS = {*ERRORS, "Problem", "Part", "MotionSet", "Response", "Statics", "Study"}
+"""Results of other calls, and errors; the numbers of a part are checked by the pier."""
 
 
 class BegunError(Exception):

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix
 IN_C_CODE = """
 import hashlib, signal, sys, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in what it runs in the background
-import rockbatch.workflow.running
+import rockbatch.batch.carrying_out
 from rockbatch.commands import cli, interrupts
 
 def compile_for_minutes(*_):  # as LLVM does: Python hears of no signal meanwhile
@@ -25,7 +25,7 @@ def compile_for_minutes(*_):  # as LLVM does: Python hears of no signal meanwhil
     threading.Timer(0.1, print, ["compiling"], {{"file": sys.stderr, "flush": True}}).start()
     hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)
 
-rockbatch.workflow.running.make_ready = compile_for_minutes
+rockbatch.batch.carrying_out.make_ready = compile_for_minutes
 interrupts.GRACE_S = {grace}
 sys.exit(cli.main(["run", {study!r}, "--out", {out!r}]))
 """

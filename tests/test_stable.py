@@ -33,8 +33,8 @@ def test_nothing_that_the_last_release_promised_is_gone():
         ("commands", "report", ["DIR", "OTHER=", "*", "--all="], ["--out is gone"]),
         ("commands", "report", ["DIR", "OTHER", "*", "--out=", "--all="], ["OTHER has to be given"]),
         ("commands", "report", ["DIR", "OTHER=", "*", "--out=", "--all=", "--pdf="], []),
-        ("keys", "study.case.base", ["rigid", "elastic"], ["yielding"]),
-        ("keys", "study.case.base", ["rigid", "elastic", "yielding", "pile"], []),
+        ("keys", "study.case.base", ["rigid", "elastic", "footing"], ["yielding"]),
+        ("keys", "study.case.base", ["rigid", "elastic", "yielding", "footing", "pile"], []),
         ("keys", "study.case.beta", ["40", "80"], ["only 40", "only 80"]),
     ],
 )

@@ -111,7 +111,8 @@ def _response(study: Study, planned: StudyRun, row: "pd.Series") -> Response:
     observers = [o for o in observers_of(study.output) if o.column and has_value(row, o.column)]
     counts = int(row["impacts"]), int(row["separations"])
     ended = Outcome(row["status"], row["reason"], 0.0, 0.0, *counts, None, row["t_end_s"], int(row["substeps"]))
-    recording = recorded(run, ended, study.numerics.quiet_s, any(o.histories_of_steps for o in observers))
+    every_step = run.base.remembers or any(o.histories_of_steps for o in observers)
+    recording = recorded(run, ended, study.numerics.quiet_s, every_step)
     return histories(
         recording, row["status"], case.name, case.columns, observers, polarity=planned.polarity, scale=planned.scale
     )

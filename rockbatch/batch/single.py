@@ -125,7 +125,7 @@ def simulate(
         sections_m=() if isinstance(sections, int) else tuple(sections),
     )
     observers = (*observers_of(output), *observers_beside(output, [motion]))
-    kept = HistoriesOfRun(name, observers)
+    kept = HistoriesOfRun(name, observers, foundation.remembers)
     (outcome,) = observed([run], [outcome], (*observers, kept), quiet_s, error=numerics.substeps is None, wait=wait)
     response = outcome.tables.get(kept.table)
     if not response:
@@ -145,13 +145,15 @@ class HistoriesOfRun(Observer):
 
     case: str
     observers: tuple[Observer, ...]
+    remembers: bool = False
+    """Whether the state of the ground follows from every step."""
 
     table = "histories"
 
     @property
     def every_step(self) -> bool:  # type: ignore[override]
         """See :class:`Observer`."""
-        return any(observer.histories_of_steps for observer in self.observers)
+        return self.remembers or any(observer.histories_of_steps for observer in self.observers)
 
     def claims_error(self, outcome: Outcome) -> bool:
         """See :class:`Observer`."""

@@ -14,6 +14,7 @@ from rockbatch.common.lazy import pd
 from rockbatch.quantities.arrays import Rows
 from rockbatch.quantities.cases import Case, bends
 from rockbatch.quantities.catalogue import DEMANDS, OTHER_LAW
+from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import rows_of_cases
 
 PEAKS = frozenset(name for name, demand in DEMANDS.items() if demand.reached)
@@ -121,7 +122,7 @@ def _greatest(rows: Rows, case: Case) -> Iterator[tuple[str, float, int]]:
     for name in RESPONSES if len(rows) else ():
         if not DEMANDS[name].applies_to(case) or (name == "theta_res_rad" and case["base"] != "rigid"):
             continue
-        if name in PERMANENT and case["base"] != "yielding":
+        if name in PERMANENT and case["base"] not in SETTLING:
             continue
         values = DEMANDS[name].evaluate(rows, case).value
         if np.isfinite(values).any():

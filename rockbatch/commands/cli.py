@@ -16,7 +16,7 @@ from rockbatch.common.errors import InputError, PlainRemark
 from rockbatch.common.files import is_stdout
 from rockbatch.common.grouping import closest
 from rockbatch.common.version import full_version
-from rockbatch.terminal.streams import is_lost, open_missing, say
+from rockbatch.terminal.streams import is_lost, open_missing, say, show
 
 _COMMANDS_MEANT = {
     "examples": "list ls demo demos samples",
@@ -60,7 +60,7 @@ class _Version(argparse.Action):
     """Print the version, which a checkout gets from Git only when needed, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, *values: object) -> None:
-        print(f"rockbatch {full_version()}")
+        show(f"rockbatch {full_version()}")
         parser.exit()
 
 

@@ -12,7 +12,7 @@ from rockbatch.common.grouping import distinct, grouped
 from rockbatch.motions import MotionSet, ReadOptions, read_motions
 from rockbatch.motions.manifest_draft import write_manifest
 from rockbatch.motions.motion_set import COLUMNS, TEXTS, row
-from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked
+from rockbatch.motions.ranking import ADDED, RankedRecord, Use, ranked_records
 from rockbatch.motions.ranking import rows as csv_rows
 from rockbatch.terminal.streams import WIDTH, aligned, filled, in_width, say, shortened, show, width
 
@@ -118,7 +118,7 @@ def overview(suite: MotionSet) -> str:
         groups = [line for title, of_title in entries.items() for line in _by_reason(title, of_title, most)]
         if len(groups) <= MOST_LINES - LEAST_LINES - 8:
             break
-    records = [record for record in ranked(suite) if record.use in (Use.USED, Use.HELD_BACK)]
+    records = [record for record in ranked_records(suite) if record.use in (Use.USED, Use.HELD_BACK)]
     card = _scorecard(records, max(MOST_LINES - len(groups) - 8, LEAST_LINES)) if records else []
     return "\n".join([counts(suite), *card, *groups, "", "every recording: --all, --csv FILE or --html FILE"])
 

@@ -1,1 +1,1 @@
-"""What every package may use: checked arguments, files, styles of pictures, groups, lazy imports, display of objects, units."""
+"""Tools of all packages: checked arguments, files, figures, groups, lazy imports, display of objects, units."""

@@ -1,10 +1,13 @@
-"""The analyses, and the door by which what lies below them finds each without importing it."""
+"""The list of analyses, and access to them by name from the packages below, which do not import them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
+
+Entry = Mapping[str, Any]
+"""An object in the JSON file of an analysis, by key; the reader of the file has checked its shape."""
 
 ANALYSES = ("fragility", "spectrum", "sensitivity", "release", "accuracy")
 """Each has its folder ``rockbatch/analyses/NAME``; in the order of the help and of the report."""
@@ -57,6 +60,6 @@ def doors() -> dict[str, Door]:
 
 
 def from_analysis(name: str, function: str) -> Any:
-    """Return what an analysis names ``function``, such as "section.section", loading its module."""
+    """Return the ``function`` of an analysis, such as "section.section", importing its module."""
     module, _, attribute = function.partition(".")
     return getattr(import_module(f"rockbatch.analyses.{name}.{module}"), attribute)

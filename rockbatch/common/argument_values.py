@@ -1,4 +1,4 @@
-"""Values of arguments: their types, and how argparse is given them."""
+"""Types of command-line values, and keywords of ``ArgumentParser.add_argument``."""
 
 import argparse
 import re
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def positive(kind: Callable[[str], float], least: str) -> Callable[[str], float]:
-    """Return the type of numbers above 0, of which the smallest is in words ``least``."""
+    """Return a converter of text to a number above 0; its error says that it must be ``least``."""
 
     def number(text: str) -> float:
         value = kind(text)
@@ -23,14 +23,14 @@ whole, seconds = positive(int, "at least 1"), positive(float, "above 0")
 
 
 def address(text: str) -> str:
-    """Return the address of a scheduler."""
+    """Return the address of a scheduler, as given; raise ``ArgumentTypeError`` if empty."""
     if not text.strip():
         raise argparse.ArgumentTypeError("must be an address such as tcp://10.0.0.1:8786; it is empty")
     return text
 
 
 def shard(text: str) -> tuple[int, int]:
-    """Return a share and the number of shares, of "2/4"."""
+    """Return shard and number of shards: "2/4" gives (2, 4); raise ``ArgumentTypeError`` for other texts."""
     match = re.fullmatch(r"(\d+)/(\d+)", text, re.ASCII)
     share, shares = map(int, match.groups()) if match else (0, 0)
     if not 1 <= share <= shares:
@@ -39,7 +39,7 @@ def shard(text: str) -> tuple[int, int]:
 
 
 def flag(text: str) -> dict[str, Any]:
-    """Return the keywords of an argument that is given or not."""
+    """Return the keywords of a flag with a help ``text``."""
     return {"action": "store_true", "help": text}
 
 

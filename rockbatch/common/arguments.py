@@ -19,14 +19,19 @@ MOST_WHOLE = 10**18
 _REFUSED = object()
 _AS_THEY_ARE = {float, bool, type(None)}
 """Types whose values are taken without a further look, since every record has hundreds."""
-_WORDS: dict[Any, str] = {
-    float: "a number", int: "a whole number", str: "a text", bool: "True or False", os.PathLike: "a path", Callable: "a function",
+_WORDS: dict[object, str] = {
+    float: "a number",
+    int: "a whole number",
+    str: "a text",
+    bool: "True or False",
+    os.PathLike: "a path",
+    Callable: "a function",
     type(None): "None",
-}  # fmt: skip
+}
 
 
 def checked(door: Door) -> Door:
-    """Have a public function, or the fields of a dataclass, take arguments of their annotated types only.
+    """Decorate a public function or dataclass so that it accepts arguments of its annotated types only.
 
     Numbers of other types, as NumPy's, become ``float`` and ``int``, and lists become tuples where one is meant. Annotations in
     quotes and arrays are not checked. Raises ``InputError`` with a sentence for each argument of another type.
@@ -42,7 +47,7 @@ def checked(door: Door) -> Door:
     def call(*args: Any, **kwargs: Any) -> Any:
         wrong: list[Problem] = []
 
-        def take(name: str, value: Any) -> Any:
+        def take(name: str, value: object) -> object:
             if name not in kinds or type(value) in plain[name]:
                 return value
             converted = _first_taken(value, kinds[name])
@@ -64,7 +69,7 @@ def checked(door: Door) -> Door:
     return door
 
 
-def _kinds(parameters: Mapping[str, inspect.Parameter]) -> Iterator[tuple[str, tuple[Any, ...]]]:
+def _kinds(parameters: Mapping[str, inspect.Parameter]) -> Iterator[tuple[str, tuple[object, ...]]]:
     """Yield each parameter's name and alternatives, also those of keywords whose types a TypedDict has."""
     for name, parameter in parameters.items():
         if _is_unpacked(parameter):
@@ -79,7 +84,7 @@ def _is_unpacked(parameter: inspect.Parameter) -> bool:
     return get_origin(parameter.annotation) is Unpack
 
 
-def _alternatives(annotation: Any) -> tuple[Any, ...]:
+def _alternatives(annotation: object) -> tuple[object, ...]:
     if isinstance(annotation, InitVar):
         return _alternatives(annotation.type)
     if get_origin(annotation) in (Union, types.UnionType):
@@ -87,7 +92,7 @@ def _alternatives(annotation: Any) -> tuple[Any, ...]:
     return (annotation,)
 
 
-def _is_known(kind: Any) -> bool:
+def _is_known(kind: object) -> bool:
     plain = get_origin(kind) or kind
     return plain is Literal or (
         isinstance(plain, type)
@@ -97,12 +102,12 @@ def _is_known(kind: Any) -> bool:
     )
 
 
-def _first_taken(value: Any, alternatives: tuple[Any, ...]) -> Any:
-    """Return ``value`` as the first of the types that it can be taken for, or _REFUSED."""
+def _first_taken(value: object, alternatives: tuple[object, ...]) -> object:
+    """Return ``value`` converted to the first of the ``alternatives`` that accepts it, or _REFUSED."""
     return next((converted for kind in alternatives if (converted := _take(value, kind)) is not _REFUSED), _REFUSED)
 
 
-def _take(value: Any, kind: Any) -> Any:
+def _take(value: Any, kind: Any) -> object:
     plain = get_origin(kind) or kind
     fits = False
     if plain in (int, float):
@@ -124,12 +129,12 @@ def _take(value: Any, kind: Any) -> Any:
 
 
 def _is_endless(value: object) -> bool:
-    """Return whether it is a whole number of more digits than floats or integers of 64 bits have."""
+    """Return whether a value is a whole number beyond ±10¹⁸, which floats or integers of 64 bits may not hold."""
     return isinstance(value, Integral) and not -MOST_WHOLE <= int(value) <= MOST_WHOLE
 
 
 def _unfit_for_a_name(value: object) -> str:
-    """Return what keeps a text or a path from being the name of a file; empty if nothing does."""
+    """Return why a text or path cannot be a file's name: a NUL, or half of a surrogate pair; empty if it can."""
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(name, str):
         return ""
@@ -142,14 +147,14 @@ def _unfit_for_a_name(value: object) -> str:
     return ""
 
 
-def _members(values: Any, inner: tuple[Any, ...]) -> Any:
+def _members(values: Sequence[object], inner: tuple[object, ...]) -> object:
     if len(inner) == 2 and inner[1] is not ...:
         return tuple(values)
     converted = tuple(_first_taken(value, _alternatives(inner[0])) for value in values)
     return _REFUSED if any(member is _REFUSED for member in converted) else converted
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     try:
         text = " ".join(repr(value).split())
     except ValueError:  # more digits than Python writes
@@ -157,7 +162,7 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}…"
 
 
-def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
+def _message(value: object, alternatives: tuple[object, ...]) -> str:
     if unfit := _unfit_for_a_name(value):
         return unfit
     if _is_endless(value):
@@ -167,7 +172,7 @@ def _message(value: Any, alternatives: tuple[Any, ...]) -> str:
     return f"is a class; {must}, such as {value.__name__}(…)" if isinstance(value, type) else must
 
 
-def _words(kind: Any) -> str:
+def _words(kind: object) -> str:
     plain = get_origin(kind) or kind
     if plain is Literal:
         return "one of " + ", ".join(map(repr, get_args(kind)))

@@ -203,13 +203,13 @@ def placed(problems: Iterable[Problem], place: str) -> list[Problem]:
 
 
 def remedy(name: str) -> str:
-    """Say what to do about a value that is not usual."""
+    """Return the advice on an unusual value: check the unit, or confirm it by ``name``."""
     return f'check the unit; if it is right, write confirm = ["{name}"]'
 
 
 @contextmanager
 def starting_threads(otherwise: str = "") -> Iterator[None]:
-    """Raise ``InputError`` if no more threads can be started, with what else to do (``otherwise``) but allow them."""
+    """Context manager: turn the failure to start a thread into ``InputError``, with advice besides raising the limit."""
     try:
         yield
     except RuntimeError as error:

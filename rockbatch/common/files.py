@@ -37,9 +37,13 @@ _AT_ONCE = sum(getattr(os, flag, 0) for flag in ("O_NONBLOCK", "O_CLOEXEC", "O_B
 _PLAIN_ONLY = _AT_ONCE | getattr(os, "O_NOFOLLOW", 0)
 """A link is not followed, and a pipe does not keep whoever opens it waiting."""
 _KINDS = (
-    (stat.S_ISLNK, "a link"), (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a disk"),
-)  # fmt: skip
+    (stat.S_ISLNK, "a link"),
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a disk"),
+)
 _STDOUT = ("-", "/dev/stdout")
 
 _FORMULA_AHEAD = r"(?='*[=+\-@＝＋－＠\t\r\n].)"
@@ -63,7 +67,7 @@ _UNPRINTABLE = re.compile(
 
 
 def opened(path: Path, mode: Literal["rb", "r+b"] = "rb") -> io.FileIO:
-    """Open a file of a folder of results, without a buffer; "r+b" makes it if it is not there.
+    """Open a file of a folder of results, unbuffered; "r+b" creates a missing one.
 
     Raises ``InputError`` for whatever is no plain file of that folder: a link, which could lead anywhere, a pipe, a
     device, a folder, and for writing a file that has a second name elsewhere. ``FileNotFoundError`` as ``open`` does.
@@ -98,7 +102,7 @@ def opened_input(path: Path) -> io.FileIO:
 
 
 def _open_at_once(path: Path, flags: int) -> int:
-    """Open a file without waiting for the other end of a pipe; what goes through it, as of `<(…)` in a shell, is waited for."""
+    """Return the descriptor of a file, opened without waiting for the other end of a pipe; reading then waits for data."""
     handle = os.open(path, flags | _AT_ONCE)
     if hasattr(os, "O_NONBLOCK"):
         os.set_blocking(handle, True)
@@ -121,7 +125,7 @@ def whole_input(path: Path) -> Iterator[tuple[BinaryIO, int]]:
 
 
 def state_of(status: os.stat_result) -> tuple[int, ...]:
-    """Return what tells a file from another of its name, and from itself after something was written into it.
+    """Return the identity of a file's contents: inode, device, size [bytes] and time of change [ns].
 
     A time alone would not: files are copied with theirs, and clocks are set back.
     """
@@ -135,7 +139,7 @@ def _not_plain(path: Path, kind: str) -> InputError:
 
 
 def _kind(status: os.stat_result) -> str:
-    """Return what a file is that is no regular one, in words; empty for a regular one."""
+    """Return the kind of an irregular file in words, "a link"; empty for a regular one."""
     return next((words for is_kind, words in _KINDS if is_kind(status.st_mode)), "")
 
 
@@ -168,7 +172,7 @@ def sha256_of(path: Path) -> str:
 
 
 def made_folder(path: Path) -> Path:
-    """Make a folder, and those that it lies in; return it. Raises ``InputError`` where a file stands in its place."""
+    """Create a folder with its parents and return it; raise ``InputError`` if a file is in its place."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:
@@ -204,7 +208,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def refuse_irregular(*paths: Path) -> None:
-    """Raise ``InputError`` with all of these that are there but are no regular files."""
+    """Raise ``InputError`` with all of these paths that exist but are no regular files."""
     kinds = {path: _kind(os.lstat(path)) for path in paths if os.path.lexists(path)}
     advice = "which is not replaced; move it away, or name another"
     if any(kinds.values()):
@@ -264,7 +268,7 @@ def naming_full_disk(path: Path, assurance: str = "what was finished before is k
 
 @contextmanager
 def only_writer(folder: Path) -> Iterator[None]:
-    """Keep all others from writing into ``folder`` meanwhile; ``InputError`` if another process does already.
+    """Context manager: lock ``folder`` for writing; raise ``InputError`` if another process holds the lock.
 
     The operating system gives the lock back when its process ends, however it ends. What is forked meanwhile does not.
     """
@@ -319,12 +323,12 @@ def csv_safe(text: str) -> str:
 
 
 def csv_plain(cell: str) -> str:
-    """Return the text of which :func:`csv_safe` made ``cell``."""
+    """Return the text that :func:`csv_safe` turned into ``cell``."""
     return _SAVED_FORMULA.sub("", cell) if "'" in cell else cell
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> str:
-    """Return a CSV file; its rows as :func:`csv_lines` has them."""
+    """Return the text of a CSV file with a header; rows as by :func:`csv_lines`."""
     rows = list(rows)
     lines = csv_lines([[row.get(name) for row in rows] for name in columns])
     return csv_line(columns) + "".join(f"{line}\n" for line in lines)
@@ -351,12 +355,16 @@ def _cells(column: Sequence[object]) -> Sequence[str]:
         return [""] * len(column)
     if kinds == {float}:
         return [f"{value:.10g}" if value == value else "" for value in column]
-    return [
-        "" if value is None or value != value
-        else f"{value:.10g}" if isinstance(value, float)
-        else _text_cell(value) if isinstance(value, str) else str(value)
-        for value in column
-    ]  # fmt: skip
+    return list(map(_cell, column))
+
+
+def _cell(value: object) -> str:
+    """Return a value as a cell: numbers with ten digits, "" for None and NaN, texts escaped."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return _text_cell(value) if isinstance(value, str) else str(value)
 
 
 @lru_cache(maxsize=1024)

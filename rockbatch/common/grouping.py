@@ -12,7 +12,7 @@ _LONGEST = 100  # characters of a word that others are compared with
 
 
 def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
-    """Return the things that share a key, in order, by their keys in the order of the first of each."""
+    """Return lists of items by key, both in order of first occurrence."""
     groups: dict[K, list[T]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
@@ -45,7 +45,7 @@ def distinct(names: Sequence[str], *longer: Callable[[int, str], str]) -> list[s
 
 
 def closest(word: str, known: Iterable[str], alike: float = 0.6) -> str | None:
-    """Return the known word that ``word`` was probably meant to be, whatever its case, from a similarity of ``alike`` up to 1."""
+    """Return the known word most similar to ``word``, ignoring case; None if none reaches the similarity ``alike``."""
     by_lower = {name.lower(): name for name in known}
     matches = difflib.get_close_matches(word[:_LONGEST].lower(), by_lower, n=1, cutoff=alike)
     return by_lower[matches[0]] if matches else None

@@ -1,4 +1,4 @@
-"""Packages and names that take long to load, loaded when they are first used: ``from rockbatch.common.lazy import pd``."""
+"""Packages and names imported at first use, since they load slowly: ``from rockbatch.common.lazy import pd``."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 
 class _Lazy(ModuleType):
-    """Module whose names are looked up, once each, in the one of the same name, which is loaded for the first of them."""
+    """Stand-in for a module that is imported at the first attribute access."""
 
     def __getattr__(self, name: str) -> Any:
         value = vars(self)[name] = getattr(import_module(self.__name__), name)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import fields
 from html import escape
 from itertools import islice
-from typing import Any
 
 from rockbatch.common.files import legible
 from rockbatch.common.lazy import pd
@@ -54,7 +53,7 @@ class Shown(InNotebook, ABC):
 
 
 def _short(value: object) -> str:
-    """Return a value in few letters: 5 significant digits, items separated by semicolons."""
+    """Return a value as short text: 5 significant digits, items separated by semicolons."""
     if isinstance(value, InNotebook):
         title, facts = value._facts()
         return f"{title}: " + ", ".join(f"{name} = {words}" for name, words in facts.items())
@@ -64,11 +63,11 @@ def _short(value: object) -> str:
 
 
 def several(n: int, noun: str) -> str:
-    """Return a number of things: "1 run", "2 runs"; empty for none."""
+    """Return a count with its noun: "1 run", "2 runs"; empty for 0."""
     return "" if n == 0 else f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
-def shown(value: Any, limit: int = 60) -> str:
+def shown(value: object, limit: int = 60) -> str:
     """Return the value as TOML writes it, cut where it is long, and legible whatever it holds."""
     if isinstance(value, bool):
         written = str(value).lower()

@@ -16,7 +16,7 @@ LEAST, MOST = 1e-15, 1e15
 
 
 def of_percent(value: float, low: float, high: float) -> float | None:
-    """Return the share that a value above it probably is in percent, if the bounds are those of a share."""
+    """Return a value above bounds of a share divided by 100, if it is probably in percent; else None."""
     return value / 100.0 if low == 0.0 and high == 1.0 and 2.0 <= value <= 100.0 else None
 
 
@@ -41,7 +41,7 @@ class Bounds:
         )
 
     def message(self, value: float) -> str:
-        """Return what is wrong about a value that is out of bounds, to follow "name = value: "."""
+        """Return the complaint about a value that is out of bounds, to follow "name = value: "."""
         if value <= 0.0 <= self.low and 0.0 not in self:
             return f"must be a number above 0{self.unit}"
         if callable(self.why):
@@ -69,7 +69,7 @@ NOT_NEGATIVE = Bounds(0.0, MOST, why="must be 0 or above")
 
 
 class Usual(NamedTuple):
-    """The largest and the least size of a value that are usual, and a word on them; others, but for 0, have to be confirmed."""
+    """The usual range of a value's size, with an explanation; values outside, except 0, have to be confirmed."""
 
     most: float
     words: str

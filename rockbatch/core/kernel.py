@@ -141,6 +141,11 @@ def inlined_once(function: Callable[..., Any]) -> Callable[..., Any]:
     return _guarded(numba.njit(forceinline=True, **_OPTIONS | _PART | {"pipeline_class": _OnlyPartCompiler})(function))
 
 
+def summing(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a building block that sums over an array in any order, as vector instructions do: the last digits depend on it."""
+    return _guarded(numba.njit(fastmath={"reassoc", "nsz", "contract"}, **_OPTIONS | _PART)(function))
+
+
 def shared(function: Callable[..., Any]) -> Callable[..., Any]:
     """Let kernels use a function that Python calls too, uncompiled: few calls are not worth a compilation each process."""
     decorated: Callable[..., Any] = register_jitable(**_OPTIONS)(function)

@@ -182,6 +182,14 @@ def highest_within(f0, d0, f1, d1, h):
 
 
 @kernel
+def summit_within(f0, d0, f1, d1, h):
+    """Return the greatest value of the Hermite cubic in the step, also of one that rises, falls and rises again."""
+    highest, _ = _extremes(f0, d0, f1, d1, h)
+    inside = hermite(f0, d0, f1, d1, h, highest) if highest > 0.0 else f1
+    return max(f0, f1, inside)
+
+
+@kernel
 def lowest_within(f0, d0, f1, d1, h, best):
     """Return the least f so far, with the minimum inside this step if there is one."""
     if d0 < 0.0 and d1 > 0.0 and min(inner_points(f0, d0, f1, d1, h)) < best:

@@ -7,7 +7,6 @@ something may happen takes that sub-step once more, event by event, in scalar co
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from rockbatch.core.clock import (
@@ -37,6 +36,7 @@ from rockbatch.core.system import (
     airborne,
     begin,
     finish,
+    lanes_in_pass,
     longest_step,
     one_pass,
     pier_in,
@@ -74,14 +74,6 @@ from rockbatch.core.types import (
 
 EVENTS_IN_A_SAMPLE = 20_000
 """More than any decaying sequence of impacts needs."""
-
-VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
-"""Lanes that the widest vector instructions take at a time; uncompiled there are none, and an empty lane would divide by zero."""
-
-FEW = 2
-"""Lanes left over that are sooner taken one by one than with others that are empty."""
-
-assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
 NO_ROWS = np.zeros((0, 0, 1))
 
@@ -356,10 +348,7 @@ def _pass_with_devices(devices, context, count, substep):
 
 @_pass.of(type(None))
 def _pass_alone(devices, context, count, substep):
-    left_over = count % VECTOR
-    # Lanes beyond ``count`` hold what nobody reads
-    lanes_taken = count if left_over <= FEW else count - left_over + VECTOR
-    one_pass(context.traits, context.lanes, lanes_taken, substep, context.settings)
+    one_pass(context.traits, context.lanes, lanes_in_pass(context.traits, count), substep, context.settings)
     busy = 0
     for i in range(count):
         busy += 1 if context.lanes.step_status.kind[i] != CALM else 0

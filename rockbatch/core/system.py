@@ -7,10 +7,20 @@ ones do here what a system needs least: nothing decays, all lanes are taken even
 
 from typing import NamedTuple
 
+import numba
 import numpy as np
 
 from rockbatch.core.clock import EVENTFUL
 from rockbatch.core.kernel import hook, optional_hook
+from rockbatch.core.table import LANES
+
+VECTOR = 1 if numba.config.DISABLE_JIT else 8  # type: ignore[attr-defined]
+"""Lanes that the widest vector instructions take at a time; uncompiled there are none, and an empty lane would divide by zero."""
+
+FEW = 2
+"""Lanes left over that are sooner taken one by one than with others that are empty."""
+
+assert LANES % VECTOR == 0, "the pass would take lanes beyond the table"
 
 
 class System(NamedTuple):
@@ -92,6 +102,13 @@ def pier_in(traits, lanes, i):
 @hook
 def begin(traits, lanes, i, run):
     """Put what only this system has of a ``run`` into lane ``i``, whose clock and ground are set, and set its deadline."""
+
+
+@optional_hook
+def lanes_in_pass(traits, count):
+    """Return how many lanes a pass takes: whole vectors of them. Those beyond ``count`` hold what nobody reads."""
+    left_over = count % VECTOR
+    return count if left_over <= FEW else count - left_over + VECTOR
 
 
 @optional_hook

@@ -34,10 +34,17 @@ def lanes_of(parts: Mapping[str, type[NamedTuple]]) -> np.dtype:
     return np.dtype([(part, [(name, "f8", LANES) for name in kind._fields]) for part, kind in parts.items()])
 
 
+def with_beds(lanes: np.dtype, beds: np.dtype) -> np.dtype:
+    """Return ``lanes`` with ``beds`` behind them: numbers of a lane that lie next to each other, and stay as lanes are moved."""
+    return np.dtype([*((name, lanes[name]) for name in lanes.names or ()), ("beds", beds)])
+
+
 def table(lanes: np.dtype) -> tuple[np.recarray, np.ndarray]:
-    """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane."""
+    """Return one empty record of ``lanes`` in an array, and its numbers as rows with a column for each lane, but for beds."""
     memory = np.zeros(1, lanes)
-    return memory.view(np.recarray), memory.view("f8").reshape(-1, LANES)
+    fields = lanes.fields
+    movable = fields["beds"][1] if fields is not None and "beds" in fields else lanes.itemsize
+    return memory.view(np.recarray), memory.view("f8")[: movable // 8].reshape(-1, LANES)
 
 
 @kernel

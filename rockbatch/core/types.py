@@ -139,4 +139,15 @@ class Result(NamedTuple):
     theta_end: float  # [rad]
     deflection_max: float  # greatest deflection of the top of a shaft that bends [m]
     drift_max: float  # and greatest horizontal way of that top
+    bed_tilt: float  # tilt of the plastic set of a footing's bed at the end [rad]
+    lean: float  # rotation at which the pier rests on it [rad]
+    settled: float  # by which the middle of the foot is then deeper than at the start [m]
+    contact_least: float  # least share of a footing that was pressed
+    bed_pressure: float  # greatest pressure at an edge of a footing, as of its whole area over the mass [m/s²]
+    t_pressure: float
+    pressure_side: float  # LEFT or RIGHT
+    bed_force: float  # greatest push of a footing's bed [m/s²]
+    t_force: float
+    yielding_rocks: float  # rocks to one side in which the ground under a footing has yielded
+    t_yield: float  # when it first did [s]
     rows: int  # rows of history that were written or would have been

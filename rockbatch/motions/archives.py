@@ -1,8 +1,8 @@
-"""Records in archives: a .zip or .tar.gz is read as a folder, a .gz as the file that it holds; nothing is written to the disk.
+"""Records in archives: a .zip or .tar.gz is read as a folder, a .gz as the file in it; nothing is written to the disk.
 
-A file in an archive has a path that goes on within it, ``motions/peer.zip/RSN6_A_B.AT2``, also where that is in another one,
-``all.zip/peer.zip/RSN6_A_B.AT2``; a third is not opened. Everything is bounded: the archive, what it unpacks to, the number of
-its files and how far they grow.
+The path of a file in an archive continues within it, ``motions/peer.zip/RSN6_A_B.AT2``, also in an archive in another,
+``all.zip/peer.zip/RSN6_A_B.AT2``; a third level is not opened. The size of an archive, its unpacked size, the number of its
+files and their growth are bounded.
 """
 
 import gzip
@@ -28,43 +28,45 @@ LARGEST = 256 * 2**20
 
 _MOST_FILES = 2000
 _TOO_MANY = f"lists more than {_MOST_FILES} files; unpack it"
-_MOST_UNPACKED = 2**30  # bytes that the files of one archive come to
-_GROWTH = 100  # how many times its packed size a file may have: records of text have 3 to 10 times
-_NEVER_TOO_LARGE = 2**20  # bytes
+_MOST_UNPACKED = 2**30  # bytes of all files of one archive
+_GROWTH = 100  # greatest ratio of a file's size to its packed size: records of text have 3 to 10
+_NEVER_TOO_LARGE = 2**20  # bytes: smaller files may grow by any ratio
 _LISTING = 2**20  # bytes of an archive's list of files
 _END, _END_64, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", b"PK\x06\x07", 22, 2**16
 _TARS = (".tar", ".tar.gz", ".tgz")
-_NAMED = re.compile(r"\.(?:zip|t)", re.IGNORECASE)  # in paths of what is in one of these
+_NAMED = re.compile(
+    r"\.(?:zip|t)", re.IGNORECASE
+)  # in every path into an archive: spares most paths a look at the disk
 _PACKED = {".zip", ".gz", ".tar", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".tbz", ".txz", ".zst"}
 _MAGIC = (b"PK\x03\x04", b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"7z\xbc\xaf", b"Rar!")
 _BLOCK = 512  # bytes of a block of a .tar, which ends in two empty ones
 _READ_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _WITHIN = "an archive within an archive; unpack it"
 _DAMAGED = (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, RuntimeError, ValueError, OSError)
-"""Errors of the standard library on damaged files: RuntimeError where bits ask for a password or a method that it lacks,
-ValueError for places in the file that cannot be, OSError of gzip."""
+"""Errors of the standard library on damaged files: RuntimeError for a password or an unknown method, ValueError for
+impossible offsets, OSError of gzip."""
 
 
 def is_archive(path: Path | PurePosixPath) -> bool:
-    """Return whether a path has the name of an archive that is read as a folder."""
+    """Return whether a path is named as an archive that is read as a folder: .zip, .tar, .tar.gz, .tgz."""
     return path.name.lower().endswith((".zip", *_TARS))
 
 
 def not_read(path: Path) -> str:
-    """Return why an archive is not opened, and what to do; empty for what is read, or no archive."""
+    """Return the refusal of an archive of another kind, by its suffix; empty for archives that are read and other files."""
     if bare(path).suffix.lower() in _PACKED and not is_archive(path):
         return "an archive that is not read (.zip and .tar.gz are, and .gz of one record); unpack it"
     return ""
 
 
 def bare(path: Path) -> Path:
-    """Return the path of a record as if it were not packed: without .gz."""
+    """Return the path without a last .gz."""
     return path.with_suffix("") if path.suffix.lower() == ".gz" else path
 
 
 @dataclass(frozen=True)
 class Member:
-    """A file in an archive: its path, its name there as it was written, and why it is not to be opened ("" if it may)."""
+    """A file in an archive: its path, its name there as written, and why it must not be opened ("" if it may)."""
 
     path: Path
     name: str
@@ -72,7 +74,7 @@ class Member:
 
 
 class _Entry(NamedTuple):
-    """A file as its archive lists it: its name, with / between folders; sizes [bytes]; why its kind is not to be opened."""
+    """A file in an archive's list: its name, with / between folders; sizes [bytes]; why its kind must not be opened."""
 
     name: str
     size: int
@@ -82,24 +84,24 @@ class _Entry(NamedTuple):
 
 
 class _Archive(ABC):
-    """An archive in memory, listed once; ``by_path`` has what may be opened."""
+    """An archive in memory, listed once; ``by_path`` has the files that may be opened."""
 
     def __init__(self, listed: Iterable[_Entry]) -> None:
         self.entries = sorted(listed, key=lambda entry: entry.name)
         self.by_path: dict[PurePosixPath, _Entry] = {}
         for entry in self.entries:
             if not _refusal(entry):
-                self.by_path.setdefault(_within(entry.name), entry)
+                self.by_path.setdefault(_member_path(entry.name), entry)
 
     @abstractmethod
     def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of it, to be read."""
+        """Return a file of the archive, opened for reading."""
 
 
 def members(archive: Path) -> Iterator[Member]:
-    """Return the files of an archive in order of their names, but hidden and read-me files, as in folders.
+    """Yield the files of an archive in order of their names, but hidden and read-me files, as in folders.
 
-    Raises ``InputError`` for what is no archive, or too large.
+    Raises ``InputError`` for a damaged archive, and for one too large or with too many files.
     """
     total = 0
     visited: set[Path] = set()
@@ -118,9 +120,9 @@ def members(archive: Path) -> Iterator[Member]:
 
 
 def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
-    """Yield the files of an archive, and of those in it, with their sizes; ``outer`` is the name of one in another."""
-    for entry in _held(archive, state(archive)).entries:
-        name, path = PurePosixPath(entry.name), archive / _within(entry.name)
+    """Yield the files of an archive and of archives in it, with their sizes [bytes]; ``outer`` is the prefix of their names."""
+    for entry in _opened_archive(archive, state(archive)).entries:
+        name, path = PurePosixPath(entry.name), archive / _member_path(entry.name)
         if any(part.startswith(".") and part != ".." for part in name.parts) or name.stem.lower() == "readme":
             continue
         member = Member(
@@ -136,7 +138,7 @@ def _listed(archive: Path, outer: str = "") -> Iterator[tuple[Member, int]]:
 
 
 def is_member(path: Path) -> bool:
-    """Return whether a path leads to a file in an archive."""
+    """Return whether a path leads to a file in an archive; False if the archive cannot be read."""
     archive = archive_of(path)
     try:
         return archive is not None and path in _paths_in(archive, state_of(archive.stat()))
@@ -146,19 +148,19 @@ def is_member(path: Path) -> bool:
 
 @lru_cache(maxsize=8)
 def _paths_in(archive: Path, state: tuple[int, ...]) -> frozenset[Path]:
-    """Return paths of the files in an archive; its ``state`` keeps a new one from being taken for the old one."""
+    """Return paths of the files in an archive; the cache depends on its ``state``, so that a changed archive is listed anew."""
     return frozenset(member.path for member in members(archive))
 
 
 def archive_of(path: Path) -> Path | None:
-    """Return the archive on the disk that a path goes on within; ``None`` for a path of the disk."""
+    """Return the archive on the disk that contains a path; ``None`` for a path on the disk itself."""
     if not _NAMED.search(str(path)):
         return None
     return next((above for above in path.parents if is_archive(above) and above.is_file()), None)
 
 
 def state(path: Path) -> tuple[int, ...]:
-    """Return the :func:`state_of` the file on the disk that a path names or lies within; none if it is gone."""
+    """Return the :func:`state_of` the file on the disk that a path names or lies within; () if it is gone."""
     try:
         return state_of((archive_of(path) or path).stat())
     except OSError:
@@ -166,7 +168,7 @@ def state(path: Path) -> tuple[int, ...]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return paths of the regular files in a folder, or in a folder of an archive, in order; those that may be opened."""
+    """Return paths of the regular files directly in a folder, of the disk or of an archive, in order; without refused ones."""
     archive = folder if is_archive(folder) and folder.is_file() else archive_of(folder)
     if archive is None:
         return sorted(path for path in folder.iterdir() if path.is_file())
@@ -174,9 +176,9 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def content(path: Path, first: int | None = None) -> bytes:
-    """Return what a file holds, or its ``first`` bytes, unpacked where it is a .gz or lies in an archive.
+    """Return the contents of a file, or its ``first`` bytes, unpacked if it is a .gz or lies in an archive.
 
-    Raises ``InputError`` for what is damaged, or larger than allowed, ``OSError`` for what cannot be read.
+    Raises ``InputError`` for a file that is damaged, or larger than allowed, ``OSError`` if it cannot be read.
     """
     if archive_of(path) is not None:
         data = _from_archive(path, first)
@@ -193,7 +195,7 @@ def _from_disk(path: Path, first: int | None = None) -> bytes:
     with whole_input(path) as (file, size):
         if size > LARGEST:
             raise InputError(f"larger than {LARGEST // 2**20} MiB{'; unpack it' if is_archive(path) else ''}")
-        return file.read(size if first is None else min(first, size))  # what is asked for is allocated
+        return file.read(size if first is None else min(first, size))  # read() allocates what it is asked for
 
 
 def _from_gzip(data: bytes, first: int | None = None) -> bytes:
@@ -209,9 +211,9 @@ def _from_gzip(data: bytes, first: int | None = None) -> bytes:
 
 
 def _from_archive(path: Path, first: int | None = None) -> bytes:
-    """Return what a file in an archive holds, or its ``first`` bytes."""
+    """Return the contents of a file in an archive, or its ``first`` bytes; raise ``InputError`` if it is gone or damaged."""
     archive = next(filter(is_archive, path.parents))
-    opened = _held(archive, state(archive))
+    opened = _opened_archive(archive, state(archive))
     entry = opened.by_path.get(PurePosixPath(path.relative_to(archive).as_posix()))
     if entry is None:
         raise InputError("no longer in the archive")
@@ -223,8 +225,8 @@ def _from_archive(path: Path, first: int | None = None) -> bytes:
 
 
 @lru_cache(maxsize=2)
-def _held(archive: Path, state: tuple[int, ...]) -> _Archive:
-    """Return an archive, of the disk or in another one, listed once; ``InputError`` where it is none, or lists too much."""
+def _opened_archive(archive: Path, state: tuple[int, ...]) -> _Archive:
+    """Return an archive, on the disk or in another one, listed once for its ``state``; raise ``InputError`` if damaged."""
     data = _from_disk(archive) if archive_of(archive) is None else _from_archive(archive)
     if archive.name.lower().endswith(".zip"):
         return _Zip(data)
@@ -232,7 +234,7 @@ def _held(archive: Path, state: tuple[int, ...]) -> _Archive:
 
 
 class _Zip(_Archive):
-    """A .zip; / stands between folders as some programs for Windows do not write it."""
+    """A .zip archive."""
 
     def __init__(self, data: bytes) -> None:
         if not data:
@@ -248,22 +250,24 @@ class _Zip(_Archive):
         super().__init__(_zip_entry(info) for info in infos if not info.is_dir())
 
     def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of it, to be read."""
+        """Return a file of the archive, opened for reading."""
         return self._file.open(entry.place)  # type: ignore[arg-type, return-value]
 
 
 def _zip_entry(info: zipfile.ZipInfo) -> _Entry:
-    kind = (
-        "encrypted; unpack it with its password" if info.flag_bits & 1
-        else "a link; unpack the archive" if stat.S_ISLNK(info.external_attr >> 16)
-        else "" if info.compress_type in _READ_METHODS
-        else f"packed by method {info.compress_type}, which is not read; unpack it"
-    )  # fmt: skip
+    """Return a file as a .zip lists it, with / between folders, for which some programs write a backslash."""
+    kind = ""
+    if info.flag_bits & 1:
+        kind = "encrypted; unpack it with its password"
+    elif stat.S_ISLNK(info.external_attr >> 16):
+        kind = "a link; unpack the archive"
+    elif info.compress_type not in _READ_METHODS:
+        kind = f"packed by method {info.compress_type}, which is not read; unpack it"
     return _Entry(info.filename.replace("\\", "/"), info.file_size, info.compress_size, kind, info)
 
 
 class _Tar(_Archive):
-    """A .tar."""
+    """A .tar archive, unpacked from .gz."""
 
     def __init__(self, data: bytes) -> None:
         if len(data) < _BLOCK or any(data[-_BLOCK:]):
@@ -278,21 +282,22 @@ class _Tar(_Archive):
         super().__init__(_tar_entry(info, len(data)) for info in infos if not info.isdir())
 
     def opened(self, entry: _Entry) -> BinaryIO:
-        """Return a file of it, to be read."""
+        """Return a file of the archive, opened for reading."""
         return self._file.extractfile(entry.place)  # type: ignore[arg-type, return-value]
 
 
 def _tar_entry(info: tarfile.TarInfo, most: int) -> _Entry:
-    kind = (
-        "a link; unpack the archive" if info.issym() or info.islnk()
-        else "" if info.isreg() and not info.issparse() and info.size <= most
-        else "no regular file; unpack the archive"
-    )  # fmt: skip
+    """Return a file as a .tar lists it; one of more than ``most`` bytes, the size of the archive, cannot be in it."""
+    kind = ""
+    if info.issym() or info.islnk():
+        kind = "a link; unpack the archive"
+    elif not info.isreg() or info.issparse() or info.size > most:
+        kind = "no regular file; unpack the archive"
     return _Entry(info.name.removeprefix("./"), info.size, info.size, kind, info)
 
 
 def _refuse_long_lists(tail: bytes) -> None:
-    """Raise ``InputError`` where the end of an archive says that it lists too many files, or is missing."""
+    """Raise ``InputError`` if the end record of a .zip is missing, or states a list of files that is too long."""
     start = tail.rfind(_END)
     if start < 0:
         raise InputError("not a zip archive, or a cut one; fetch it again")
@@ -302,7 +307,7 @@ def _refuse_long_lists(tail: bytes) -> None:
 
 
 def _refusal(entry: _Entry) -> str:
-    """Return why a file of an archive is not to be opened; empty where it may be."""
+    """Return why a file of an archive must not be opened; empty if it may."""
     name = PurePosixPath(entry.name)
     if name.is_absolute() or not name.parts or ".." in name.parts or ":" in name.parts[0]:
         return "its name leads out of the archive; unpack it where that does no harm"
@@ -322,7 +327,7 @@ def _too_large(packed: int, most: int) -> str:
     return f"unpacks to more than {_GROWTH} times its {packed} bytes, as no record does; unpack it if it is one"
 
 
-def _within(name: str) -> PurePosixPath:
-    """Return a name in an archive as one that does not lead out of it."""
+def _member_path(name: str) -> PurePosixPath:
+    """Return a name in an archive as a path within it: without root and ".."."""
     inside = [part for part in PurePosixPath(name).parts if part not in ("/", "//", "..")]
     return PurePosixPath(*inside) if inside else PurePosixPath("?")

@@ -15,35 +15,38 @@ from rockbatch.motions.motion import Initial, Samples, Unusable
 from rockbatch.motions.orientation import Orientation, not_square, same_azimuth, split_stem
 
 
-def resolved(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:
+def along_azimuth(first: Samples, azimuth1: float, second: Samples, azimuth2: float, azimuth: float) -> Samples:
     """Return the acceleration along ``azimuth`` [degrees] of two components square to each other, shape (npts,)."""
     return first * math.cos(math.radians(azimuth - azimuth1)) + second * math.cos(math.radians(azimuth - azimuth2))
 
 
 def azimuths_every(step: float) -> tuple[float, ...]:
-    """Return azimuths 0, step, 2 step … below 180°: half a turn reverses a component, which is what a polarity is for."""
+    """Return azimuths 0, step, 2 step … [degrees] below 180°, since half a turn only reverses a component (see polarity)."""
     return tuple(i * step for i in range(math.ceil(180.0 / step - 1e-9)))
 
 
-def rotated_to(horizontals: Sequence[Component], azimuths: Sequence[float]) -> tuple[list[Component], list[Unusable]]:
-    """Return components along ``azimuths`` [degrees] in place of the horizontals of a station, and what cannot be turned.
+def components_along(
+    horizontals: Sequence[Component], azimuths: Sequence[float]
+) -> tuple[list[Component], list[Unusable]]:
+    """Return a station's motion along ``azimuths`` [degrees], and the components that cannot be turned.
 
-    Two that are square to each other are turned; a single one goes on as it is if it points along the only azimuth asked for.
+    Two components square to each other are turned; without such a pair, those along a single azimuth asked for are kept.
     """
-    obstacle = _obstacle(horizontals)
+    obstacle = _rotation_obstacle(horizontals)
     if not obstacle:
-        return [_turned(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths], []
-    unchanged = [len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]) for c in horizontals]
-    refused = [
-        Unusable(c.name, c.source, f"cannot be turned: {obstacle}")
-        for c, stays in zip(horizontals, unchanged, strict=True)
-        if not stays
-    ]
-    return [c for c, stays in zip(horizontals, unchanged, strict=True) if stays], refused
+        return [_turned_component(horizontals[0], horizontals[1], azimuth) for azimuth in azimuths], []
+    kept: list[Component] = []
+    refused: list[Unusable] = []
+    for c in horizontals:
+        if len(azimuths) == 1 and same_azimuth(c.orientation.azimuth, azimuths[0]):
+            kept.append(c)
+        else:
+            refused.append(Unusable(c.name, c.source, f"cannot be turned: {obstacle}"))
+    return kept, refused
 
 
-def _obstacle(horizontals: Sequence[Component]) -> str:
-    """Return why these components of one station are no pair that can be turned; empty where they are."""
+def _rotation_obstacle(horizontals: Sequence[Component]) -> str:
+    """Return why a station's horizontal components cannot be turned; empty for two with azimuths, square to each other."""
     for component in horizontals:
         if component.orientation.azimuth is None:
             return f"the azimuth of {component.name} is not known; write it in motions.toml"
@@ -64,8 +67,8 @@ def _azimuth(component: Component) -> float:
     return component.orientation.azimuth
 
 
-def _initial(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
-    """State along ``azimuth`` at the first common sample; ``None`` where one of the two is not known."""
+def _initial_along(first: Component, second: Component, common: Common, azimuth: float) -> Initial | None:
+    """Return velocity and displacement along ``azimuth`` at the first common sample; ``None`` if one component has none."""
     if first.initial is None or second.initial is None:
         return None
     velocity = displacement = 0.0
@@ -77,7 +80,8 @@ def _initial(first: Component, second: Component, common: Common, azimuth: float
     return Initial(velocity, displacement)
 
 
-def _turned(first: Component, second: Component, azimuth: float) -> Component:
+def _turned_component(first: Component, second: Component, azimuth: float) -> Component:
+    """Return the component along ``azimuth`` [degrees] over the common time of two that are square to each other."""
     common = on_common_samples(first, second, (first.name, second.name))
     base = split_stem(first.name)[0]
     if base != split_stem(second.name)[0]:
@@ -88,13 +92,13 @@ def _turned(first: Component, second: Component, azimuth: float) -> Component:
         first,
         name=f"{base}_az{azimuth:03g}",
         dt=common.dt,
-        acceleration=resolved(common.first, _azimuth(first), common.second, _azimuth(second), azimuth),
+        acceleration=along_azimuth(common.first, _azimuth(first), common.second, _azimuth(second), azimuth),
         orientation=Orientation(f"{azimuth:g}", azimuth=azimuth % 360.0),
         source=f"{first.source} + {second.source}",
         start=max(starts) if len(starts) == 2 else None,
         confirmed=tuple(key for key in first.confirmed if key in second.confirmed),
         processed=first.processed if first.processed == second.processed else None,
-        initial=_initial(first, second, common, azimuth),
+        initial=_initial_along(first, second, common, azimuth),
         findings=(*first.findings, *second.findings),
         notes=(*notes, *common.notes, f"turned to {azimuth:g}° from {first.name} and {second.name}"),
     )

@@ -1,6 +1,6 @@
-"""The zero of a record: what is taken off its acceleration, on whose word, and the note that says so.
+"""Zero offsets of records: their removal from the accelerations, and the note on it.
 
-Nothing else is done to a baseline anywhere: no filter, no fitted line.
+No other baseline correction is done anywhere: no filter, no fitted line.
 """
 
 import math
@@ -17,7 +17,7 @@ RULES = ("as needed", "keep", "mean", "pre-event")
 
 @dataclass(frozen=True)
 class Offset:
-    """The offset that is taken off every component.
+    """Rule for the offset removed from every component.
 
     "as needed": the mean over the record where the format leaves the instrument's zero in it (K-NET, counts), nothing
     elsewhere; "keep": nothing; "mean": the mean over the record; "pre-event": the mean over ``window_s``.
@@ -35,8 +35,8 @@ class Offset:
             raise InputError(f"offset_window_s = {list(self.window_s)}: must be two times in order, from 0 [s]")
 
 
-def corrected(component: Component, offset: Offset) -> Component:
-    """Return ``component`` less its offset, with a note of how much; raise ``InputError`` for a window outside the record."""
+def remove_offset(component: Component, offset: Offset) -> Component:
+    """Return ``component`` without its offset by the rule, with a note; raise ``InputError`` for a window outside the record."""
     if offset.rule == "keep":
         if not component.raw:
             return component
@@ -58,10 +58,9 @@ def corrected(component: Component, offset: Offset) -> Component:
 
 
 def without_offset(acceleration: Samples) -> tuple[Samples, str]:
-    """``acceleration`` [m/s²] less its mean over the record, and the note that says so.
+    """Return ``acceleration`` [m/s²] less its mean over the record, and a note.
 
-    The whole record, not the time before the event: it needs no picking, and the ground's velocity ends at
-    zero.
+    The mean over the whole record, rather than before the event, needs no picking, and makes the final velocity zero.
     """
     offset = float(np.mean(acceleration))
     return acceleration - offset, f"offset {offset:.4g} m/s² removed (mean over the record)"

@@ -1,4 +1,4 @@
-"""Sensors of one station that recorded the same ground with another gain: one of the two sensitivities is wrong."""
+"""Sensors of one station that recorded the same ground motion with different gains: one sensitivity is wrong."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -18,27 +18,28 @@ _ENOUGH = 100  # common samples
 
 
 def with_gains_compared(components: Sequence[Component]) -> list[Component]:
-    """Return the components, those with a finding that another sensor of their station has in the same time times a factor.
+    """Return the components, with a finding on two sensors of a station whose motions differ by a factor only.
 
-    Which of the two is right cannot be known: both wait to be confirmed, or for ``use = false`` of one.
+    Which gain is right cannot be known: both are held back until confirmed, or one is left out by ``use = false``.
     """
-    findings: dict[int, list[Finding]] = {}
+    compared = list(components)
     for i, j in _side_by_side(components):
-        factor = _factor(components[i], components[j])
-        for place, other, times in ((i, j, factor), (j, i, 1.0 / factor)) if factor else ():
+        factor = _gain_ratio(components[i], components[j])
+        if factor is None:
+            continue
+        for place, other, times in ((i, j, factor), (j, i, 1.0 / factor)):
             text = (
                 f"{components[other].source}, of another sensor of the station, has the same motion times {times:.3g}: "
-                "one of their gains is wrong; leave that one out"
+                "one of their gains is wrong, and the files do not say which; ask their network, and leave out the wrong one by "
+                "use = false in motions.toml"
             )
-            findings.setdefault(place, []).append(Finding("gain", text, gross=True))
-    return [
-        replace(component, findings=(*component.findings, *findings[i])) if i in findings else component
-        for i, component in enumerate(components)
-    ]
+            findings = (*compared[place].findings, Finding("gain", text, gross=True))
+            compared[place] = replace(compared[place], findings=findings)
+    return compared
 
 
 def _side_by_side(components: Sequence[Component]) -> Iterator[tuple[int, int]]:
-    """Yield pairs that point alike and recorded at one time, of sensors that one station tells apart by their location code."""
+    """Yield places of two components of one direction, time and station, from sensors with different location codes."""
     coded = [(i, c) for i, c in enumerate(components) if c.sensor.number and c.sensor.location is not None and c.dated]
     for of_station in grouped(coded, lambda pair: (pair[1].sensor.network, pair[1].sensor.number)).values():
         for (i, a), (j, b) in combinations(of_station, 2):
@@ -52,8 +53,8 @@ def _point_alike(a: Component, b: Component) -> bool:
     return same_azimuth(a.orientation.azimuth, b.orientation.azimuth)
 
 
-def _factor(a: Component, b: Component) -> float | None:
-    """Return how many times the motion of ``a`` that of ``b`` is, if both are alike but for that; ``None`` if not."""
+def _gain_ratio(a: Component, b: Component) -> float | None:
+    """Return the amplitude of ``b`` over that of ``a`` if their motions are alike but for it; ``None`` for ratios near 1."""
     if too_unlike(a, b):
         return None
     common = on_common_samples(a, b, ("one", "other"))

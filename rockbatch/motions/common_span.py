@@ -1,4 +1,4 @@
-"""Two components of one station on common samples, over the time that they share."""
+"""Two components of one station on common samples, over their common time."""
 
 import math
 from dataclasses import dataclass
@@ -22,19 +22,19 @@ class Common:
     dt: float  # sampling interval [s]
     first: Samples  # accelerations [m/s²], shape (npts,)
     second: Samples
-    begins: tuple[float, float]  # where the common samples begin in each component [s after its first one]
-    notes: list[str]  # what was done
+    begins: tuple[float, float]  # first common sample [s after the first sample of each component]
+    notes: list[str]  # on interpolation and the common span
 
 
 def overlap(a: Component, b: Component) -> bool:
-    """Return whether two components have a time in common, as far as is known."""
+    """Return whether two components overlap in time; True if one has no start time."""
     if a.start is None or b.start is None:
         return True
     return a.start < b.start + b.duration and b.start < a.start + a.duration
 
 
 def too_unlike(a: Component, b: Component) -> str:
-    """Return why two components cannot be brought to common samples; empty where they can."""
+    """Return why two components cannot be brought to common samples, their steps or lengths; empty if they can."""
     if max(a.dt, b.dt) > MOST_STEPS * min(a.dt, b.dt):
         return f"dt = {b.dt:g} s beside {a.dt:g} s of {a.name}, more than {MOST_STEPS} times apart"
     if min(a.duration, b.duration) > MOST_SAMPLES * min(a.dt, b.dt):
@@ -43,7 +43,7 @@ def too_unlike(a: Component, b: Component) -> str:
 
 
 def on_common_samples(first: Component, second: Component, names: tuple[str, str]) -> Common:
-    """Return both components on common samples, over their common time, with notes with their ``names``.
+    """Return both components on common samples, over their common time; notes call them by ``names``.
 
     Components without absolute times start together. Where samples do not coincide, the first component keeps
     its own, with as many between them as make it no coarser than the second one, and both are interpolated
@@ -84,7 +84,7 @@ def on_common_samples(first: Component, second: Component, names: tuple[str, str
 
 
 def _offset(first: Component, second: Component, name: str) -> tuple[float, list[str]]:
-    """Return the delay of the second component [s], without jitter, and the note on that."""
+    """Return the delay of the second component [s], rounded to whole samples within jitter, and the note on that."""
     if first.start is None or second.start is None:
         return 0.0, []
     offset, step = second.start - first.start, min(first.dt, second.dt)

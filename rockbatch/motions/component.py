@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockbatch.motions.evidence import Statement
-from rockbatch.motions.listed import NOTHING, Listed
+from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.motion import Finding, Initial, Samples
 from rockbatch.motions.orientation import UNKNOWN, Orientation
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
@@ -27,17 +27,18 @@ class Sensor:
 
     @property
     def number(self) -> str:
-        """The station, without the zeros that some agencies put in front."""
+        """Return the station without leading zeros, which some agencies add."""
         return self.station.lstrip("0")
 
     def may_be_same_as(self, other: "Sensor") -> bool:
-        """Return whether both may be one sensor, of a station that both name."""
+        """Return whether both may be one sensor: same station number and no differing codes; False without a station."""
         return bool(self.number) and self.number == other.number and not self._codes_differ(other)
 
     def is_distinct_from(self, other: "Sensor") -> bool:
-        """Return whether both are known to be distinct sensors, of one station or of one network; names differ between networks.
+        """Return whether headers tell two sensors apart, by codes in one station, or by stations in one network.
 
-        Where a channel has a number, the words for its place, which differ from format to format, do not matter.
+        Station names of two networks are not compared. If a channel number is known, the place in words, which differs
+        between formats, is ignored.
         """
         if not self.number or not other.number:
             return False
@@ -52,70 +53,66 @@ class Sensor:
 
 
 def _bare(text: str) -> str:
-    """Return a text without blanks and signs: "Free-field" is "FREEFIELD"."""
+    """Return a text in capitals without blanks and signs: "Free-field" gives "FREEFIELD"."""
     return re.sub(r"[\W_]+", "", text).upper()
 
 
 def file_of(source: str) -> str:
-    """Return the file of a component's source, which has a label behind where the file holds several: "x.V1 (NS)"."""
+    """Return the file of a component's source without the component's label: "x.V1 (NS)" gives "x.V1"."""
     return re.sub(r" \([^()]*\)$", "", source)
 
 
 UNKNOWN_SENSOR = Sensor()
-"""The sensor of a file that does not state it."""
+"""For a file that does not state its sensor."""
 
 
 @dataclass(frozen=True)
 class Component:
     """One component of a record in m/s²."""
 
-    name: str  # of the motion that it makes as a horizontal component
+    name: str  # of the motion that a horizontal component becomes
     dt: float  # sampling interval [s]
-    acceleration: Samples  # [m/s²], shape (npts,), positive as the file has it: a DWN component is positive down
+    acceleration: Samples  # [m/s²], shape (npts,), positive as in the file: a DWN component is positive down
     orientation: Orientation = UNKNOWN
-    station: str = ""  # what the components of one station in one event share; empty where the format does not say
-    folder: str = ""  # that the file lies in, within which components are paired; empty for those of a package
-    source: str = ""  # where it came from, for people
-    start: float | None = None  # time of the first sample [s since 1970, UTC], where the format has it
-    site: str = (
-        ""  # what the components of one station share by the names of their files; empty where these do not tell
-    )
-    unit: str = ""  # that the file's numbers were read in; empty where the format has a scale of its own (counts)
-    raw: bool = (
-        False  # whether the instrument's zero is still in it, so that an offset is to be expected (see baseline)
-    )
-    magnitude: float | None = None  # of the event, where a manifest has it
-    distance_km: float | None = None  # of the site from the event, likewise
-    confirmed: tuple[str, ...] = ()  # what a manifest confirms: "confirm", "confirm_pga" (see motion.Finding)
-    preferred: bool = False  # whether a manifest says that it is used, whatever other copies of the recording there are
+    station: str = ""  # by the header: a key shared by the components of one station in one event
+    folder: str = ""  # of the file, within which components are paired; empty for a package's
+    source: str = ""  # file, for people
+    start: float | None = None  # time of the first sample [s since 1970, UTC]
+    site: str = ""  # by the file's name: a key shared by the components of one station
+    unit: str = ""  # in which the file's numbers were read; empty for counts, whose scale the format has
+    raw: bool = False  # whether the instrument's zero offset may still be in it (see baseline)
+    magnitude: float | None = None  # of the event, from a manifest
+    distance_km: float | None = None  # of the site from the event, from a manifest
+    confirmed: tuple[str, ...] = ()  # keys that a manifest confirms: "confirm", "confirm_pga" (see motion.Finding)
+    preferred: bool = False  # whether a manifest chooses it before other copies of the recording
     sensor: Sensor = UNKNOWN_SENSOR
-    event: str = ""  # what the header says of it, to tell recordings of one sensor apart where start is not known
-    processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
-    initial: Initial | None = None  # the ground's state at the first sample, where the file has it
+    event: str = ""  # by the header, to tell recordings of one sensor apart without a start time
+    processed: bool | None = None  # whether the agency has corrected it; None if the file does not say
+    initial: Initial | None = None  # the ground's state at the first sample, if the file has it
     origin: Origin = UNKNOWN_ORIGIN
-    notes: tuple[str, ...] = ()  # what was done to the data
-    findings: tuple[Finding, ...] = ()  # contradictions of its header, or of copies of it that are left out
+    notes: tuple[str, ...] = ()  # on processing
+    findings: tuple[Finding, ...] = ()  # contradictions of its header, or with copies that are left out
     number: int = 0  # of the component in its file, from 1
-    statements: tuple[Statement, ...] = ()  # of its direction, whatever states it
-    contradiction: str = ""  # of statements in its set, for which it is held back; empty where they agree
-    listed: Listed = NOTHING  # what PEER's search says of the record
+    statements: tuple[Statement, ...] = ()  # of its direction, from all sources
+    contradiction: str = ""  # between statements in its set, for which it is held back
+    listed: Listed = NOT_LISTED  # PEER's search results
 
     @property
     def dated(self) -> bool:
-        """Return whether ``start`` is a date, and not only a time from which the components of one file set are counted."""
+        """Return whether ``start`` is a date rather than a time relative to the other components of the file."""
         return self.start is not None and self.start >= FIRST_YEAR
 
     @property
     def duration(self) -> float:
-        """Time from the first to the last sample [s]."""
+        """Return the time from the first to the last sample [s]."""
         return (len(self.acceleration) - 1) * self.dt
 
     @property
     def pga(self) -> float:
-        """Peak absolute acceleration [m/s²]."""
+        """Return the peak absolute acceleration [m/s²]."""
         return float(np.abs(self.acceleration).max())
 
     @property
     def upward(self) -> Samples:
-        """Acceleration of a vertical component [m/s²], positive up, shape (npts,)."""
+        """Return the acceleration of a vertical component [m/s²], positive up, shape (npts,)."""
         return -self.acceleration if self.orientation.down else self.acceleration

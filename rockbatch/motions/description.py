@@ -1,8 +1,8 @@
-"""What a table or run.json says of motions: sizes, measures and spectra, numbers and texts only."""
+"""Entries of motions in run.json: sizes, measures and spectra, as numbers and texts only."""
 
 import math
 from dataclasses import asdict
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -14,11 +14,21 @@ from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.motions.velocity_pulses import pulse_period
 
 MOST_SPECTRA = 200
-"""Motions whose spectra go into run.json; each takes about 10 ms."""
+"""Greatest number of motions whose spectra go into run.json; each takes about 10 ms."""
 
 
-def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[str, Any]:
-    """Return names, sizes and measures of a motion under its short name ``label``, and its pulse if that is asked for."""
+class Spectra(TypedDict):
+    """Response spectra of a suite in run.json: ``sa_g`` in the order of the motions; ``None`` where undefined."""
+
+    damping: float
+    period_s: list[float]
+    sa_g: list[list[float]]
+    mean_sa_g: NotRequired[list[float | None]]
+    target_sa_g: NotRequired[list[float | None]]
+
+
+def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[str, object]:
+    """Return the run.json entry of a motion with the short name ``label``: names, sizes, measures, and its pulse on demand."""
     vertical = motion.pga_vertical
     return {
         "record": motion.name,
@@ -50,38 +60,42 @@ def entry(motion: Motion, label: str, gravity: float, with_pulse: bool) -> dict[
     }
 
 
-def _pulse(motion: Motion) -> dict[str, Any]:
-    """Return the period of the pulse of a motion that is pulse-like by the criterion of Baker (2007)."""
+def _pulse(motion: Motion) -> dict[str, object]:
+    """Return the period [s] of a motion's pulse by Baker (2007); None if it is not pulse-like."""
     period = pulse_period(motion)
     return {"pulse_period_s": None if period is None else float(f"{period:.4g}")}
 
 
 def spectra(
     motions: list[Motion], fitted: list[Motion], gravity: float, target: SpectrumTarget | None
-) -> dict[str, Any] | None:
-    """Return response spectra of a suite that is not too large; with the damping and periods of its target, if any, and the mean
-    of those ``fitted`` to it."""
+) -> Spectra | None:
+    """Return response spectra of a suite, None of more than 200 motions.
+
+    With a ``target``, they have its damping and periods, and are followed by it and by the mean of the motions ``fitted``.
+    """
     if len(motions) > MOST_SPECTRA:
         return None
     if target is None:
         return suite_spectra(motions, gravity)
-    found = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
-    of_target = target.spectrum.at(np.array(found["period_s"], dtype=np.float64))
-    periods = np.array(found["period_s"], dtype=np.float64)
+    suite = suite_spectra(motions, gravity, target.spectrum.damping, periods_over(*target.range_s))
+    periods = np.array(suite["period_s"], dtype=np.float64)
     names = {motion.name for motion in fitted}
-    rows = [sa for motion, sa in zip(motions, found["sa_g"], strict=True) if motion.name in names]
+    rows = [sa for motion, sa in zip(motions, suite["sa_g"], strict=True) if motion.name in names]
     mean = target.mean(fitted, periods, gravity, np.array(rows, dtype=np.float64))
-    return found | {
-        "mean_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in mean],
-        "target_sa_g": [None if math.isnan(sa) else float(f"{sa:.4g}") for sa in of_target],
-    }
+    suite["mean_sa_g"] = _four_digits(mean)
+    suite["target_sa_g"] = _four_digits(target.spectrum.at(periods))
+    return suite
+
+
+def _four_digits(values: npt.NDArray[np.float64]) -> list[float | None]:
+    """Return values rounded to four significant digits, None for NaN."""
+    return [None if math.isnan(value) else float(f"{value:.4g}") for value in values]
 
 
 def suite_spectra(
     motions: list[Motion], gravity: float, damping: float = 0.05, periods: npt.ArrayLike = PERIODS
-) -> dict[str, Any]:
-    """Return horizontal spectra of motions, as run.json has them: ``damping``, ``period_s`` and, in the order of the motions,
-    ``sa_g``."""
+) -> Spectra:
+    """Return the horizontal response spectra of motions, in their order, at ``periods`` [s]."""
     undamped = np.asarray(periods, dtype=np.float64)
     spectra = [spectral_acceleration(m.horizontal, m.dt, undamped, damping) / gravity for m in motions]
     return {

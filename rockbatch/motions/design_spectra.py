@@ -1,4 +1,4 @@
-"""Elastic spectra that suites are held against: shapes of codes by their parameters, and tables."""
+"""Elastic target spectra: shapes of codes by their parameters, and tables."""
 
 import math
 import os
@@ -21,22 +21,22 @@ class Spectrum(Protocol):
 
     @property
     def damping(self) -> float:
-        """Fraction of critical damping."""
+        """Return the fraction of critical damping."""
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Least and largest period [s] for which it is defined."""
+        """Return the least and largest period [s] for which it is defined."""
 
     @property
     def code(self) -> str:
-        """Name of the code whose conditions a suite under it has to meet; empty for a table."""
+        """Return the name of the code whose conditions a suite must meet; empty for a table."""
 
     @property
     def beyond(self) -> str:
-        """A limit of the code that its values exceed, and which is not applied; empty if they exceed none."""
+        """Return a remark on a limit of the code that is exceeded and not applied; empty if none is."""
 
     def at(self, periods: Array) -> Array:
-        """Return the spectral acceleration [g] at periods [s], shape (n,); NaN where it is not defined."""
+        """Return the spectral acceleration [g] at periods [s], shape (n,); NaN outside ``limits``."""
 
 
 class Shape(NamedTuple):
@@ -68,7 +68,7 @@ EUROCODE = {
 
 
 VERTICAL_SHAPE = Shape(1.0, 0.05, 0.15, 1.0)
-"""Of the vertical spectrum of EN 1998-1, for both types and all grounds."""
+"""Shape of the vertical spectrum of EN 1998-1, for both types and all grounds."""
 
 VERTICAL_RATIO = {1: 0.9, 2: 0.45}
 """a_vg/a_g by type of spectrum: recommended values of EN 1998-1, Table 3.4, as later literature quotes them."""
@@ -79,7 +79,7 @@ class EurocodeSpectrum:
     """Elastic spectrum of EN 1998-1:2004, horizontal by 3.2.2.2, eqs. (3.2) to (3.6), vertical by 3.2.2.3, up to 4 s.
 
     ``ag_g`` is a_g = γ_I a_gR on ground type A [g], or a_vg; η = √(10/(5 + ξ)) ≥ 0.55 follows from ``damping`` (ξ in percent).
-    The plateau is ``amplification`` η times the ground acceleration: 2.5, and 3 of the vertical one.
+    The plateau is ``amplification`` η times the ground acceleration: 2.5 η, vertical 3 η.
     """
 
     ag_g: float
@@ -92,7 +92,7 @@ class EurocodeSpectrum:
 
     @property
     def code(self) -> str:
-        """See :class:`Spectrum`; of the vertical one no condition on a suite is known."""
+        """See :class:`Spectrum`; empty for a vertical spectrum, for which no conditions are known."""
         return "" if self.shape == VERTICAL_SHAPE else "EN 1998-1"
 
     def __str__(self) -> str:
@@ -136,8 +136,11 @@ class AsceSpectrum:
 
 @dataclass(frozen=True)
 class AashtoSpectrum:
-    """Three-point design spectrum of AASHTO, by A_s at 0 s, S_DS and S_D1, for 5 % damping; by the formulas that programs and
-    handbooks have, not compared with the articles (LRFD 3.10.4, Guide Specifications 3.4.1 before the 3rd edition)."""
+    """Three-point design spectrum of AASHTO, by A_s at 0 s, S_DS and S_D1, for 5 % damping.
+
+    By the formulas of programs and handbooks, not compared with the articles (LRFD 3.10.4, Guide Specifications 3.4.1 before
+    the 3rd edition).
+    """
 
     as_g: float
     sds_g: float
@@ -160,8 +163,8 @@ class AashtoSpectrum:
 
 
 class SubsoilShape(NamedTuple):
-    """Spectral shape C_h of NZS 1170.5 for a subsoil: at 0 s, on the plateau from 0.1 s on, and its branches beyond it,
-    a (b/T)^0.75 until 1.5 s, c/T until 3 s and 3 c/T² then."""
+    """Spectral shape C_h of NZS 1170.5 for a subsoil: ``start`` at 0 s, the plateau from 0.1 s, and its branches beyond,
+    a (b/T)^0.75 up to 1.5 s, c/T up to 3 s, then 3 c/T²."""
 
     start: float
     plateau: float
@@ -177,7 +180,7 @@ NZS_1170_5 = {
     "D": SubsoilShape(1.12, 3.00, 2.4, 0.75, 2.14),
     "E": SubsoilShape(1.12, 3.00, 3.0, 1.00, 3.32),
 }
-"""Shapes for response spectra and time histories by site subsoil class, as several programs have them."""
+"""Shapes for response spectra and time histories by site subsoil class, as in several programs."""
 
 FAR_KM = 20.0
 """Distance from a major fault beyond which NZS 1170.5 has no near-fault factor."""
@@ -188,10 +191,10 @@ MOST_ZR = 0.7
 
 @dataclass(frozen=True)
 class NzsSpectrum:
-    """Elastic site spectrum C(T) = C_h(T) Z R N(T, D) of NZS 1170.5:2004 for 5 % damping, up to 4.5 s; by the numbers that
-    several programs agree on, not compared with the standard.
+    """Elastic site spectrum C(T) = C_h(T) Z R N(T, D) of NZS 1170.5:2004 for 5 % damping, up to 4.5 s.
 
-    ``fault_km`` is the distance D from the nearest major fault of the standard's list; N counts for R above 0.75.
+    By the numbers on which several programs agree, not compared with the standard. ``fault_km`` is the distance D from the
+    nearest major fault of the standard's list; N is 1 for R up to 0.75.
     """
 
     subsoil: str
@@ -228,15 +231,15 @@ class NzsSpectrum:
         return _within(self.limits, periods, values)
 
     def _near(self, t: Array) -> Array:
-        """Return the near-fault factor N(T, D)."""
+        """Return the near-fault factor N(T, D), shape of ``t``."""
         share = min(1.0, max(0.0, (FAR_KM - self.fault_km) / 18.0)) if self.return_period_factor > 0.75 else 0.0
         return 1.0 + share * (np.interp(t, [1.5, 4.0, 5.0], [1.0, 1.6, 1.72]) - 1.0)
 
 
 @dataclass(frozen=True)
 class TableSpectrum:
-    """A spectrum given at some periods [s], growing, in g; straight between them in logarithms, or in its numbers if ``linear``,
-    from 0 s on then."""
+    """A spectrum [g] given at rising periods [s]; linear between them in logarithms, or, if ``linear``, in its numbers, which
+    allows 0 s."""
 
     periods: tuple[float, ...]
     sa_g: tuple[float, ...]
@@ -280,9 +283,9 @@ class TableSpectrum:
 
 @checked
 def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: bool = False) -> TableSpectrum:
-    """Return a table of a text file: a period [s] and a spectral acceleration [g] on each line, perhaps under a header.
+    """Return the spectrum in a text file: a period [s] and a spectral acceleration [g] on each line, after an optional header.
 
-    Raises ``InputError`` with the line that is no such pair.
+    Raises ``InputError`` with a line that is no such pair.
     """
     path = Path(path)
     periods: list[float] = []
@@ -309,6 +312,7 @@ def read_spectrum(path: str | os.PathLike[str], damping: float = 0.05, linear: b
 
 
 def _within(limits: tuple[float, float], periods: Array, values: Array) -> Array:
+    """Return ``values``, NaN at periods [s] outside ``limits``."""
     low, high = limits
     inside = (np.asarray(periods) >= low * (1 - 1e-9)) & (np.asarray(periods) <= high * (1 + 1e-9))
     return np.where(inside, values, math.nan)

@@ -1,11 +1,12 @@
-"""Words for directions in the languages of those who export records, as they are written and as they are transliterated.
+"""Words for directions in the languages of agencies and programs, in their own script and transliterated.
 
 Without accents, in any case. Pairs of words (Norte-Sur, 南北) are made of the single ones, in both orders; ``ns`` and ``ew`` are
-abbreviations of such pairs, "above" and "below" mean a direction in a pair only (haut-bas). A single letter that means another
-direction elsewhere (O: oeste, Ost) is in no language.
+abbreviations of such pairs; "above" and "below" are directions only in a pair (haut-bas). A single letter that means different
+directions in two languages (O: oeste, Ost) is in none.
 """
 
 import unicodedata
+from itertools import product
 
 WORDS: dict[str, dict[str, str]] = {
     "English": {
@@ -216,14 +217,18 @@ def folded(text: str) -> str:
 
 def words(meaning: str) -> set[str]:
     """Return the words of all languages for a meaning."""
-    return {word for of_language in WORDS.values() for word in _of(of_language, meaning)}
+    return {word for language in WORDS.values() for word in _words_in(language, meaning)}
 
 
 def pairs(first: str, second: str) -> set[str]:
-    """Return the words of two meanings of one language, each behind the other: NORTESUR, SURNORTE."""
-    both = [(_of(each, first), _of(each, second)) for each in WORDS.values()]
-    return {word for ones, others in both for a in ones for b in others for word in (a + b, b + a)}
+    """Return pairs of words of one language for two meanings, in both orders: NORTESUR, SURNORTE."""
+    joined: set[str] = set()
+    for language in WORDS.values():
+        for a, b in product(_words_in(language, first), _words_in(language, second)):
+            joined |= {a + b, b + a}
+    return joined
 
 
-def _of(of_language: dict[str, str], meaning: str) -> list[str]:
-    return folded(of_language.get(meaning, "")).split()
+def _words_in(language: dict[str, str], meaning: str) -> list[str]:
+    """Return a language's words for a meaning, folded; [] without any."""
+    return folded(language.get(meaning, "")).split()

@@ -1,4 +1,4 @@
-"""One recording in several files: which set of components is used."""
+"""One recording in several files: choice of the set of components to use."""
 
 import math
 import re
@@ -17,7 +17,7 @@ from rockbatch.motions.plausible import gross_findings, in_a_borehole
 from rockbatch.motions.stations import in_one_event
 
 _CORRECTED = {True: 0, None: 1, False: 2}
-_GROSS_FACTOR = 0.05  # relative: what has to be confirmed
+_GROSS_FACTOR = 0.05  # relative difference between copies beyond which they have to be confirmed
 _UNITS, _SAME_UNIT = (3.2808, 9.81, 10.0, 32.185, 39.37, 98.1, 100.0, 386.22, 981.0, 1000.0, 9810.0), 0.003
 """Factors between units of acceleration (10 is g/10), and how far off they may be, relative: g is 9.80665 to 9.81 m/s²."""
 _UNEQUAL = 1.5  # ratio of the peaks of two copies that is reported
@@ -25,7 +25,7 @@ _SCALED = re.compile(r"(?<!un)(?<!not_)scaled", re.IGNORECASE)
 
 
 def without_boreholes(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
-    """Return the components without those in boreholes below a sensor at the surface that recorded the same earthquake."""
+    """Return the components, and as left out those in boreholes below a surface sensor that recorded the same earthquake."""
     surface = [c for c in components if c.sensor.number and not in_a_borehole(c)]
     at_surface = grouped(surface, lambda c: c.sensor.number)
     used_components: list[Component] = []
@@ -43,13 +43,13 @@ def without_boreholes(components: Sequence[Component]) -> tuple[list[Component],
 
 
 def without_doubles(components: Sequence[Component]) -> tuple[list[Component], list[LeftOut]]:
-    """Return the components that are used, in their order, and the copies that are left out, with the reason.
+    """Return the components to use, in their order, and the copies that are left out, with the reason.
 
-    Sets are ranked as wholes (:func:`_ranks`), so that the components of a station come from one instrument. What a
-    manifest wants (``use = true``) is always used. Copies that differ by a factor, or in their peaks, are named in the
-    findings of the one that is used; where neither plausibility nor a file's name tells which factor is right, it has to
-    be confirmed. Copies by a factor under other names stay, since suites are scaled on purpose, and say so; if the factor is
-    that of a unit, both have to be. A vertical that is in two sets of other horizontals is used with both, which say so.
+    Sets are ranked as wholes (:func:`_ranks`), so that the components of a station come from one instrument. A manifest's
+    choice (``use = true``) is always used. A finding of the used component names copies that differ by a factor or in their
+    peaks; if neither plausibility nor a file's name decides which factor is right, it has to be confirmed. Copies by a factor
+    under other names stay, since suites are scaled on purpose, with a finding; if the factor is a ratio of units, both have
+    to be confirmed. A vertical in two sets of other horizontals is used with both, with a finding.
     """
     components, below = without_boreholes(components)
     pairs, scaled, denied = pairs_of_one_recording(components)
@@ -77,31 +77,36 @@ def without_doubles(components: Sequence[Component]) -> tuple[list[Component], l
         if finding := _difference(copy, original, factor, decided):
             findings.setdefault(j, []).append(finding)
     for i, j in (pair for pair in scaled if not stands_for.keys() & pair):
-        for k, copy_by_factor in ((i, components[j]), (j, components[i])):
-            factor = factor_between(copy_by_factor, components[k])
-            assert factor is not None  # so they are found
-            text = f"{copy_by_factor.source} has the same samples times {factor:.4g}"
-            if _is_unit(factor):
-                text += ": a unit, which one of them states wrongly; check which of them is right"
-            else:
-                text += "; both are used, and count as one record"
-            findings.setdefault(k, []).append(Finding("factor", text, gross=_is_unit(factor)))
+        for k, other in ((i, components[j]), (j, components[i])):
+            findings.setdefault(k, []).append(_factor_finding(components[k], other))
     for i, j in (pair for pair in denied if not stands_for.keys() & pair):
         for k, other in ((i, components[j]), (j, components[i])):
             text = f"{other.source} is the same sensor, event and direction by its header, and has other samples: check both"
             findings.setdefault(k, []).append(Finding("header", text))
-    remaining = [
-        replace(component, findings=(*component.findings, *findings[i])) if i in findings else component
-        for i, component in enumerate(components)
-        if i not in stands_for
-    ]
+    remaining = []
+    for i, component in enumerate(components):
+        if i not in stands_for:
+            own = (*component.findings, *findings.get(i, ()))
+            remaining.append(replace(component, findings=own))
     return remaining, [*below, *left_out]
+
+
+def _factor_finding(component: Component, other: Component) -> Finding:
+    """Return the finding that ``other`` has the samples of ``component`` times a factor, gross for a ratio of units."""
+    factor = factor_between(other, component)
+    assert factor is not None  # scaled pairs have one
+    text = f"{other.source} has the same samples times {factor:.4g}"
+    if _is_unit_ratio(factor):
+        text += ": a unit, which one of them states wrongly; check which of them is right"
+    else:
+        text += "; both are used, and count as one record"
+    return Finding("factor", text, gross=_is_unit_ratio(factor))
 
 
 def _shared_verticals(
     components: Sequence[Component], stands_for: Mapping[int, int]
 ) -> Iterator[tuple[int, list[int]]]:
-    """Yield verticals that are left out, the only ones of their sets and places, with the horizontals there that are used."""
+    """Yield the only vertical of a set, a copy of another station's vertical, with the set's horizontals that are used."""
 
     def place(i: int) -> tuple[str, str]:
         return components[i].folder, components[i].station or components[i].site
@@ -117,11 +122,11 @@ def _shared_verticals(
 def _ranks(
     components: Sequence[Component], pairs: Pairs, factors: dict[tuple[int, int], float | None]
 ) -> dict[int, tuple[object, ...]]:
-    """Return what components of several files are sorted by, the one to use first, each as its whole set.
+    """Return sort keys of components with copies, the one to use first; all components of a set have the key of the set.
 
-    In this order: what a manifest wants; sound before grossly odd; corrected before unknown before uncorrected; what is not
-    called scaled; two horizontals and a vertical before less; a unit of acceleration before counts; the finer time step; the
-    more intense shaking, by powers of two; the suffix of a format; the shorter name; the first.
+    In this order: chosen by a manifest; sound before grossly odd; corrected before unknown before uncorrected; not called
+    scaled; two horizontals and a vertical before fewer; a unit of acceleration before counts; the finer time step; the
+    stronger shaking, by powers of two; the suffix of a format; the shorter name; the first.
     """
     sets: dict[int, list[int]] = {}
     for members in sets_of(components):
@@ -152,14 +157,14 @@ def _ranks(
     return ranks
 
 
-def _is_unit(factor: float) -> bool:
-    """Return whether copies differ by what one unit has of another, as m/s² and g do."""
+def _is_unit_ratio(factor: float) -> bool:
+    """Return whether a factor between copies, or its inverse, is the ratio of two units, such as m/s² and g."""
     apart = abs(math.log(abs(factor)))
     return any(abs(apart - math.log(unit)) < _SAME_UNIT for unit in _UNITS)
 
 
 def _reason(copy: Component, used: Component, factor: float | None) -> str:
-    """Return why ``copy`` is left out: for which other one, and what that has that this one does not."""
+    """Return why ``copy`` is left out for ``used``: the same samples, less corrected, or larger by ``factor``."""
     same = copy.dt == used.dt and np.array_equal(copy.acceleration, used.acceleration)
     words = "a copy of" if same else "the same recording as"
     if _CORRECTED[used.processed] < _CORRECTED[copy.processed]:
@@ -169,8 +174,8 @@ def _reason(copy: Component, used: Component, factor: float | None) -> str:
     return f"{words} {used.source}"
 
 
-def with_fates(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
-    """Return what is left out for another component, which tells whether ``motions`` have that one."""
+def tell_use_of_originals(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]:
+    """Return left-out files, copies with the addition whether the set ``motions`` uses their original."""
     used = {source for motion in motions for source in (*motion.source.split(" + "), motion.vertical_source)}
     refused = {source for file in motions.unusable for source in file.source.split(", ")}
 
@@ -183,7 +188,7 @@ def with_fates(left_out: Iterable[LeftOut], motions: MotionSet) -> list[LeftOut]
 
 
 def _difference(copy: Component, used: Component, factor: float | None, decided: bool) -> Finding | None:
-    """Return what the copy that is left out has otherwise: a factor, which must be ``decided``, or another peak."""
+    """Return a finding on a left-out ``copy`` that differs by a factor, gross unless ``decided``, or in its peak; else None."""
     if factor is not None:
         text = f"{copy.source}, left out, has the same samples times {factor:.4g}: check which of them is right"
         return Finding("factor", text, gross=not decided and abs(abs(factor) - 1.0) > _GROSS_FACTOR)

@@ -1,6 +1,6 @@
 """Statements of the direction of a component: by angles, channel code, header, file name or the user.
 
-Readers collect it; ``directions.py`` judges it for a whole set.
+Readers collect them; ``directions.py`` judges them for a whole set.
 """
 
 from collections.abc import Sequence
@@ -21,22 +21,25 @@ class Kind(Enum):
 
 
 _ORDER = list(Kind)
-_EXCHANGED = 15.0  # degrees that a code and an angle may be off a right angle to each other where they seem exchanged
-_ROUNDED = 5.0  # degrees that two statements of one azimuth may differ
+_EXCHANGED = 15.0  # degrees off a right angle within which a code and an angle seem exchanged
+_ROUNDED = 5.0  # degrees by which two statements of one azimuth may differ
 
 
 @dataclass(frozen=True)
 class Statement:
-    """A direction, what states it, and its words: ``channel "HNZ"``."""
+    """A direction, the kind of its source, and its words: ``channel "HNZ"``."""
 
     kind: Kind
     words: str
     orientation: Orientation
-    default: bool = False  # whether programs write it where they know nothing: azimuth 0°, dip 0°
-    weak: bool = False  # whether it may mean something else, and counts only where nothing else tells
+    default: bool = False  # whether programs write it by default: azimuth 0°, dip 0°
+    weak: bool = False  # whether it may mean something else, and counts only without another statement
 
     def contradicts(self, other: "Statement") -> bool:
-        """Return whether not both can be right; sensors that are turned to any azimuth still have codes with N and E."""
+        """Return whether at most one can be right.
+
+        Sensors turned to any azimuth still have codes with N and E, so these contradict an angle only if 90° off.
+        """
         mine, others = self.orientation, other.orientation
         if mine.vertical != others.vertical:
             return True
@@ -50,32 +53,32 @@ class Statement:
         return apart > _ROUNDED
 
     def differs_from(self, other: "Statement") -> bool:
-        """Return whether both cannot be exact: other roles, or azimuths that are no rounding of each other."""
+        """Return whether roles or azimuths differ by more than rounding; False if only one has an azimuth."""
         a, b = self.orientation.azimuth, other.orientation.azimuth
         apart = 0.0 if a is None or b is None else abs((a - b + 180.0) % 360.0 - 180.0)
         return self.orientation.vertical != other.orientation.vertical or apart > _ROUNDED
 
     @property
     def is_angle(self) -> bool:
-        """Return whether it is the angles of a header."""
+        """Return whether it is made of a header's angles."""
         return self.kind is Kind.ANGLES
 
     @property
     def has_number(self) -> bool:
-        """Return whether its azimuth is a number, and not N or E."""
+        """Return whether its azimuth is a number rather than N or E."""
         return self.is_angle or any(c.isdecimal() for c in self.orientation.label)
 
     @property
     def states_sign(self) -> bool:
-        """Return whether it says if a vertical component is positive up or down."""
+        """Return whether it states if a vertical component is positive up or down, rather than vertical only."""
         return self.is_angle or self.orientation.down or is_upward(self.orientation.label)
 
 
-def settled(statements: Sequence[Statement], label: str = "") -> Orientation:
-    """Return the orientation that the first statement in the order of kinds gives; unknown of ``label`` without one.
+def decided_orientation(statements: Sequence[Statement], label: str = "") -> Orientation:
+    """Return the orientation of the most believed statement, by the order of ``Kind``; unknown with ``label`` without any.
 
-    What programs write by default, and what may mean something else, tells nothing beside another statement; a default
-    azimuth without a dip tells nothing at all.
+    Default and weak statements count only if there are no others. Angles without an azimuth give way to a statement of a
+    horizontal component's azimuth.
     """
     ordered = sorted(statements, key=lambda s: _ORDER.index(s.kind))
     strong = [s.orientation for s in ordered if not (s.default or s.weak)] or [s.orientation for s in ordered]
@@ -86,11 +89,11 @@ def settled(statements: Sequence[Statement], label: str = "") -> Orientation:
     return strong[0]
 
 
-def by_angles(label: str, words: str, azimuth: float | None, dip: float | None) -> Statement | None:
-    """Return what azimuth and dip [degrees, down from the horizontal] state of a channel ``label``; ``None`` without them.
+def angles_statement(label: str, words: str, azimuth: float | None, dip: float | None) -> Statement | None:
+    """Return the statement of azimuth and dip [degrees, dip down from the horizontal] for a channel ``label``.
 
-    An azimuth alone is that of a horizontal component, but the default 0° of any; a dip between both is neither, which
-    ``ValueError`` says.
+    ``None`` without either, and for an azimuth of 0° without a dip, which programs write by default. Raises ``ValueError``
+    for an inclined channel, of a dip from 10° to 80°.
     """
     default = azimuth in (None, 0.0) and dip in (None, 0.0)
     if dip is None and (azimuth is None or default):
@@ -103,11 +106,11 @@ def by_angles(label: str, words: str, azimuth: float | None, dip: float | None) 
     return Statement(Kind.ANGLES, words, orientation, default=default)
 
 
-_UPRIGHT, _LEVEL = 80.0, 10.0  # dips of what is vertical, and of what is horizontal
+_UPRIGHT, _LEVEL = 80.0, 10.0  # degrees of dip: least of a vertical channel, greatest of a horizontal one
 
 
 def same_direction(a: Orientation, b: Orientation) -> bool:
-    """Return whether two known orientations are one, by azimuths, or else by their labels."""
+    """Return whether two known orientations agree, by azimuths within 1°, else by labels; False if one is unknown."""
     if not (a.known and b.known) or a.vertical != b.vertical:
         return False
     if a.vertical:

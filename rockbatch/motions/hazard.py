@@ -1,4 +1,4 @@
-"""Seismic hazard: mean annual rates at which an intensity is exceeded at a site, as a table or a parabola in logarithms."""
+"""Seismic hazard: mean annual rates of exceedance of an intensity at a site, as a table or a parabola in logarithms."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -15,13 +15,13 @@ from rockbatch.common.errors import InputError
 Values = npt.NDArray[np.float64]
 
 REACH = 10.0
-"""How far beyond its table a curve goes on with its end slope, in ln x: a factor of 22,000 either way."""
+"""Extrapolation of a curve beyond its table with its end slope, in ln x: a factor of 22,000 either way."""
 
 STEP = 0.05
 """Widest piece of the quadrature in ln x; with three Gauss points each, rates are exact to 1e-7 for dispersions from 0.05."""
 
 MOST_RATE = 100.0
-"""Per year: above it a number is a return period in the wrong place."""
+"""Greatest rate per year; larger numbers are probably return periods."""
 
 
 @checked
@@ -42,9 +42,9 @@ class HazardCurve:
     slope : float or None
         k of ν ∝ x^−k through a single point; of ground accelerations it is of the order of 3 (EN 1998-1, 2.1(4)).
     shape : "points" or "quadratic"
-        What goes through the points.
+        Curve through the points: a power law between each two, or one parabola.
 
-    Raises ``InputError`` with all that is wrong with the points.
+    Raises ``InputError`` with all mistakes in the points.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class HazardCurve:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Return the lowest and the highest intensity of the table; beyond them rates are extrapolated."""
+        """Return the lowest and the highest intensity of the points; rates beyond them are extrapolated."""
         return self.levels[0], self.levels[-1]
 
     def rate(self, x: "Sequence[float] | Values") -> Values:
@@ -78,7 +78,7 @@ class HazardCurve:
         return np.exp(np.log(np.array(self.rates))[segment] - k[segment] * (log_x - logs[segment]))
 
     def log_slope(self, x: Values) -> Values:
-        """Return k(x) = −d ln ν/d ln x, shape of ``x``, 0 where a parabola has passed its summit."""
+        """Return k(x) = −d ln ν/d ln x, shape of ``x``, 0 on the rising side of a parabola."""
         log_x = np.log(x)
         if self.shape == "quadratic":
             return np.maximum(-np.polyval(np.polyder(self._parabola), log_x), 0.0)
@@ -86,10 +86,9 @@ class HazardCurve:
         return k[np.clip(np.searchsorted(np.log(self.levels), log_x) - 1, 0, len(k) - 1)]
 
     def quadrature(self) -> tuple[Values, Values]:
-        """Return intensities, rising, and the annual rate of the motions about each, shape (n,).
+        """Return rising intensities x and weights w [1/year], shape (n,): ∑ P(x) w = ∫ P(x) |dν(x)|, the mean annual rate.
 
-        The sum of P(x) times these rates is the mean annual rate ∫ P(x) |dν(x)| of a fragility P. The last one stands for all
-        stronger motions.
+        P is a fragility. The last weight stands for all stronger motions.
         """
         logs = np.log(self.levels)
         ends = [logs[0] - REACH, *logs, logs[-1] + REACH]
@@ -103,23 +102,24 @@ class HazardCurve:
 
     @property
     def misfit(self) -> float:
-        """Return the greatest relative distance of the curve from its points: 0 but for a parabola through more than three."""
+        """Return the greatest relative distance of the curve from its points: 0 except for a parabola of more than three."""
         return float(np.abs(self.rate(self.levels) / np.array(self.rates) - 1.0).max())
 
     @property
     def _slopes(self) -> Values:
-        """Slopes k of the pieces between the points."""
+        """Return the slopes k between the points, shape (points − 1,); the given slope alone for a single point."""
         if self.slope is not None:
             return np.array([self.slope])
         return -np.diff(np.log(self.rates)) / np.diff(np.log(self.levels))
 
     @property
     def _parabola(self) -> Values:
+        """Return the coefficients of ln ν as a polynomial of ln x, of the square first."""
         return np.polyfit(np.log(self.levels), np.log(self.rates), 2)
 
     @property
     def _summit(self) -> float:
-        """The ln x below which a parabola would fall again."""
+        """Return the ln x of the maximum of a parabola, below which its rate is kept constant; −inf without a maximum."""
         a, b, _ = self._parabola
         return float(-b / (2.0 * a)) if a < 0 else -math.inf
 
@@ -127,7 +127,7 @@ class HazardCurve:
 def problems(
     levels: Sequence[float], rates: Sequence[float], slope: float | None, shape: str
 ) -> Iterator[tuple[int | None, str]]:
-    """Yield what is wrong with the points of a curve: the place of one, or None, and a message."""
+    """Yield each mistake in the points of a curve: the index of the point, or None, and a message."""
     if shape not in ("points", "quadratic"):
         yield None, f'shape = "{shape}": write "points" or "quadratic"'
     if len(levels) != len(rates):
@@ -153,6 +153,7 @@ def problems(
 def _about_shape(
     levels: Sequence[float], rates: Sequence[float], slope: float | None, shape: str
 ) -> Iterator[tuple[int | None, str]]:
+    """Yield the mistakes of ``slope`` and ``shape`` for the number of points."""
     if slope is not None and not slope > 0:
         yield None, f"slope = {slope:g}: it is k of a rate that falls as 1/x^k, above 0"
     if slope is not None and len(levels) > 1:

@@ -1,7 +1,5 @@
 """Kinds of values that a study or a manifest may state about records: units, sampling intervals, azimuths of components."""
 
-from typing import Any
-
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.limits import LONGEST_STEP, SHORTEST_STEP, STEPS
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, Text, Whole, text
@@ -24,8 +22,8 @@ def _is_file_name(value: str) -> None:
 _NUMBER = Whole()
 
 
-def _channel(value: Any) -> int | str:
-    """Return the label or name of a component, or its number in the file, from 1."""
+def _channel(value: object) -> int | str:
+    """Return the text, or whole number from 1, that names a component; raise ``KindError`` for other values."""
     if isinstance(value, float) and value.is_integer():
         value = int(value)  # 2.0, which a schema takes for a whole number, too
     return _NUMBER(value) if isinstance(value, int) else text(value)

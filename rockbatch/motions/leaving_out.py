@@ -9,14 +9,14 @@ from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component, file_of
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.plausible import fits
+from rockbatch.motions.plausible import matches_any
 from rockbatch.motions.stations import station_of
 
 Reading = Component | Unusable | LeftOut
 
 
 class LeaveOut:
-    """Names and patterns of what is left out; it notes which of them match, and all names for the others' messages."""
+    """Names and patterns to leave out; it remembers which of them matched, and all names, for messages."""
 
     def __init__(self, patterns: Sequence[str]) -> None:
         self._patterns = patterns
@@ -30,6 +30,7 @@ class LeaveOut:
         return [self._reading(reading) for reading in readings]
 
     def _reading(self, reading: Reading) -> Reading:
+        """Return a reading, left out if a pattern matches any of its names."""
         stations = [reading.station]
         if isinstance(reading, Component):
             stations = [station_of(reading), reading.origin.station, reading.site]
@@ -41,7 +42,7 @@ class LeaveOut:
         return _left_out(reading.name, reading.source, pattern, stations[0])
 
     def motions(self, motions: MotionSet) -> MotionSet:
-        """Return the motions without those whose record or station is named, nor such among the unusable ones."""
+        """Return the set with motions and unusable files moved to the left-out ones if their record or station is named."""
         if not self._patterns:
             return motions
         used: list[Motion] = []
@@ -73,9 +74,9 @@ class LeaveOut:
             raise InputError(*wrong)
 
     def _fitting(self, *names: str) -> str:
-        """Return the first pattern that one of these names fits; empty if none does."""
+        """Return the first pattern that matches one of these names; empty if none does."""
         self._names.update(dict.fromkeys(filter(None, names)))
-        fitting = [pattern for pattern in self._patterns if any(fits(name, [pattern]) for name in names)]
+        fitting = [pattern for pattern in self._patterns if any(matches_any(name, [pattern]) for name in names)]
         self._matched.update(fitting)
         return fitting[0] if fitting else ""
 

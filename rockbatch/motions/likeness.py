@@ -1,8 +1,8 @@
-"""Which components are of one recording.
+"""Recognition of components of one recording.
 
-Two components are if they point alike and their samples are the same, or correlate once aligned: well where their headers name
-one sensor and one event, very well where these do not tell. Headers propose, samples decide. Two sets are, as wholes, if both
-are alike in some frame: copies are cut, turned, filtered, or labelled otherwise.
+Two components of one direction are of one recording if their samples are equal, or correlate once aligned: well if their headers
+name one sensor and event, very well if these do not tell. Headers propose, samples decide. Two whole sets are of one recording
+if they are alike in some frame: copies may be cut, rotated, filtered, or labelled otherwise.
 """
 
 import hashlib
@@ -23,16 +23,19 @@ from rockbatch.motions.orientation import SAME_AZIMUTH, UNKNOWN
 from rockbatch.motions.stations import is_numbered
 
 _ALIKE = 0.7  # correlation: real files of one recording have 0.98 and more, other records 0.63 at most, halves 0.46
-_CERTAIN = 0.95  # correlation that decides where headers do not
-_IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in the time that both have
+_CERTAIN = 0.95  # correlation that decides without headers
+_IN_COMMON = 0.8  # least share of the energy of one of two sets that lies in their common time
 _SIGNIFICANT = (
     4.0  # standard deviations of Fisher's transform: random walks have 3 at most, real files of one recording 27
 )
 _SAME_STEP = 1e-3  # relative
-_SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
+_SAME_SHAPE = 1e-3  # of the peak: rounding of a sample in a printed, scaled copy
 _NO_FACTOR = 0.005  # relative: values of g, and rounding
 _SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of ∫a² dt
-_SPREAD, _BLUR = 0.1, 0.05  # of the significant duration, and s: how far the times of these shares may differ in copies
+_SPREAD, _BLUR = (
+    0.1,
+    0.05,
+)  # of the significant duration, and s: differences of the times of these shares between copies
 
 _BANDS = np.concatenate((np.arange(0.0, 12.5, 0.125), np.arange(12.5, 50.0, 0.5), np.arange(50.0, 101.0, 5.0)))  # Hz
 _SIMILAR = 0.9  # of amplitudes in bands: a little below _CERTAIN, which it bounds but for the edges of bands
@@ -54,17 +57,15 @@ Truths = npt.NDArray[np.bool_]
 
 
 class Recordings(NamedTuple):
-    """Which components are of one recording, by their places."""
+    """Components of one recording, by their indices."""
 
-    pairs: Pairs  # those of the same recording as each component; those without any are missing
-    scaled: list[
-        tuple[int, int]
-    ]  # copies by a factor of which nothing but their samples says that they are one, in order
-    denied: list[tuple[int, int]]  # those of which headers say so, and samples do not
+    pairs: Pairs  # the other components of the same recording, by component; only components with others
+    scaled: list[tuple[int, int]]  # copies by a factor that only their samples reveal, in order
+    denied: list[tuple[int, int]]  # of one recording by headers, but not by samples
 
 
 def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
-    """Return which components are of one recording, by headers and samples."""
+    """Return the pairs of components of one recording, by headers and samples."""
     table = _Table(components)
     pairs: Pairs = {}
     scaled = []
@@ -82,28 +83,28 @@ def pairs_of_one_recording(components: Sequence[Component]) -> Recordings:
                 join(i, j)
             elif not table.may_be_parts(i, j):
                 denied.append((i, j))
-    for i, j in table.alike():
+    for i, j in table.similar_pairs():
         first, second = components[i], components[j]
         if j in pairs.get(i, ()) or first.sensor.is_distinct_from(second.sensor):
             continue
         factor = factor_between(first, second)
         if factor is not None and abs(abs(factor) - 1.0) > _NO_FACTOR:
             scaled.append((i, j))
-        elif _correlate(first, second):
+        elif _are_one_recording(first, second):
             join(i, j)
-    for i, j in _of_sets(components, pairs, scaled, table):
+    for i, j in _pairs_of_sets(components, pairs, scaled, table):
         join(i, j)
     return Recordings(pairs, sorted(scaled), [(i, j) for i, j in denied if j not in pairs.get(i, ())])
 
 
-def _of_sets(
+def _pairs_of_sets(
     components: Sequence[Component], pairs: Pairs, scaled: Sequence[tuple[int, int]], table: "_Table"
 ) -> Iterator[tuple[int, int]]:
-    """Yield further pairs of two sets that are of one recording as wholes, each component with that which it resembles.
+    """Yield further pairs from two sets that are of one recording as wholes, each component with its counterpart.
 
-    They correlate, if a component of both is of one recording already, or else are coherent wherever both have energy: that
-    tells a copy that was cut, turned and filtered from a neighbour in an array, and a correlation does not. Those with ``scaled``
-    components stay two.
+    Two sets with a pair already must correlate; others must be coherent wherever both have energy: that distinguishes a copy
+    that was cut, rotated and filtered from a neighbour in an array, and a correlation does not. Sets with a ``scaled`` pair
+    stay two.
     """
     sets = list(sets_of(components))
     set_of = {i: number for number, members in enumerate(sets) for i in members}
@@ -118,15 +119,15 @@ def _of_sets(
                 continue
             if not (coherent or (not upright and table.may_be_one(first, second))):
                 break
-            in_parts = 4 if coherent else 1  # a shift by less hardly changes how coherent they are
-            likeness = _in_any_frame([components[i] for i in first], [components[i] for i in second], in_parts)
+            in_parts = 4 if coherent else 1  # coherence hardly changes with shifts by less than a step
+            likeness = _greatest_likeness([components[i] for i in first], [components[i] for i in second], in_parts)
             if likeness.coherence >= _COHERENT or (coherent and likeness.correlation >= _CERTAIN):
                 coherent, crossed = True, np.trace(likeness.each[::-1]) > np.trace(likeness.each)
                 yield from zip(first, reversed(second) if crossed else second, strict=True)
 
 
 def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
-    """Return pairs of sets whose horizontals swell and fade alike around a peak, however they were turned, cut or filtered."""
+    """Return pairs of sets whose horizontals have similar envelopes around a peak, which rotation and cutting do not change."""
     shapes, owners = [np.empty((0, len(_AROUND)))], list[int]()
     for number, members in enumerate(sets):
         horizontals = [components[i] for i in members if not components[i].orientation.vertical]
@@ -134,7 +135,7 @@ def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[
             shapes.append(_shapes(horizontals))
             owners += [number] * len(shapes[-1])
     shape, owner = np.concatenate(shapes), np.array(owners, dtype=np.int64)
-    order = np.argsort(shape[:, 0])
+    order = np.argsort(shape[:, 0])  # so that similar shapes are neighbours by their first value
     shape, owner = shape[order], owner[order]
     ends = np.searchsorted(shape[:, 0], shape[:, 0] + _SAME_ENVELOPE)
     similar: set[tuple[int, int]] = set()
@@ -145,7 +146,7 @@ def _similar_envelopes(components: Sequence[Component], sets: Sequence[Sequence[
 
 
 def _shapes(horizontals: Sequence[Component]) -> Samples:
-    """Return the envelope of horizontals in a band ``_AROUND`` its largest peaks, over each of these, shape (peaks, times)."""
+    """Return the band-passed envelope of horizontals ``_AROUND`` its largest peaks, over each peak, shape (peaks, times)."""
     dt, longest = horizontals[0].dt, max(len(c.acceleration) for c in horizontals)
     n = 1 << (longest + math.ceil(2.0 / dt)).bit_length()
     low, high = (math.ceil(f * n * dt) for f in _WINDOWED)
@@ -162,25 +163,21 @@ def _shapes(horizontals: Sequence[Component]) -> Samples:
 
 
 class _Likeness(NamedTuple):
-    """How alike two sets are in the frame and at the shift that make them most alike, and each component to each."""
+    """Likeness of two sets in the frame and at the shift of their greatest correlation."""
 
     correlation: float
     coherence: float
-    each: Samples  # covariances, shape (n, n)
+    each: Samples  # absolute covariances of each component with each, shape (n, n)
 
 
-def _in_any_frame(first: Sequence[Component], second: Sequence[Component], parts: int) -> _Likeness:
-    """Return the likeness of two sets of one or two components each.
+def _greatest_likeness(first: Sequence[Component], second: Sequence[Component], parts: int) -> _Likeness:
+    """Return the likeness of two sets of one or two components each, over all shifts by 1/``parts`` of a step.
 
-    Over all shifts, by ``parts`` of a step, the greatest trace of their covariances after a rotation or reflection is the sum of
-    the singular values of these; it is divided by the energies in the time that both have, where most of one of them lies.
+    At each shift, the greatest trace of their covariances after a rotation or reflection is the sum of the singular values;
+    it is divided by the energies in the common time, where most of the energy of one of them must lie.
     """
     dt = max(c.dt for c in (*first, *second))
-    a, b = (
-        np.array([x[:shortest] - x[:shortest].mean() for x in series])
-        for series in ([_at_step(c, dt) for c in side] for side in (first, second))
-        for shortest in (min(map(len, series)),)
-    )
+    a, b = _centred(first, dt), _centred(second, dt)
     n = 1 << (a.shape[1] + b.shape[1] - 1).bit_length()
     spectra = np.einsum("if,jf->ijf", np.fft.rfft(a, n), np.conj(np.fft.rfft(b, n)))
     covariances = parts * np.fft.irfft(spectra, parts * n)
@@ -202,29 +199,39 @@ def _in_any_frame(first: Sequence[Component], second: Sequence[Component], parts
     return _Likeness(float(r[best]), _coherence(*common, dt), np.abs(covariances[:, :, best]))
 
 
-def _coherence(a: Samples, b: Samples, dt: float) -> float:
-    """Return the median, over bands in which both sets have energy, of how coherent they are; 0 of few such bands.
+def _centred(components: Sequence[Component], dt: float) -> Samples:
+    """Return accelerations at a step ``dt`` [s] less their means, cut to the shortest, shape (components, npts)."""
+    series = [_at_step(component, dt) for component in components]
+    shortest = min(map(len, series))
+    return np.array([x[:shortest] - x[:shortest].mean() for x in series])
 
-    Shape of both: (components, npts). A filter, whose phase and amplitude are nearly constant in a band, does not change it.
+
+def _coherence(a: Samples, b: Samples, dt: float) -> float:
+    """Return the median coherence of two sets, shape (components, npts), over bands in which both have energy; 0 if few.
+
+    A filter, whose phase and amplitude are nearly constant in a band, does not change it.
     """
     n = a.shape[1]
     place = np.arange(n) + 0.5
     taper = np.square(np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(place, n - place) / max(_TAPER * n, 1.0))))
     first, second = np.fft.rfft(a * taper), np.fft.rfft(b * taper)
     band = (np.fft.rfftfreq(max(n, 1), dt) / _BAND).astype(int)
-    cross, *energies = (
-        np.bincount(band, x.real) + 1j * np.bincount(band, x.imag)
-        for x in ((p * np.conj(q)).sum(axis=0) for p, q in ((first, second), (first, first), (second, second)))
-    )
-    both = np.logical_and(*(x.real > _ENERGETIC * x.real.max() for x in energies))
+
+    def in_bands(p: npt.NDArray[np.complex128], q: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+        """Return the cross-spectrum, summed over components and over each band."""
+        products = (p * np.conj(q)).sum(axis=0)
+        return np.asarray(np.bincount(band, products.real) + 1j * np.bincount(band, products.imag))
+
+    energy, other_energy = in_bands(first, first).real, in_bands(second, second).real
+    both = (energy > _ENERGETIC * energy.max()) & (other_energy > _ENERGETIC * other_energy.max())
     if both.sum() < _FEWEST_BANDS:
         return 0.0
-    coherence = np.abs(cross[both]) / np.sqrt(energies[0].real[both] * energies[1].real[both])
+    coherence = np.abs(in_bands(first, second)[both]) / np.sqrt(energy[both] * other_energy[both])
     return float(np.median(coherence))
 
 
 def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
-    """Return the components that belong together: of a file with several, or else of one station, step and processing."""
+    """Yield sets of components that belong together, by index: of a file with several, else of one station, step and stage."""
 
     def place(i: int) -> Hashable:
         c = components[i]
@@ -241,32 +248,32 @@ def sets_of(components: Sequence[Component]) -> Iterator[list[int]]:
 
 
 def _file(component: Component) -> str:
-    """Its file, by folder and source."""
+    """Return the path of a component's file, by folder and source."""
     return f"{component.folder}/{file_of(component.source)}"
 
 
 def suffix_of(component: Component) -> str:
-    """Return its file's suffix, in lower case."""
+    """Return the suffix of a component's file, without .gz, in lower case."""
     return bare(Path(file_of(component.source))).suffix.lower()
 
 
 def _samples(component: Component) -> bytes:
-    """Return a digest of the step and the samples."""
+    """Return a digest of the sampling interval and the samples."""
     return hashlib.sha256(repr(component.dt).encode() + component.acceleration.tobytes()).digest()
 
 
 def _codes(values: Iterable[Hashable]) -> Indices:
-    """Return equal numbers for equal values, -1 for None and empty ones, shape (n,)."""
+    """Return integers that are equal for equal values, -1 for None and empty ones, shape (n,)."""
     codes: dict[Hashable, int] = {}
     return np.array([codes.setdefault(value, len(codes)) if value else -1 for value in values], dtype=np.int64)
 
 
 class _Table:
-    """Facts by headers and samples, a column for each, so that a component is compared to all others at once.
+    """Properties of components as arrays, so that each component is compared with all others at once.
 
-    ``growth`` holds the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitude in
-    ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` its squares up to each band. Both are
-    NaN until they are asked for.
+    ``growth`` has the times [s] between the ``_SHARES`` of ∫a² dt, and their sum; ``amplitude`` the Fourier amplitudes in
+    ``_BANDS``, of which ``bands`` lie below the Nyquist frequency, and ``energy`` the cumulative sum of their squares. Both
+    are NaN until first used.
     """
 
     def __init__(self, components: Sequence[Component]) -> None:
@@ -288,26 +295,27 @@ class _Table:
         self.whole_file = np.isin(self.file, self.file[vertical]) & np.isin(self.file, self.file[~vertical])
 
     def _differ(self, column: Indices, i: int, j: Indices) -> Truths:
+        """Return whether codes differ from that of ``i``; False where one is unknown, -1."""
         return (column[i] != column[j]) & (column[i] >= 0) & (column[j] >= 0)
 
     def _pointing_alike(self, i: int, j: Indices) -> Truths:
-        """Return whether components point the same way as ``i``, by azimuths, or else by their labels."""
+        """Return whether components have the direction of ``i``, by azimuths, or else by their labels."""
         angles = np.abs((self.azimuth[j] - self.azimuth[i] + 180.0) % 360.0 - 180.0)
         return (self.way[j] == self.way[i]) & ~(angles > SAME_AZIMUTH)
 
     def _overlap(self, i: int, j: Indices) -> Truths:
-        """Return whether components have a time in common with ``i``, as far as is known."""
+        """Return whether components overlap in time with ``i``; True where a start is unknown."""
         return ~((self.start[j] >= self.end[i]) | (self.start[i] >= self.end[j]))
 
     def _joinable(self, i: int, j: Indices) -> Truths:
-        """Return whether headers do not say that components are of other files, times or events than ``i``."""
-        # formats write of events as they like
+        """Return whether headers allow that components are of the recording of ``i``, in another file."""
+        # events are compared within one format only, since formats word them differently
         differ = self._differ(self.event, i, j) & (self.suffix[j] == self.suffix[i])
         differ |= self._differ(self.numbered, i, j) | (self.file[j] == self.file[i])
         return ~differ & self._overlap(i, j)
 
     def may_be_one(self, first: Sequence[int], second: Sequence[int]) -> bool:
-        """Return whether headers allow that two sets are of one recording, which a single component tells by its direction."""
+        """Return whether headers allow that two sets are of one recording; single components must point alike, too."""
         parts, j = self.components, np.array(second)
         distinct = any(parts[i].sensor.is_distinct_from(parts[k].sensor) for i, k in product(first, second))
         turned = len(first) > 1 or bool(self._pointing_alike(first[0], j).all())
@@ -317,17 +325,16 @@ class _Table:
         """Return later components with the same samples that may be of the same sensor, event and direction."""
         j = i + 1 + np.flatnonzero(self.samples[i + 1 :] == self.samples[i])
         j = j[~self._differ(self.event, i, j)]
-        alike = dict(zip(j.tolist(), self._pointing_alike(i, j), strict=True))
-        parts = self.components
-        return [
-            k
-            for k in alike
-            if (UNKNOWN_SENSOR in (parts[i].sensor, parts[k].sensor) or parts[i].sensor.may_be_same_as(parts[k].sensor))
-            and (alike[k] or UNKNOWN in (parts[i].orientation, parts[k].orientation))
-        ]
+        this, copies = self.components[i], []
+        for k, alike in zip(j.tolist(), self._pointing_alike(i, j), strict=True):
+            other = self.components[k]
+            one_sensor = UNKNOWN_SENSOR in (this.sensor, other.sensor) or this.sensor.may_be_same_as(other.sensor)
+            if one_sensor and (alike or UNKNOWN in (this.orientation, other.orientation)):
+                copies.append(k)
+        return copies
 
     def same_by_headers(self, i: int) -> list[int]:
-        """Return later components that headers say are of the same recording; those in one file are of different sensors."""
+        """Return later components of the same recording by their headers; those in one file are of different sensors."""
         if self.sensor[i] < 0:
             return []
         near = (self.event[i + 1 :] == self.event[i]) | self.dated[i + 1 :]
@@ -335,23 +342,20 @@ class _Table:
         same_event = (self.event[i] >= 0) & (self.event[j] == self.event[i])
         same_event = np.where(self.dated[i] & self.dated[j], self._overlap(i, j), same_event)
         differ = (self.file[j] == self.file[i]) | self._differ(self.numbered, i, j)
-        first, parts = self.components[i], self.components
-        return [
-            k
-            for k in j[same_event & ~differ & self._pointing_alike(i, j)].tolist()
-            if first.sensor.may_be_same_as(parts[k].sensor)
-        ]
+        sensor = self.components[i].sensor
+        candidates = j[same_event & ~differ & self._pointing_alike(i, j)].tolist()
+        return [k for k in candidates if sensor.may_be_same_as(self.components[k].sensor)]
 
     def may_be_parts(self, i: int, j: int) -> bool:
-        """Return whether components may be of two parts of a recording: of whole files of one step that are processed alike."""
+        """Return whether two components may be of consecutive parts of a recording: of whole files of one step and stage."""
         a, b = self.components[i], self.components[j]
         alike = a.processed == b.processed and abs(a.dt - b.dt) <= _SAME_STEP * a.dt
         return bool(self.whole_file[i] and self.whole_file[j]) and alike
 
-    def alike(self) -> Iterator[tuple[int, int]]:
-        """Return pairs whose ∫a² dt grows alike in time, and whose spectra are alike, whatever their scale, start and step.
+    def similar_pairs(self) -> Iterator[tuple[int, int]]:
+        """Yield pairs of similar growth of ∫a² dt and similar spectra, whatever their scale, start and step.
 
-        Few of them are no copies. Headers do not say that they are of other files, times, events or directions.
+        They are candidates for copies; their headers allow one recording and direction, in two files.
         """
         order = np.argsort(self.growth[:, -1], kind="stable")
         length = self.growth[order, -1]
@@ -366,7 +370,7 @@ class _Table:
             yield from ((min(i, k), max(i, k)) for k in j[self._similar(i, j)].tolist())
 
     def _similar(self, i: int, j: Indices) -> Truths:
-        """Return whether the spectra allow a correlation that decides: Σ AᵢAⱼ e^iφ, whatever the shift, is at most Σ |Aᵢ||Aⱼ|."""
+        """Return whether the spectra allow a correlation of ``_CERTAIN``: at any shift, |Σ AᵢAⱼ e^iφ| ≤ Σ |Aᵢ||Aⱼ|."""
         for k in (i, *j[np.isnan(self.amplitude[j, 0])].tolist()) if len(j) else ():
             if math.isnan(self.amplitude[k, 0]):
                 self.amplitude[k] = _amplitudes(self.components[k])
@@ -377,7 +381,7 @@ class _Table:
 
 
 def _kind_of_direction(component: Component) -> tuple[str, ...]:
-    """Return what components that point alike share beside their azimuth; empty if nothing is known."""
+    """Return a key that components of one direction share, besides their azimuth; () for an unknown direction."""
     orientation = component.orientation
     if orientation.vertical:
         return ("vertical",)
@@ -394,7 +398,7 @@ def _growth(component: Component) -> Samples:
 
 
 def _amplitudes(component: Component) -> Samples:
-    """Return the Fourier amplitude in each of ``_BANDS``, 1 in all of them."""
+    """Return the Fourier amplitude in each of ``_BANDS``, normalised so that their squares sum to 1."""
     a, dt = component.acceleration - component.acceleration.mean(), component.dt
     n = 1 << max(2 * len(a), math.ceil(2.0 / (dt * _BANDS[1]))).bit_length()
     energy = np.concatenate(([0.0], np.cumsum(np.square(np.abs(np.fft.rfft(a, n))))))
@@ -408,11 +412,11 @@ def likeness_of(a: Component, b: Component) -> float:
     return correlation(_at_step(a, dt), _at_step(b, dt))
 
 
-def _correlate(a: Component, b: Component) -> bool:
-    """Return whether the samples of two components, brought to one step, are those of one recording.
+def _are_one_recording(a: Component, b: Component) -> bool:
+    """Return whether the samples of two components, brought to one step, are so well correlated that they are one recording.
 
-    A few waves of one period look alike whoever recorded them: of n independent values, the inverse hyperbolic tangent of a
-    correlation by chance has a standard deviation of 1/√(n − 3) (Fisher), and what is found has to be far above that.
+    A few waves of one period look alike in any two records: the inverse hyperbolic tangent of a correlation by chance, of n
+    independent values, has a standard deviation of 1/√(n − 3) (Fisher); the correlation found must lie far above it.
     """
     coarse, fine = sorted((a, b), key=lambda c: -c.dt)
     first, second = coarse.acceleration, _at_step(fine, coarse.dt)
@@ -424,7 +428,7 @@ def _correlate(a: Component, b: Component) -> bool:
 
 
 def _independent_values(a: Samples, b: Samples) -> float:
-    """Return how many independent values two series of one step have in common: 2BT.
+    """Return the number of independent values, 2BT, common to two series of one step.
 
     B is the bandwidth of their power spectra S₁ and S₂, ∫S₁df ∫S₂df / ∫S₁S₂df; T is the shorter of the times in which 5 to
     95% of ∫a² dt grow, over 0.9.
@@ -443,7 +447,7 @@ def _strong_samples(values: Samples) -> int:
 
 
 def _at_step(component: Component, dt: float) -> Samples:
-    """Return the accelerations at a step ``dt`` [s], as coarse or coarser, without what it cannot show."""
+    """Return the accelerations at a coarser step ``dt`` [s], without frequencies above its Nyquist frequency."""
     a = component.acceleration
     if abs(component.dt - dt) <= _SAME_STEP * dt:
         return a
@@ -454,10 +458,7 @@ def _at_step(component: Component, dt: float) -> Samples:
 
 
 def correlation(first: Samples, second: Samples) -> float:
-    """Return the largest correlation of two series of one step, either way up, over all shifts of one against the other.
-
-    Shifts are by quarters of a step. It is 1 where one of them never moves.
-    """
+    """Return the largest absolute correlation of two series over all shifts by quarters of their step; 1 if one is constant."""
     first, second = ((x - x.mean()) / (np.abs(x).max() or 1.0) for x in (first, second))
     n = 1 << (len(first) + len(second) - 1).bit_length()
     shifted = 4.0 * np.fft.irfft(np.fft.rfft(first, n) * np.conj(np.fft.rfft(second, n)), 4 * n)
@@ -466,7 +467,7 @@ def correlation(first: Samples, second: Samples) -> float:
 
 
 def factor_between(a: Component, b: Component) -> float | None:
-    """Return how many times larger ``a`` is than ``b``, if their samples are the same but for that; ``None`` if not."""
+    """Return the factor other than 1 by which the samples of ``a`` are those of ``b``; ``None`` if there is none."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > _SAME_STEP * a.dt or not second.any():
         return None

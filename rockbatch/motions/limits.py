@@ -1,4 +1,4 @@
-"""Limits of records: beyond these a header is damaged, or the file no record, and arrays would not fit into memory."""
+"""Limits of records: beyond them a header is damaged or the file is no record, and its arrays would not fit into memory."""
 
 from rockbatch.common.units import Usual
 
@@ -9,13 +9,13 @@ USUAL_STEP = Usual(0.2, "s: records have 0.002 to 0.05 s from sample to sample",
 """Sampling interval of a motion from Python or a pulse."""
 
 SAME_STEP = 0.01
-"""Relative: intervals that differ by less are the same one, printed with few decimals (1/256 s as .0039)."""
+"""Relative difference below which two intervals are taken as one, printed with few decimals (1/256 s as .0039)."""
 
 MOST_STEPS = 20
 """Greatest ratio of the sampling intervals of two components of a record."""
 
 MOST_SAMPLES = 2 * 10**7
-"""Of a component, also after its times were made even: a day at 200 Hz has 17 million."""
+"""Greatest number of samples of a component, also after resampling to even steps: a day at 200 Hz has 17 million."""
 
 HUGE = 1e30
 """A bound that no acceleration reaches in any unit; its powers and sums stay within the range of floats."""

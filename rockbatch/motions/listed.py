@@ -1,11 +1,11 @@
-"""What a list beside records says of one of them."""
+"""A record's facts in the list of PEER's search beside it."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Listed:
-    """What a list says of a record; None where it does not."""
+    """Facts that a list gives of a record; None where it gives none."""
 
     scale: float | None = None
     magnitude: float | None = None
@@ -15,5 +15,5 @@ class Listed:
     pulse_period_s: float | None = None
 
 
-NOTHING = Listed()
-"""Of a record that no list has."""
+NOT_LISTED = Listed()
+"""For a record that no list has."""

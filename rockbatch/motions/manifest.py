@@ -1,14 +1,14 @@
-"""Manifests: what people know about records that the files do not say, or say wrongly.
+"""Manifests: facts about records that their files lack, or state wrongly.
 
-``motions.toml`` has a table [[record]] for each file, ``motions.csv`` a line, with the keys of ``RECORD``; both lie in
-the folder that the names of the files start from.
+``motions.toml`` has a table [[record]] for each file, ``motions.csv`` a line, with the keys of ``RECORD``; file names in them
+are relative to their folder.
 """
 
 import csv
 import io
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -31,41 +31,78 @@ from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, nearby
 from rockbatch.toml.section import Key, Section
 
-RECORD = Section(("record",), (
-    "Facts about a record that its file lacks or states wrongly. The file `motions.toml` lies in the folder of "
-    "the records; `rockbatch motions FOLDER --write-manifest` drafts it."
-), {
-    "file": Key(kinds.file_name, '"RSN1063_NORTHR_RRS228.AT2"',
-        "The file, relative to the folder of the manifest.", required=True),
-    "component": Key(kinds.channel, '"NS"',
-        "One of several components in the file, by its label, its name, or its number in the file, from 1."),
-    "use": Key(boolean, "false", "false: it is left out; true: it is used before other files of the same recording."),
-    "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
-    "layout": Key(choice(*LAYOUTS), '"wrapped"', '"wrapped": its numbers are one series that goes on from line to line.'),
-    "columns": Key(text, '["time", "000", "090", "up"]',
-        'Meaning of the columns of a text file: "time", "up", an azimuth, or "-" for none of these.', many=True, distinct=False),
-    "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
-    "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
-    "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
-    "sensitivity": Key(nonzero, "428000.0", "Counts per unit of acceleration of a file in counts, in place of StationXML's."),
-    "scale": Key(positive, "1.0", "Factor on the accelerations."),
-    "polarity": Key(choice("+", "-"), '"-"', '"-" reverses the component.'),
-    "station": Key(text, '"Rinaldi"', "Name of the station; components that share it belong together."),
-    "distance_km": Key(not_negative, "6.5", "Distance to the rupture."),
-    "magnitude": Key(number, "6.7", "Magnitude of the earthquake."),
-    "confirm": Key(boolean, "true", "Whether a grossly unusual record is correct."),
-    "confirm_pga": Key(boolean, "true", "Whether an unusual peak acceleration is correct."),
-}, many=True, also=names({
-    "file": "filename path record", "station": "site stationname", "azimuth": "angle direction orientation bearing heading",
-    "scale": "factor multiplier", "magnitude": "mw mag m", "distance_km": "rrup rjb distance", "component": "channel",
-    "role": "type", "polarity": "sign", "dt": "timestep samplinginterval",
-}), instead=names({
-    "write use = false": "skip ignore exclude omit leaveout", 'write role = "vertical"': "vertical",
-    'write polarity = "-"': "flip reverse invert",
-}))  # fmt: skip
+RECORD = Section(
+    ("record",),
+    (
+        "Facts about a record that its file lacks or states wrongly. The file `motions.toml` lies in the folder of "
+        "the records; `rockbatch motions FOLDER --write-manifest` drafts it."
+    ),
+    {
+        "file": Key(
+            kinds.file_name,
+            '"RSN1063_NORTHR_RRS228.AT2"',
+            "The file, relative to the folder of the manifest.",
+            required=True,
+        ),
+        "component": Key(
+            kinds.channel,
+            '"NS"',
+            "One of several components in the file, by its label, its name, or its number in the file, from 1.",
+        ),
+        "use": Key(
+            boolean, "false", "false: it is left out; true: it is used before other files of the same recording."
+        ),
+        "role": Key(choice("horizontal", "vertical"), '"vertical"', "Whether the component is horizontal or vertical."),
+        "layout": Key(
+            choice(*LAYOUTS), '"wrapped"', '"wrapped": its numbers are one series that goes on from line to line.'
+        ),
+        "columns": Key(
+            text,
+            '["time", "000", "090", "up"]',
+            'Meaning of the columns of a text file: "time", "up", an azimuth, or "-" for none of these.',
+            many=True,
+            distinct=False,
+        ),
+        "azimuth": Key(kinds.azimuth, "228", "Direction of the component, degrees clockwise from north."),
+        "unit": Key(kinds.unit, '"cm/s2"', "Unit of acceleration, in place of the file's own."),
+        "dt": Key(kinds.step, "0.01", "Sampling interval [s], in place of the file's own."),
+        "sensitivity": Key(
+            nonzero, "428000.0", "Counts per unit of acceleration of a file in counts, in place of StationXML's."
+        ),
+        "scale": Key(positive, "1.0", "Factor on the accelerations."),
+        "polarity": Key(choice("+", "-"), '"-"', '"-" reverses the component.'),
+        "station": Key(text, '"Rinaldi"', "Name of the station; components that share it belong together."),
+        "distance_km": Key(not_negative, "6.5", "Distance to the rupture."),
+        "magnitude": Key(number, "6.7", "Magnitude of the earthquake."),
+        "confirm": Key(boolean, "true", "Whether a grossly unusual record is correct."),
+        "confirm_pga": Key(boolean, "true", "Whether an unusual peak acceleration is correct."),
+    },
+    many=True,
+    also=names(
+        {
+            "file": "filename path record",
+            "station": "site stationname",
+            "azimuth": "angle direction orientation bearing heading",
+            "scale": "factor multiplier",
+            "magnitude": "mw mag m",
+            "distance_km": "rrup rjb distance",
+            "component": "channel",
+            "role": "type",
+            "polarity": "sign",
+            "dt": "timestep samplinginterval",
+        }
+    ),
+    instead=names(
+        {
+            "write use = false": "skip ignore exclude omit leaveout",
+            'write role = "vertical"': "vertical",
+            'write polarity = "-"': "flip reverse invert",
+        }
+    ),
+)
 SECTIONS = (RECORD, replace(SEQUENCE, at=("sequence",)))
 """Tables of a ``motions.toml``."""
-_MOST_HINTS = 10  # for files that are not there: each is compared with all that are
+_MOST_HINTS = 10  # for missing files, each of which is compared with all files of its folder
 _LONGEST_HEAD = 1000  # bytes of the first line of a CSV
 _OPTIONS = ("unit", "dt", "layout", "columns", "sensitivity")
 _CONFIRM = ("confirm", "confirm_pga")
@@ -76,35 +113,35 @@ _SAME = 1e-9  # relative: factors of units, and steps, that differ by less are t
 
 @dataclass(frozen=True)
 class Entry:
-    """The entry of a file, or of one component in it: the values of its keys, and where they stand."""
+    """The entry of a file, or of one component in it: its table and the values of its keys."""
 
     path: Path
     table: Table
-    values: dict[str, Any]
+    values: Mapping[str, Any]  # as RECORD has checked them
 
     @property
     def component(self) -> str | int | None:
-        """Label, name or number in the file of the component that is meant; ``None`` for all of the file."""
+        """Return the label, name or number in the file of its component; ``None`` for the whole file."""
         return self.values.get("component")
 
     @property
     def use(self) -> bool:
-        """Return whether the file or component shall be used."""
+        """Return whether the file or component is to be used."""
         return bool(self.values.get("use", True))
 
     @property
     def unused(self) -> str:
-        """Reason for which its file or component is left out."""
+        """Return the reason for leaving out its file or component."""
         return f"use = false in {self.table.file.path.name}"
 
     def is_for(self, unusable: Unusable) -> bool:
-        """Return whether it is for this one component, which cannot be used."""
+        """Return whether its component is this unusable one; False for an entry of a whole file."""
         return self.component is not None and self.component in (unusable.label, unusable.name, unusable.number or None)
 
 
 @dataclass
 class Manifest:
-    """Entries by file (its real path), and the mistakes found, which :meth:`finish` raises."""
+    """Entries by the real path of their file, and mistakes, which :meth:`finish` raises."""
 
     entries: dict[Path, list[Entry]]
     files: list[TomlFile]
@@ -121,10 +158,10 @@ class Manifest:
             except InputError as error:
                 manifest.refused += error.problems
             else:
-                manifest._take(file)
+                manifest._add_entries(file)
         return manifest
 
-    def _take(self, file: TomlFile) -> None:
+    def _add_entries(self, file: TomlFile) -> None:
         self.files.append(file)
         Table(file, (), "", file.data).read({}, other=("record", "sequence"))
         self.sequences += [(str(file.path), sequence) for sequence in read_sequences(file, "sequence")]
@@ -141,7 +178,7 @@ class Manifest:
                 table.complain(
                     f"file = {shown(values['file'])}: lies outside this folder; put a manifest there", "file"
                 )
-            elif not _is_there(path):
+            elif not _file_exists(path):
                 hint = nearby(path, path.relative_to(folder).as_posix()) if len(file.problems) < _MOST_HINTS else ""
                 table.complain(f"file = {shown(values['file'])}: no such file in {folder}{hint}", "file")
             elif (path, values.get("component")) in listed:
@@ -151,7 +188,7 @@ class Manifest:
                 self.entries.setdefault(path, []).append(Entry(path, table, values))
 
     def entries_for(self, path: Path) -> list[Entry]:
-        """Return entries of a file, those of the whole file first; those of its archive where it has none of its own."""
+        """Return the entries of a file, those of the whole file first; those of its archive if it has none."""
         real = Path(os.path.realpath(path))
         archive = archive_of(real)
         entries = self.entries.get(real) or (self.entries.get(archive, []) if archive else [])
@@ -168,16 +205,16 @@ class Manifest:
         refuse(problems)
 
 
-def _is_there(path: Path) -> bool:
-    """Return whether there is such a file, on the disk or in an archive."""
+def _file_exists(path: Path) -> bool:
+    """Return whether a file exists, on the disk or in an archive; False for names that are too long and closed folders."""
     try:
         return path.is_file() or is_member(path)
-    except OSError:  # a name that is too long, a folder that is closed
+    except OSError:
         return False
 
 
 def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
-    """Return ``options`` with what the manifest has of their keys for the whole file."""
+    """Return ``options`` with the values of a manifest's entries for the whole file, which go before the file's own."""
     for entry in entries:
         if entry.component is None:
             stated = {key: entry.values[key] for key in _OPTIONS if key in entry.values}
@@ -185,12 +222,12 @@ def options_of(entries: Sequence[Entry], options: ReadOptions) -> ReadOptions:
     return options
 
 
-def described(
+def apply_entries(
     components: Sequence[Component], entries: Sequence[Entry], gravity: float, refused: Sequence[Unusable] = ()
 ) -> list[tuple[Component, bool]]:
-    """Return components of a file as its entries want them, and whether each is to be used; mistakes are noted.
+    """Return a file's components with its entries applied, and whether each is to be used; collect mistakes in the manifest.
 
-    ``refused`` are the components of the file that cannot be used, which entries may be for too.
+    ``refused`` are the unusable components of the file, for which entries may be, too.
     """
     chosen: list[tuple[Component, bool]] = [(component, True) for component in components]
     for entry in entries:
@@ -213,11 +250,12 @@ def described(
                 )
         for i in matching:
             component, used = chosen[i]
-            chosen[i] = (_described(component, entry, gravity), used and entry.use)
+            chosen[i] = (_apply_entry(component, entry, gravity), used and entry.use)
     return chosen
 
 
-def _described(component: Component, entry: Entry, gravity: float) -> Component:
+def _apply_entry(component: Component, entry: Entry, gravity: float) -> Component:
+    """Return a component with the values of an entry, and notes on its changed samples."""
     values, file = entry.values, entry.table.file.path.name
     notes = list(component.notes)
     factor = 1.0
@@ -225,7 +263,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
     if "unit" in values:
         factor *= _unit_factor(component, entry, gravity)
         if factor != 1.0:
-            initial = None  # in what unit it was, nobody says
+            initial = None  # its unit is unknown, too
             notes.append(f"unit {values['unit']} as {file} says, instead of {component.unit}")
     if "dt" in values and abs(values["dt"] - component.dt) > _SAME * component.dt:
         initial = None
@@ -240,7 +278,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
         initial = initial and initial.times(-1.0)
         notes.append(f"sign reversed as {file} says")
     if "station" in values:
-        joined = values["station"] in (component.station, component.site)  # as a draft has it: no name for people
+        joined = values["station"] in (component.station, component.site)  # a draft's key, no name for people
         name = component.origin.station if joined else values["station"]
         component = replace(component, station=values["station"], site="", event=values["station"])
         component = replace(component, origin=replace(component.origin, station=name))
@@ -261,7 +299,7 @@ def _described(component: Component, entry: Entry, gravity: float) -> Component:
 
 
 def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
-    """Return the factor from the component's unit to that of the manifest."""
+    """Return the ratio of the manifest's unit to the component's, 1 if they agree; complain about a file in counts."""
     if not component.unit:
         entry.table.complain("unit: the file has a scale of its own; leave it out, or write scale instead", "unit")
         return 1.0
@@ -270,6 +308,7 @@ def _unit_factor(component: Component, entry: Entry, gravity: float) -> float:
 
 
 def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
+    """Return the orientation by an entry's role and azimuth; itself if the entry states neither."""
     values = entry.values
     if not values.keys() & {"role", "azimuth"}:
         return orientation
@@ -283,14 +322,14 @@ def _orientation(orientation: Orientation, entry: Entry) -> Orientation:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file of a manifest's name is one: a ``motions.csv`` may be a record, if none of its columns is "file"."""
+    """Return whether a file named as a manifest is one: a ``motions.csv`` without a column "file" may be a record."""
     if path.suffix == ".toml":
         return True
     try:
         with opened_input(path) as file:
             head = _first_line(file.read(_LONGEST_HEAD).decode("utf-8-sig", "replace"))
     except OSError:
-        return True  # which is reported with the other mistakes
+        return True  # reading it then reports the error with the other mistakes
     try:
         return "file" in [cell.strip() for cell in next(csv.reader([head], delimiter=_delimiter(head)), [])]
     except csv.Error:
@@ -302,15 +341,16 @@ def _first_line(text: str) -> str:
 
 
 def _delimiter(head: str) -> str:
-    return ";" if ";" in head else ","  # Excel's where decimals have a comma
+    """Return ";" if the first line has one, as Excel writes it in countries with decimal commas, else ","."""
+    return ";" if ";" in head else ","
 
 
 def _from_csv(path: Path) -> TomlFile:
-    """Return a ``motions.csv`` as if it were TOML, with any of the three line ends; empty cells are keys that are not there."""
+    """Return a ``motions.csv``, with any line ends, as if it were TOML; empty cells are missing keys."""
     content = TomlFile.text_of(path)
     delimiter = _delimiter(_first_line(content))
     rows = csv.reader(io.StringIO(content, newline=""), delimiter=delimiter)
-    records: list[dict[str, Any]] = []
+    records: list[dict[str, object]] = []
     file = TomlFile(path, content, {"record": records}, {("header",): 1})
     try:
         names = [name.strip() for name in next(rows)]
@@ -326,14 +366,14 @@ def _from_csv(path: Path) -> TomlFile:
                 file.lines.update({key: rows.line_num for key in (key_path, *((*key_path, name) for name in row))})
                 if len(cells) > len(names):
                     file.complain(key_path, f"found {len(cells)} cells; the first line names {len(names)} columns")
-                records.append({name: _value(name, row[name], delimiter) for name in row if name in RECORD})
+                records.append({name: _cell_value(name, row[name], delimiter) for name in row if name in RECORD})
     except csv.Error as error:
         raise InputError(f"{path}:{rows.line_num}: not a line of a CSV file: {error}") from None
     return file
 
 
-def _value(name: str, cell: str, delimiter: str) -> Any:
-    """Return a cell as TOML would have it; a text where it is neither number nor truth value, which the key then refuses."""
+def _cell_value(name: str, cell: str, delimiter: str) -> str | int | float:
+    """Return a cell's value as in TOML: a text, whole number, truth value or float; else the text, which its key refuses."""
     if name in _TEXTS or (name == "component" and not _COUNTED.fullmatch(cell)):
         return cell
     if name == "component":

@@ -1,17 +1,16 @@
-"""A manifest drafted from what was found in a folder, to be completed by hand."""
+"""A draft of a manifest from the records in a folder, to be completed by hand."""
 
 import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
 from rockbatch.common.files import legible, write_output
 from rockbatch.common.grouping import grouped
 from rockbatch.motions.component import Component
-from rockbatch.motions.directions import judged
+from rockbatch.motions.directions import judge_directions
 from rockbatch.motions.doubles import without_doubles
 from rockbatch.motions.folder import Reading, read_files
 from rockbatch.motions.motion import Unusable
@@ -20,15 +19,15 @@ from rockbatch.motions.record_file import ReadOptions
 from rockbatch.motions.stations import by_station
 
 _HEAD = """\
-# What is known about these records beside what their files say; rockbatch reads it wherever they are used.
-# Drafted from the files: correct what is wrong, complete what is missing, take out what need not be said.
+# Facts about these records beyond their files; rockbatch reads them wherever the records are used.
+# Drafted from the files: correct and complete it, and delete lines that are not needed.
 #
 # unit, dt     of the file's numbers, in place of its own; dt in s
 # azimuth      degrees clockwise from north;  role = "vertical" or "horizontal";  polarity = "-" reverses the sign
 # component    its label, or its number in the file;  scale: factor on the record
 # station      components that share it belong together, and count as one record
-# magnitude, distance_km;  use = false: leave it out;  use = true: use it whatever else there is of the same recording
-# confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is
+# magnitude, distance_km;  use = false: leave it out;  use = true: use it rather than copies of the same recording
+# confirm = true: it is right, however odd;  confirm_pga = true: its PGA outside 0.001-5 g is right
 """
 
 _ASKED = {
@@ -44,7 +43,7 @@ _ASKED = {
 def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None = None) -> Path:
     """Write a draft of ``motions.toml`` into ``folder`` and return its path.
 
-    Raises ``InputError`` if there is a manifest, which is never written over.
+    Raises ``InputError`` if there is a manifest, which is never overwritten.
     """
     folder = Path(folder)
     target = folder / "motions.toml"
@@ -58,16 +57,16 @@ def write_manifest(folder: str | os.PathLike[str], options: ReadOptions | None =
 
 
 def draft(folder: Path, options: ReadOptions | None = None) -> str:
-    """Return the text of a manifest: a table for each component, a remark for each file that none was found in.
+    """Return the text of a manifest: a table for each component, a remark for each file without any.
 
-    As long as it is not edited it changes no name and no number.
+    Unedited, it changes no name and no number.
     """
     readings, paths, _ = read_files([folder], options=options)
-    readings = judged(readings)
+    readings = judge_directions(readings)
     components = [reading for reading in readings if isinstance(reading, Component)]
     doubles = {(double.name, double.source): double.reason for double in without_doubles(components)[1]}
     stations = {id(c): station[0].station or station[0].site for station in by_station(components) for c in station}
-    stated = options is not None and options.sensitivity is not None  # a unit alone would not say the sensitivity
+    stated = options is not None and options.sensitivity is not None  # a unit in the draft would displace it
     blocks = [_HEAD]
     for source, file_readings in grouped(
         readings, lambda r: r.source if r.source in paths else r.source.rpartition(" (")[0]
@@ -78,15 +77,15 @@ def draft(folder: Path, options: ReadOptions | None = None) -> str:
                 blocks.append(f"# {legible(name)}: give it a name without control characters first\n")
             elif isinstance(reading, Component):
                 double = doubles.get((reading.name, reading.source), "")
-                called = _called(reading, file_readings)
-                blocks.append(_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
+                called = _component_key(reading, file_readings)
+                blocks.append(_record_table(reading, name, called, stations[id(reading)], double, with_unit=not stated))
             elif isinstance(reading, Unusable):
                 blocks.append(_remark(name, reading))
     return "\n".join(blocks)
 
 
-def _called(component: Component, file_readings: Sequence[Reading]) -> str | int | None:
-    """Return the label, name or number that no other component of the file has; ``None`` if it is alone."""
+def _component_key(component: Component, file_readings: Sequence[Reading]) -> str | int | None:
+    """Return a component's label, name or number, the first that is unique in its file; ``None`` if it is alone."""
     if len(file_readings) == 1:
         return None
     labels = [r.orientation.label if isinstance(r, Component) else getattr(r, "label", "") for r in file_readings]
@@ -95,11 +94,12 @@ def _called(component: Component, file_readings: Sequence[Reading]) -> str | int
     return next((text for text in names if sum(text in words for words in texts) == 1), component.number)
 
 
-def _table(
+def _record_table(
     component: Component, name: str, called: str | int | None, station: str, double: str, with_unit: bool
 ) -> str:
+    """Return the table of a component in the file ``name``, ``called`` so in it, with remarks on missing and doubtful facts."""
     orientation = component.orientation
-    lines: list[tuple[str, Any]] = [("file", name)]
+    lines: list[tuple[str, str | float]] = [("file", name)]
     if called is not None:
         lines.append(("component", called))
     if orientation.known:
@@ -108,26 +108,26 @@ def _table(
         lines.append(("azimuth", orientation.azimuth))
     if component.unit and with_unit:
         lines.append(("unit", component.unit))
-    text = "[[record]]\n" + "".join(f"{key} = {_written(value)}\n" for key, value in lines)
+    text = "[[record]]\n" + "".join(f"{key} = {_toml_value(value)}\n" for key, value in lines)
     if not orientation.known:
-        why = legible(component.contradiction) or "nothing tells its direction"
-        text += f'# role = "horizontal"   # or "vertical": {why}; it is not used until this is said\n'
+        why = legible(component.contradiction) or "its direction is unknown"
+        text += f'# role = "horizontal"   # or "vertical": {why}; it is not used until this is stated\n'
     if not orientation.vertical:
         text += "# azimuth =\n" if orientation.azimuth is None else ""
         text += "".join(f"# {f.key} = true   # {legible(f.text)}\n" for f in gross_findings(component))
     if double:
         text += f"# use = true   # {legible(double.partition(';')[0])}\n"
-    return text + f"# station = {_written(station)}\n# magnitude =\n# distance_km =\n"
+    return text + f"# station = {_toml_value(station)}\n# magnitude =\n# distance_km =\n"
 
 
 def _remark(name: str, unusable: Unusable) -> str:
-    """Return the remark on a file that is not used, or a table with a line to fill in for each key that it lacks."""
-    remark, file = f"# Not used: {legible(unusable.reason)}\n", _written(name)
+    """Return the text for an unusable file: a commented table, or a table with a line to complete for each missing key."""
+    remark, file = f"# Not used: {legible(unusable.reason)}\n", _toml_value(name)
     if not unusable.lacks:
         return f"{remark}# [[record]]\n# file = {file}\n# use = false\n"
     return f"{remark}[[record]]\nfile = {file}\n" + "".join(f"# {key} =   # {_ASKED[key]}\n" for key in unusable.lacks)
 
 
-def _written(value: Any) -> str:
-    """Return a value as TOML writes it; a text without what neither TOML nor a terminal takes, such as the character DEL."""
+def _toml_value(value: str | float) -> str:
+    """Return a value as TOML writes it, with characters that TOML or a terminal would not take escaped."""
     return json.dumps(legible(value), ensure_ascii=False) if isinstance(value, str) else f"{value:g}"

@@ -1,7 +1,7 @@
 """Intensity measures: peak acceleration, velocity and displacement, Arias intensity, CAV and durations.
 
-For velocity and displacement the acceleration is linear between its samples and is integrated as it stands, from the
-velocity and displacement that the record's file tells for its first sample, else from rest: no baseline is fitted.
+For velocity and displacement the acceleration, linear between its samples, is integrated from the velocity and displacement
+that the record's file states for its first sample, else from rest: no baseline is fitted.
 """
 
 import math
@@ -12,8 +12,8 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions.motion import Initial, Motion, Samples
 
 _REST = Initial()
-_STRAIGHT = 2.5  # times: a lasting displacement, however sudden, leaves half of itself beside any straight line
-_BELONG = 0.2  # of its peak: what a file's velocity may scatter about the integral of its accelerations
+_STRAIGHT = 2.5  # times: half of a permanent displacement, however sudden, stays beside any straight line
+_BELONG = 0.2  # of its peak: scatter of a file's velocity about the integral of its accelerations
 
 
 def velocity(acceleration: Samples, dt: float, initial: Initial | None = None) -> Samples:
@@ -32,11 +32,11 @@ def displacement(acceleration: Samples, dt: float, initial: Initial | None = Non
 def initial_of(
     acceleration: Samples, dt: float, velocities: Samples | None, displacements: Samples | None
 ) -> Initial | None:
-    """Return the state at the first sample, of a record whose file has velocities [m/s], and perhaps displacements [m], too.
+    """Return the ground's state at the first sample from the velocities [m/s] and displacements [m] of a record's file.
 
-    It is the mean, over the record, of what they differ by from the integral from rest: a file's first values are
-    rounded, and accelerations that were thinned out after their integration drift from there. ``None`` where the
-    velocities are not those of the acceleration.
+    It is the mean difference, over the record, from the integral from rest: a file's first values are rounded, and
+    accelerations that were thinned out after their integration drift from them. ``None`` without velocities, or if they
+    are not the integral of the acceleration; displacement 0 without displacements.
     """
     if velocities is None or len(velocities) != len(acceleration):
         return None
@@ -50,7 +50,7 @@ def initial_of(
 
 
 def state_at(acceleration: Samples, dt: float, initial: Initial, time: float) -> Initial:
-    """Return the velocity and displacement at ``time`` [s] after the first sample, before the last."""
+    """Return velocity and displacement at ``time`` [s] after the first sample and before the last."""
     k = min(int(time / dt), len(acceleration) - 2)
     remainder = time - k * dt
     v, d = (float(series(acceleration, dt, initial)[k]) for series in (velocity, displacement))
@@ -77,9 +77,10 @@ def pgd(acceleration: Samples, dt: float, initial: Initial | None = None) -> flo
 
 
 def runs_away(displacements: Samples) -> bool:
-    """Return whether a displacement is little but a straight line from its first sample on, and so is not the ground's.
+    """Return whether a displacement is mostly linear drift, which is not the ground's.
 
-    That is, a constant velocity takes its peak down to less than 1/2.5. A lasting displacement does not count as one.
+    Subtracting the best line through the first sample then reduces its peak by more than 2.5. A permanent displacement,
+    however sudden, is not reduced so much.
     """
     moved = displacements - displacements[0]
     steps = np.arange(len(moved), dtype=float)
@@ -88,32 +89,32 @@ def runs_away(displacements: Samples) -> bool:
 
 
 def believable_pgd(motion: Motion) -> float | None:
-    """PGD [m] of a motion; ``None`` where its displacement runs away, and its initial state is unknown."""
+    """Return the PGD [m] of a motion; ``None`` if its displacement drifts and its initial state is unknown."""
     moved = displacement(motion.horizontal, motion.dt, motion.initial)
     return None if motion.initial is None and runs_away(moved) else float(np.abs(moved).max())
 
 
 def arias_intensity(acceleration: Samples, dt: float, gravity: float = GRAVITY) -> float:
-    """Arias intensity π/(2g) ∫a² dt [m/s] (Arias 1970)."""
+    """Return the Arias intensity π/(2g) ∫a² dt [m/s] (Arias 1970)."""
     return math.pi / (2.0 * gravity) * float(_energy(acceleration, dt)[-1])
 
 
 def significant_duration(acceleration: Samples, dt: float, start: float = 0.05, end: float = 0.95) -> float:
     """Return the time [s] in which ∫a² dt grows from ``start`` to ``end`` of its final value; D5–95 (Trifunac & Brady 1975).
 
-    Between samples the integral is taken to grow evenly. 0 for a record without any acceleration.
+    The integral is interpolated linearly between samples. 0 for a record without any acceleration.
     """
     energy = _energy(acceleration, dt)
-    # where a record is silent the integral stays level: the first time that it has a value counts
+    # the integral is constant over silence; interpolation needs one time, the first, for each value
     grows = np.concatenate(([True], np.diff(energy) > 0))
     times = np.interp([start * energy[-1], end * energy[-1]], energy[grows], np.flatnonzero(grows) * dt)
     return float(times[1] - times[0])
 
 
 def _energy(acceleration: Samples, dt: float) -> Samples:
-    """∫a² dt [m²/s³] until each sample, shape (npts,).
+    """Return ∫a² dt [m²/s³] up to each sample, shape (npts,).
 
-    By trapezoids of a², as other programs do it: chords of a would lose (ωΔ)²/6 of the energy of a wave.
+    By trapezoids of a², as other programs do it: squaring a linear a would lose (ωΔ)²/6 of the energy of a wave.
     """
     squares = acceleration * acceleration
     return np.concatenate(([0.0], np.cumsum(0.5 * dt * (squares[:-1] + squares[1:]))))
@@ -122,8 +123,8 @@ def _energy(acceleration: Samples, dt: float) -> Samples:
 def cumulative_absolute_velocity(acceleration: Samples, dt: float) -> float:
     """Return CAV = ∫|a| dt [m/s] over the whole record (EPRI 1988).
 
-    By trapezoids of |a|, as other programs do it: where a changes its sign between samples they are too large, by about what
-    chords of a cut off the peaks of a wave.
+    By trapezoids of |a|, as other programs do it. They are too large where a changes its sign between samples, by about as much
+    as a linear a cuts off the peaks of a wave.
     """
     sizes = np.abs(acceleration)
     return float(0.5 * dt * (sizes[:-1] + sizes[1:]).sum())
@@ -136,13 +137,11 @@ def bracketed_duration(acceleration: Samples, dt: float, threshold: float) -> fl
         return 0.0
 
     def beyond(last_above: int, outside: int) -> float:
-        """Part of the interval towards a sample that is not above, over which it still is."""
+        """Return the share of the interval towards a sample below the threshold during which it is exceeded."""
         if not 0 <= outside < len(acceleration):
             return 0.0
-        inside = abs(acceleration[last_above])
-        return float(
-            (inside - threshold) / (inside - math.copysign(1.0, acceleration[last_above]) * acceleration[outside])
-        )
+        a = acceleration[last_above]
+        return float((abs(a) - threshold) / (abs(a) - math.copysign(1.0, a) * acceleration[outside]))
 
     first, last = int(above[0]), int(above[-1])
     return (last - first + beyond(first, first - 1) + beyond(last, last + 1)) * dt

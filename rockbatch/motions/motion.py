@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +16,13 @@ from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
 from rockbatch.common.units import GRAVITY, acceleration_factor
 from rockbatch.motions.limits import USUAL_STEP
-from rockbatch.motions.listed import NOTHING, Listed
+from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.orientation import orientation_of, unknown
 from rockbatch.motions.origin import UNKNOWN_ORIGIN, Origin
 from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, spectral_acceleration
 
 if TYPE_CHECKING:
+    import obspy
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -35,14 +36,14 @@ class Initial:
 
     @checked
     def times(self, factor: float) -> "Initial":
-        """That of a motion ``factor`` times as large."""
+        """Return the state for a motion ``factor`` times as large."""
         return Initial(self.velocity * factor, self.displacement * factor)
 
 
 @dataclass(frozen=True)
 class Shock:
-    """A record within a sequence of shocks: its name, the times of its first and last sample in the sequence [s], and when the
-    next one begins; behind the last one a pause, too."""
+    """A record within a sequence of shocks: its name, the times of its first and last sample in the sequence [s], and the time
+    until which it counts, the start of the next record or a pause after the last."""
 
     name: str
     start: float
@@ -55,17 +56,17 @@ class Finding:
     """An oddity of a motion."""
 
     what: str  # in a word or two, for tables
-    text: str  # in a sentence, with what to do
-    gross: bool = False  # whether the motion is not used until somebody confirms it
-    key: str = "confirm"  # that confirms it, under [motions] and in manifests; "confirm" does so for all findings
+    text: str  # in a sentence, with its remedy
+    gross: bool = False  # whether the motion is held back until confirmed
+    key: str = "confirm"  # which confirms it, under [motions] and in manifests; "confirm" confirms all findings
 
 
 MOST_SAMPLES = 10_000_000
-"""Greatest number of samples of a motion that is no record."""
+"""Greatest number of samples of a pulse or of still ground."""
 
 
 def _check_still(duration: float, dt: float) -> None:
-    """Raise ``InputError`` for a duration and a step [s] of still ground that cannot be."""
+    """Raise ``InputError`` unless a duration and a step [s] of still ground are above 0 and give 10 million samples at most."""
     numbers = (("duration_s", duration), ("dt", dt))
     wrong = [f"{name} = {value:g}: must be a number above 0 [s]" for name, value in numbers if not 0 < value < math.inf]
     if not wrong and duration / dt > MOST_SAMPLES:
@@ -75,7 +76,7 @@ def _check_still(duration: float, dt: float) -> None:
 
 
 def _frozen(samples: object) -> Samples:
-    """Return samples as an array of ``float64`` that nobody can change; ``TypeError`` if they are no real numbers."""
+    """Return samples as a read-only array of ``float64``, itself if it is one; raise ``TypeError`` unless real numbers."""
     if np.ma.is_masked(samples):
         raise TypeError("has masked samples: fill them or leave the record out")
     if (
@@ -187,10 +188,10 @@ class Motion(Shown):
     start: float | None = None
     across: Samples | None = None
     vertical_factor: float | None = None
-    listed: Listed = NOTHING
+    listed: Listed = NOT_LISTED
 
     def __post_init__(self) -> None:
-        for text in ("name", "station"):  # as they stand in tables
+        for text in ("name", "station"):  # which go into tables
             object.__setattr__(self, text, legible(getattr(self, text), keep="\t\r\n"))
         wrong: list[Problem | str] = []
         if not (math.isfinite(self.dt) and self.dt > 0):
@@ -286,20 +287,20 @@ class Motion(Shown):
         return cls(name, dt, np.zeros(round(duration_s / dt) + 1), source="still", initial=Initial())
 
     @classmethod
-    def from_obspy(cls, stream: Any, unit: str, *, name: str = "") -> "Motion":
+    def from_obspy(cls, stream: "obspy.Stream", unit: str, *, name: str = "") -> "Motion":
         """Return a motion of an ObsPy ``Stream`` of acceleration in ``unit``: a horizontal component, and a vertical one if any.
 
-        The vertical one is that whose channel says so: "HNZ", "UD", or "DWN", which is reversed. Raises ``InputError`` for
-        another number of components, gaps, or sampling that differs. Counts have to be freed of the instrument's response before.
+        A component is vertical by its channel: "HNZ", "UD", or "DWN", which is reversed. Raises ``InputError`` for
+        another number of components, gaps, or different sampling. Remove the instrument's response from counts before.
         """
         traces = list(stream)
-        directions = [orientation_of(trace.stats.channel) or unknown() for trace in traces]
-        horizontal = [trace for trace, direction in zip(traces, directions, strict=True) if not direction.vertical]
-        vertical = [
-            -trace.data if direction.down else trace.data
-            for trace, direction in zip(traces, directions, strict=True)
-            if direction.vertical
-        ]
+        horizontal, vertical = [], []
+        for trace in traces:
+            direction = orientation_of(trace.stats.channel) or unknown()
+            if direction.vertical:
+                vertical.append(-trace.data if direction.down else trace.data)
+            else:
+                horizontal.append(trace)
         if len(horizontal) != 1 or len(vertical) > 1:
             ids = ", ".join(trace.id for trace in traces) or "none"
             raise InputError(
@@ -315,8 +316,8 @@ class Motion(Shown):
             trace.data, trace.stats.delta, unit, name=name or trace.id, vertical=vertical[0] if vertical else None
         )
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Take the state of a copy, or of a motion from another process, whose samples nobody can change either."""
+    def __setstate__(self, state: dict[str, object]) -> None:
+        """Restore a copy, or a motion from another process, with read-only samples: pickling loses that flag."""
         vars(self).update(state)
         for value in state.values():
             if isinstance(value, np.ndarray):
@@ -332,48 +333,48 @@ class Motion(Shown):
 
     @property
     def label(self) -> str:
-        """Its name in words: "Imperial Valley 1979, Meloland, 270"; its file if the header has no name."""
+        """Return its name in words, "Imperial Valley 1979, Meloland, 270"; its file if the header states none."""
         by_name = self.source in ("", "pulse") or len(self.shocks) > 1
         return self.origin.label or (self.name if by_name else self.source)
 
     @property
     def named(self) -> str:
-        """Its label, followed by its name in tables if that differs."""
+        """Return its label, followed by its name in tables if that differs."""
         return self.label if self.label == self.name else f"{self.label} ({self.name})"
 
     @property
     def files(self) -> str:
-        """Return where its components came from."""
+        """Return the sources of its components, "a.AT2, a-UP.AT2"."""
         return ", ".join(source for source in (self.source, self.vertical_source) if source)
 
     @property
     def of_station(self) -> str:
-        """The record that it counts as: its station's, or its own."""
+        """Return the name under which it counts as one record with others: its station, else its own name."""
         return self.station or self.name
 
     @property
     def npts(self) -> int:
-        """Number of samples."""
+        """Return the number of samples."""
         return len(self.horizontal)
 
     @property
     def duration(self) -> float:
-        """Time from the first to the last sample [s]."""
+        """Return the time from the first to the last sample [s]."""
         return (self.npts - 1) * self.dt
 
     @cached_property
     def pga(self) -> float:
-        """Peak horizontal ground acceleration [m/s²]."""
+        """Return the peak horizontal ground acceleration [m/s²]."""
         return float(np.abs(self.horizontal).max())
 
     @property
     def pga_g(self) -> float:
-        """Peak horizontal ground acceleration [9.81 m/s²], as tables have it."""
+        """Return the peak horizontal ground acceleration [9.81 m/s²], as in tables."""
         return self.pga / GRAVITY
 
     @property
     def pga_vertical(self) -> float | None:
-        """Peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
+        """Return the peak vertical ground acceleration [m/s²], ``None`` without a vertical component."""
         return None if self.vertical is None else float(np.abs(self.vertical).max())
 
     def _facts(self) -> tuple[str, dict[str, str]]:
@@ -389,7 +390,7 @@ class Motion(Shown):
 
     @property
     def exchanged(self) -> "Motion":
-        """Return the motion with both horizontal components exchanged; it has the one ``across``."""
+        """Return the motion with ``horizontal`` and ``across`` exchanged; it must have both."""
         assert self.across is not None
         azimuth = None if self.azimuth is None else (self.azimuth + 90.0) % 360.0
         return replace(self, horizontal=self.across, across=self.horizontal, azimuth=azimuth, initial=None)
@@ -421,8 +422,8 @@ class Motion(Shown):
         return pd.Series(sa, index=pd.Index(undamped, name="period_s"), name="sa_g")
 
     def plot(self, width_mm: float = 160.0, ax: "Axes | None" = None) -> "Figure":
-        """Draw the acceleration of its components against time: a matplotlib Figure,
-        ``width_mm`` wide or in the place of ``ax``."""
+        """Draw the accelerations of its components against time; return a matplotlib Figure, ``width_mm`` wide or that of
+        ``ax``."""
         from rockbatch.common.figures.paper import drawn
         from rockbatch.motions.figures import record
 
@@ -433,11 +434,11 @@ class Motion(Shown):
     def times(self, factor: float, reverse: bool = False) -> "Motion":
         """Return the motion with both components ``factor`` times as large, the horizontal one reversed if ``reverse``."""
         along = -factor if reverse else factor
-        times = copy(self)  # these samples were checked; the product can be no number only where it is too large
+        times = copy(self)  # without the checks of __init__: the product is finite unless it overflows
         vars(times).pop("pga", None)
         for name, by in (("horizontal", along), ("vertical", factor), ("across", factor)):
             if (samples := getattr(self, name)) is not None:
-                with np.errstate(over="ignore", invalid="ignore"):  # refused below
+                with np.errstate(over="ignore", invalid="ignore"):  # __post_init__ refuses it below
                     vars(times)[name] = samples * by
                 vars(times)[name].flags.writeable = False
         if self.initial is not None:
@@ -449,7 +450,7 @@ class Motion(Shown):
 
 @dataclass(frozen=True)
 class Unusable:
-    """A file that could not be used, and why; it stays in the tables as a row with its reason.
+    """A file or component that cannot be used, with the reason; it stays in the tables as a row.
 
     ``label`` is that of the one component that is meant, as the file has it; empty where it is the whole file.
     ``lacks`` has the keys of a manifest that would state what the file does not say; ``number`` is that of the component
@@ -476,10 +477,10 @@ class Unusable:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A file or record that is left out on purpose, and why: not selected, not to be used, a copy, or no record.
+    """A file or record that is left out on purpose, with the reason: not selected, excluded, a copy, or no record.
 
-    If a manifest or the study names it, it is ``named``, and ``station`` is what it would count as. ``of`` is the file, or
-    component in it, for which it is left out: the original of a copy.
+    It is ``named`` if a manifest or the study names it; ``station`` is then the name under which it would count. ``of`` is
+    the source of the original of a copy.
     """
 
     name: str

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from numbers import Integral
-from typing import Any, overload
+from typing import overload
 
 from rockbatch.common.errors import InputError
 from rockbatch.common.grouping import grouped
@@ -15,7 +15,10 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.motion import LeftOut, Motion, Unusable
 
-_COLUMNS: dict[str, tuple[type, Callable[[Motion], Any]]] = {
+Cell = str | float | None
+"""A value of a table; ``None`` where it is unknown."""
+
+_COLUMNS: dict[str, tuple[type, Callable[[Motion], Cell]]] = {
     "record": (str, lambda m: m.name),
     "file_h": (str, lambda m: m.source),
     "file_v": (str, lambda m: m.vertical_source),
@@ -45,10 +48,10 @@ _COLUMNS: dict[str, tuple[type, Callable[[Motion], Any]]] = {
 }
 
 COLUMNS = tuple(_COLUMNS)
-"""Of :meth:`MotionSet.table`, and keys of :func:`row`."""
+"""Columns of :meth:`MotionSet.table`, and keys of :func:`row`."""
 
 TEXTS = tuple(name for name, (kind, _) in _COLUMNS.items() if kind is str)
-"""Those of them that hold words; the others hold numbers."""
+"""Columns of text; the others hold numbers."""
 
 _DTYPES = {str: "str", float: "float64", int: "int64"}
 _AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duration_s", "pga_h_g", "pga_v_g", "pgv_h_m_s"]
@@ -58,7 +61,7 @@ _AT_A_GLANCE = ["record", "event", "station_name", "direction", "dt_s", "duratio
 class MotionSet(Shown):
     """Motions in order, with the files that could not be used and those left out on purpose.
 
-    It has a length and is gone through as a list of its motions; one is taken by its place or by its name.
+    It has a length and iterates over its motions; ``set[i]`` and ``set["name"]`` give one of them.
 
     Attributes
     ----------
@@ -88,29 +91,26 @@ class MotionSet(Shown):
 
     @property
     def without_vertical(self) -> list[str]:
-        """Names of the motions whose vertical component was asked for, and is not there."""
+        """Return the names of motions that lack the vertical component asked for."""
         return [motion.name for motion in self.motions if motion.lacks_vertical]
 
     @property
     def labels(self) -> dict[str, str]:
-        """Names for people by those in tables: short ones, and longer ones of motions that would share theirs."""
-        labels = [motion.label for motion in self.motions]
-        for longer in (lambda motion: motion.origin.whole or motion.label, lambda motion: motion.named):
-            times = Counter(labels)
-            labels = [
-                longer(motion) if times[label] > 1 else label
-                for motion, label in zip(self.motions, labels, strict=True)
-            ]
-        return {motion.name: label for motion, label in zip(self.motions, labels, strict=True)}
+        """Return names for people by names in tables, lengthened for motions that would share one."""
+        labels = {motion.name: motion.label for motion in self.motions}
+        for longer in (lambda motion: motion.origin.full_label or motion.label, lambda motion: motion.named):
+            times = Counter(labels.values())
+            labels |= {motion.name: longer(motion) for motion in self.motions if times[labels[motion.name]] > 1}
+        return labels
 
     def stations(self) -> dict[str, list[Motion]]:
-        """Return the motions that count as one record, mostly the two horizontal components of a station, by its name."""
+        """Return the motions that count as one record by its name, mostly the two horizontal components of a station."""
         return grouped(self.motions, lambda motion: motion.of_station)
 
     def reduced_to(
         self, motions: Sequence[Motion], unusable: Sequence[Unusable] = (), left_out: Sequence[LeftOut] = ()
     ) -> "MotionSet":
-        """Return these motions of it, with what cannot be used and what is left out beside what was before."""
+        """Return a set of these ``motions``, with ``unusable`` and ``left_out`` added to those of this set."""
         return MotionSet(list(motions), [*self.unusable, *unusable], [*self.left_out, *left_out])
 
     def __len__(self) -> int:
@@ -127,7 +127,7 @@ class MotionSet(Shown):
     @overload
     def __getitem__(self, which: slice) -> list[Motion]: ...
     def __getitem__(self, which: int | str | slice) -> Motion | list[Motion]:
-        """A motion by its place or its name, or several by their places; ``InputError`` for a name that is not there."""
+        """Return a motion by its index or name, or a list by a slice; raise ``InputError`` for an unknown name."""
         if isinstance(which, Integral | slice):
             return self.motions[which]
         if not isinstance(which, str):
@@ -136,7 +136,7 @@ class MotionSet(Shown):
             if motion.name == which:
                 return motion
         close = get_close_matches(which, [motion.name for motion in self.motions], 1)
-        hint = f'did you mean "{close[0]}"?' if close else f"there are {_listed(self.motions)}"
+        hint = f'did you mean "{close[0]}"?' if close else f"there are {_first_names(self.motions)}"
         raise InputError(f'there is no motion "{which}"; {hint}')
 
     def table(self) -> "pd.DataFrame":
@@ -163,7 +163,7 @@ class MotionSet(Shown):
         pga = sorted(motion.pga / GRAVITY for motion in self.motions)
         vertical = sum(motion.vertical is not None for motion in self.motions)
         return several(len(self), "ground motion") or "no ground motions", {
-            "records": _listed(self.motions),
+            "records": _first_names(self.motions),
             "PGA": " to ".join(f"{value:.3f}" for value in dict.fromkeys((pga[0], pga[-1]))) + " g" if pga else "",
             "vertical": f"{vertical} of {len(self)}" if pga else "",
             "not used": several(len(self.unusable), "file") + (", see .unusable" if self.unusable else ""),
@@ -176,11 +176,14 @@ class MotionSet(Shown):
         return table.loc[:, (table != "").any()]  # without words that nobody knows
 
 
-def row(motion: Motion) -> dict[str, Any]:
-    """Return the row of a motion in :meth:`MotionSet.table`; None without remarks."""
+def row(motion: Motion) -> dict[str, Cell]:
+    """Return the row of a motion in :meth:`MotionSet.table` by its columns; ``None`` for unknown values."""
     return {name: value(motion) for name, (_, value) in _COLUMNS.items()}
 
 
-def _listed(motions: Sequence[Motion]) -> str:
+def _first_names(motions: Sequence[Motion]) -> str:
+    """Return the names of the first three motions and the number of others: "a, b, c, and 7 more"."""
     names = [motion.name for motion in motions[:3]]
-    return ", ".join([*names, *([f"and {len(motions) - 3} more"] if len(motions) > 3 else [])])
+    if len(motions) > 3:
+        names.append(f"and {len(motions) - 3} more")
+    return ", ".join(names)

@@ -1,6 +1,6 @@
 """Direction of a component, from the many labels that agencies give it.
 
-What no label tells stays unknown: a vertical component would otherwise be run as a horizontal one.
+A direction that no label states stays unknown: a vertical component would otherwise be run as a horizontal one.
 """
 
 import re
@@ -16,20 +16,20 @@ from rockbatch.motions.direction_words import WORDS, folded, pairs, words
 class Orientation:
     """Direction of a component."""
 
-    label: str  # as the file has it: "228", "NS", "DWN", "HNZ"; empty where it says nothing
+    label: str  # as in the file: "228", "NS", "DWN", "HNZ"; empty without one
     vertical: bool = False
-    azimuth: float | None = None  # of a horizontal one [degrees clockwise from north, 0 ≤ azimuth < 360], where known
+    azimuth: float | None = None  # of a horizontal component [degrees clockwise from north, 0 ≤ azimuth < 360]
     down: bool = False  # whether a vertical component is positive down
-    known: bool = True  # whether it is known at all that it is horizontal or vertical
+    known: bool = True  # whether it is known to be horizontal or vertical
 
 
 def unknown(label: str = "") -> Orientation:
-    """Return an orientation of which the ``label`` says nothing: neither horizontal nor vertical until somebody says so."""
+    """Return an unknown orientation, neither horizontal nor vertical, with its ``label``."""
     return Orientation(label, known=False)
 
 
 UNKNOWN = unknown()
-"""Of a file that does not say."""
+"""For a file without a direction."""
 
 _VERTICAL = words("vertical") | pairs("up", "down") | pairs("above", "below")
 _UP, _DOWN = words("up"), words("down")
@@ -62,9 +62,9 @@ _NOISE = re.compile(
 
 
 def orientation_of(label: str) -> Orientation | None:
-    """Return the orientation that ``label`` stands for: "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` if none.
+    """Return the orientation of a label such as "UP", "DWN", "S62W", "21", "N-S", "HNZ"; ``None`` for other texts.
 
-    A number of one or two digits behind a word is no azimuth: "COMP 3" is the third component, not 3°.
+    One or two digits behind a word are no azimuth: "COMP 3" is the third component, not 3°.
     """
     label = label.strip()
     key = _key(label)
@@ -98,19 +98,19 @@ def _key(label: str) -> str:
 
 
 def is_upward(label: str) -> bool:
-    """Return whether a label says that a component is positive up, and not only that it is vertical."""
+    """Return whether a label means positive up ("UP"), rather than vertical only ("V")."""
     return _key(label) in _UP
 
 
 def is_place_or_direction(label: str) -> bool:
-    """Return whether a label at the end of a name may be part of that of a place: "North", "West"."""
+    """Return whether a label is an English direction that may end the name of a place: "North", "West"."""
     return len(key := _key(label)) > 2 and key in _ENGLISH and key in _AZIMUTHS
 
 
 def orientation_in(label: str) -> Orientation:
-    """Return the orientation of a column, perhaps with its station in front: "Z", "CCC_HNZ"; unknown if it does not tell.
+    """Return the orientation of a column's label, with or without its station: "Z", "CCC_HNZ"; unknown for other labels.
 
-    A bare number is an azimuth with three digits, or where it is one that nobody counts to.
+    A number is an azimuth if it has three digits, or is 0 or 90, which do not number columns.
     """
     bare = label.strip()
     if re.fullmatch(r"\d{1,2}", bare) and bare not in ("0", "00", "90"):
@@ -118,7 +118,7 @@ def orientation_in(label: str) -> Orientation:
     site, at_end = split_stem(bare)
     before = orientation_of(site) if at_end else None
     if before and at_end and (before.vertical, before.azimuth) != (at_end.vertical, at_end.azimuth):
-        at_end = None  # two directions are none
+        at_end = None  # two directions contradict each other
     orientation = orientation_of(bare) or at_end
     return (
         Orientation(bare, orientation.vertical, orientation.azimuth, orientation.down) if orientation else unknown(bare)
@@ -139,7 +139,7 @@ _ENDS = tuple(
         (r"(?P<site>.*\d\d)", r"(?i:[VZUNEW])"),  # chy080v
     )
 )
-_STATION = re.compile(  # of TSMIP, K-NET and KiK-net, whose codes end in a number as PEER's names do in an azimuth
+_STATION = re.compile(  # codes of TSMIP, K-NET and KiK-net end in a number, as PEER's file names do in an azimuth
     r"(?:^|[^A-Z])(?:TCU|CHY|HWA|ILA|KAU|TAP|TTN|ABS|HDK|HYM|IBR|IKR|ISK|IWT|KKW|KMM|KNG|KOC|KSR|KYT|KGS|KGW|MIE|MYG|MYZ|"
     r"NAR|NGN|NGS|NIG|NMR|OIT|OKN|OKY|OSK|OSM|RMI|SAG|SBS|SIG|SIT|SMN|SRC|SZO|TCG|TKC|TKS|TKY|TTR|TYM|WKY|YMG|YMN|YMT|"
     r"AIC|AKT|AOM|CHB|EHM|FKI|FKO|FKS|GIF|GNM|HKD|HRS|HYG|IBU)H?\d{3}$"
@@ -155,9 +155,9 @@ _PROCESSING = re.compile(
 def split_stem(stem: str) -> tuple[str, Orientation | None]:
     """Return the station's part of a file's stem and the orientation at its end, before words such as "corrected".
 
-    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical. Numbers count
-    as azimuths only with three digits, and not where they are dates, times, stations or files counted from 001. Names
-    that say horizontal and, by a channel's code, vertical say nothing.
+    "RSN1063_NORTHR_RRS228" gives "RSN1063_NORTHR_RRS" and 228°, "ABBAR--V" gives "ABBAR" and vertical; a stem without a
+    direction gives itself and ``None``. Numbers count as azimuths only with three digits, unless they are dates, times,
+    stations or files counted from 001. Names with a horizontal direction and a vertical channel's code have no orientation.
     """
     whole = orientation_of(stem) if stem.isalnum() and not _is_number("", stem, stem) else None
     if whole and (whole.vertical or whole.azimuth is not None):
@@ -181,14 +181,14 @@ def split_stem(stem: str) -> tuple[str, Orientation | None]:
 
 
 def _in_name(label: str) -> Orientation | None:
-    """Return the orientation of a label at the end of a name; ``None`` for what is the name of a place as well."""
+    """Return the orientation of a label at the end of a name; ``None`` for words that also name places."""
     key = _key(label)
     pair = "-" not in label or (len(key) > 1 and (key in _AZIMUTHS or key in _VERTICAL | _UP | _DOWN))
     return orientation_of(label) if pair and key not in _ELSEWHERE_IN_NAMES else None
 
 
 def direction_of_suffix(suffix: str) -> Orientation | None:
-    """Return the orientation that a file's suffix is, as K-NET's .EW and .UD2; ``None`` if it is none."""
+    """Return the orientation of a file's suffix such as K-NET's .EW and .UD2; ``None`` for other suffixes."""
     label = suffix.lstrip(".")
     if label.isdigit() and label not in ("000", "090", "180", "270", "360"):
         return None
@@ -197,18 +197,18 @@ def direction_of_suffix(suffix: str) -> Orientation | None:
 
 
 def _channels(stem: str) -> list[Orientation]:
-    """Return orientations of the channel codes anywhere in a name: "CCM.BHZ.00.D"."""
+    """Return the orientations of all channel codes in a name: one, vertical, of "CCM.BHZ.00.D"."""
     parts = [part for part in re.split(r"[-_. ]+", stem) if _CHANNEL_IN_NAME.fullmatch(part.upper())]
     return [orientation for part in parts if (orientation := orientation_of(part))]
 
 
 def _contradicted(orientation: Orientation, stem: str) -> bool:
-    """Return whether a name has a vertical channel's code beside a horizontal direction."""
+    """Return whether a name has a vertical channel's code, and ``orientation`` is horizontal."""
     return not orientation.vertical and any(channel.vertical for channel in _channels(stem))
 
 
 def _is_number(site: str, label: str, stem: str) -> bool:
-    """Return whether the digits at the end of a name are no azimuth: a date or time, a station's number, or that of a file."""
+    """Return whether the digits at the end of a name are no azimuth: a date or time, or the number of a station or file."""
     if not label.isdigit():
         return False
     if _STATION.search(stem) or _CHANNELS.search(stem):
@@ -223,7 +223,7 @@ def _is_number(site: str, label: str, stem: str) -> bool:
 
 
 def counted(stems: Iterable[str]) -> set[str]:
-    """Return stems that end in a number of a series: GM_010, GM_011 … are no azimuths, which are square to each other."""
+    """Return the stems that end in consecutive or other numbers far from right angles, and so no azimuths: GM_010, GM_011."""
     numbered: set[str] = set()
     for group in grouped((stem for stem in stems if re.fullmatch(r".*\d{3}", stem)), lambda stem: stem[:-3]).values():
         if _in_series(int(stem[-3:]) for stem in group):
@@ -232,11 +232,11 @@ def counted(stems: Iterable[str]) -> set[str]:
 
 
 def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
-    """Return station and orientation of stems that differ in one word only, another direction in each: a_UP_corr, a_000_corr.
+    """Return station's part and orientation of stems that differ in one word only, each time a direction: a_UP, a_000.
 
-    Words that may mean something else in a single name, such as nord, count; numbers of files do not.
+    Words count here that also name places, such as nord; numbers of files do not.
     """
-    found: dict[str, tuple[str, Orientation]] = {}
+    split_stems: dict[str, tuple[str, Orientation]] = {}
     groups: dict[tuple[str, ...], dict[str, Orientation]] = {}
     for stem in dict.fromkeys(stems):
         for separator in (r"([_. ]+)", r"([-_. ]+)"):  # norte-sur is one word, or two
@@ -254,12 +254,12 @@ def told_apart(stems: Iterable[str]) -> dict[str, tuple[str, Orientation]]:
         if 1 < len(group) == len(directions) and (upright or square) and not _in_series(numbers):
             site = re.sub(r"([-_. ])[-_. ]*", r"\1", "".join(around)).strip("-_. ")
             for stem, orientation in group.items():
-                found.setdefault(stem, (site, orientation))
-    return found
+                split_stems.setdefault(stem, (site, orientation))
+    return split_stems
 
 
 def _in_series(numbers: Iterable[int]) -> bool:
-    """Return whether numbers are counted, and no azimuths, which are square to each other."""
+    """Return whether two of the numbers, as azimuths [degrees], are more than 45° off a right angle and not parallel."""
     return any(0 < abs((a - b + 90) % 180 - 90) < 45 for a, b in combinations(set(numbers), 2))
 
 
@@ -268,22 +268,23 @@ SAME_AZIMUTH = 1.0
 
 
 def same_azimuth(a: float | None, b: float | None) -> bool:
-    """Return whether two azimuths [degrees] agree; 360 and 0 are the same."""
+    """Return whether two azimuths [degrees] agree within 1°, 360 and 0 being the same; False if one is unknown."""
     if a is None or b is None:
         return False
     return _between(b, a) <= SAME_AZIMUTH
 
 
 def not_square(a: float | None, b: float | None, names: str) -> str:
-    """Return that two azimuths [degrees] are not square to each other within a degree; empty if they are, or one is unknown."""
+    """Return a complaint about two azimuths [degrees] not square to each other within 1°; empty if they are, or unknown."""
     if a is None or b is None:
         return ""
-    between = _between(a, b)
-    apart = abs(between - 90.0) > SAME_AZIMUTH  # agencies round their azimuths
-    return f"{names} are {between:g}° apart, not square to each other" if apart else ""
+    angle = _between(a, b)
+    skew = abs(angle - 90.0) > SAME_AZIMUTH  # agencies round their azimuths
+    return f"{names} are {angle:g}° apart, not square to each other" if skew else ""
 
 
 def _between(a: float, b: float) -> float:
+    """Return the angle between two azimuths [degrees], 0 to 180."""
     return abs((b - a + 180.0) % 360.0 - 180.0)
 
 
@@ -294,10 +295,10 @@ _SEISMOMETER = re.compile(r"[BCDEFGHLMSV][H][ZUVNE123RTXY]")
 
 
 def not_acceleration(channel: str) -> str:
-    """Return what a SEED channel code says that it measures instead of accelerations; empty where it does not."""
+    """Return "velocities (channel HHN)" for the SEED channel code of a seismometer; empty for others."""
     return f"velocities (channel {channel})" if _SEISMOMETER.fullmatch(channel.strip().upper()) else ""
 
 
 def is_clock(label: str) -> bool:
-    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ": no ground motion."""
+    """Return whether a channel's label is that of the recorder's clock, such as "INTC", or SEED's "LCQ"."""
     return _CLOCKS.fullmatch(re.sub(r"[^A-Z]", "", label.upper())) is not None

@@ -7,7 +7,7 @@ from html import unescape
 
 from rockbatch.motions.orientation import Orientation
 
-_LONGEST = 80  # characters of a text of a header that are looked at
+_LONGEST = 80  # characters of a header's text that are read
 _RECORD_OF = re.compile(r"^(?:record|rcrd) of +", re.IGNORECASE)
 _QUAKE = re.compile(r"\b(?:earthquake|eq\.?)(?![a-z]).*", re.IGNORECASE)
 _CLOCK = re.compile(r",?[ -]*\d{1,2}:\d\d.*|,? -\d{4}\b.*")
@@ -36,7 +36,7 @@ _CODE = 5  # letters that a word in capitals may have and be a code
 
 @dataclass(frozen=True)
 class Origin:
-    """Event, station and direction of a record in words, as far as its header says it; empty where it does not."""
+    """Event, station and direction of a record in words, from its header; empty where unknown."""
 
     event: str = ""  # name and year of the event, or its date: "Imperial Valley 1979"
     station: str = ""  # "Meloland"
@@ -44,19 +44,19 @@ class Origin:
 
     @property
     def label(self) -> str:
-        """Event, station and direction, short enough to stand beside numbers; empty if the header has neither of the first."""
-        return Origin(self.short_event, self.short_station, self.direction).whole
+        """Return event, station and direction, shortened for tables; empty if neither event nor station is known."""
+        return Origin(self.short_event, self.short_station, self.direction).full_label
 
     @property
-    def whole(self) -> str:
-        """Event, station and direction as they are; empty if the header has neither of the first."""
+    def full_label(self) -> str:
+        """Return event, station and direction in full; empty if neither event nor station is known."""
         if not self.event and not self.station:
             return ""
         return ", ".join(filter(None, (self.event, self.station, self.direction)))
 
     @property
     def short_event(self) -> str:
-        """Return the event, its middle left out if it is long."""
+        """Return the event in 34 characters at most, cut before its year."""
         if len(self.event) <= _EVENT:
             return self.event
         if _YEAR.match(self.event[-4:]):
@@ -65,7 +65,7 @@ class Origin:
 
     @property
     def short_station(self) -> str:
-        """Return the station without the place of the event, and a long name without its first parts and what stands there."""
+        """Return the station in 20 characters at most, without the event's place; a long name without "fire station" and such."""
         place = self.event.partition(" ")[0]
         station = self.station.removesuffix(f" {place}") if place else self.station
         if len(station) > _STATION:
@@ -77,16 +77,16 @@ class Origin:
 
 
 UNKNOWN_ORIGIN = Origin()
-"""Of a record whose header tells nothing of it."""
+"""For a record whose header states none."""
 
 
 def origin_of(event: str = "", station: str = "", date: str = "") -> Origin:
-    """Return the origin by the words of a header: of the event and the station, and the line with the event's date."""
-    return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _in_words(station[:_LONGEST]))
+    """Return the origin from a header's words for event and station, and its line with the event's date."""
+    return Origin(_event(event[:_LONGEST], date[:_LONGEST]), _without_capitals(station[:_LONGEST]))
 
 
-def directed(origin: Origin, orientation: Orientation) -> Origin:
-    """Return ``origin`` with the direction of a component: its label, three digits of an azimuth, or nothing."""
+def with_direction(origin: Origin, orientation: Orientation) -> Origin:
+    """Return ``origin`` with a component's direction: its label, or its azimuth in three digits; "" without either."""
     label = re.sub(r"\s*deg(?:rees)?\.?$", "", orientation.label.strip(), flags=re.IGNORECASE)
     if label.isdecimal():
         label = f"{int(label):03d}"
@@ -96,13 +96,13 @@ def directed(origin: Origin, orientation: Orientation) -> Origin:
 
 
 def _event(text: str, date: str) -> str:
-    """Return the name of an event with its year, without words that every header has; its date if it has no name."""
+    """Return an event's name and year without "Record of", "earthquake", clock and state; its date if it has no name."""
     year = _year(date) or _year(text)
     name = _CLOCK.sub("", _QUAKE.sub("", _RECORD_OF.sub("", " ".join(text.split())))).strip(" ,-")
     if day := _DAY.fullmatch(name):
         return f"{day[3]}-{_MONTHS.index(day[1].capitalize()) + 1:02d}-{int(day[2]):02d}"
     name = _DATED.sub("", name).strip(" ,-") or name
-    name = _in_words(_DISTANCE.sub("", _STATE.sub("", name)))
+    name = _without_capitals(_DISTANCE.sub("", _STATE.sub("", name)))
     if stamp := _STAMP.fullmatch(name):
         return f"{stamp[1]}-{stamp[2]}-{stamp[3]}" + (f" {stamp[4]}:{stamp[5]}" if stamp[4] else "")
     if not name:
@@ -111,8 +111,8 @@ def _event(text: str, date: str) -> str:
 
 
 def _year(text: str) -> str:
-    """Return the year of a date, none after today: the last two digits of 10/15/79, before four digits that may be a time."""
-    today = datetime.now().year
+    """Return the year in a date or text, "" if none or in the future: "10/15/79 1817" gives "1979"."""
+    today = datetime.now().year  # four digits behind a short date may be a clock time
     if short := _SHORT_YEAR.search(text):
         return str(2000 + int(short[1]) if 2000 + int(short[1]) <= today else 1900 + int(short[1]))
     return next((year for year in _YEAR.findall(text) if int(year) <= today), "")
@@ -122,8 +122,8 @@ TURKISH = str.maketrans("ÐÝÞðýþ", "ĞİŞğış")
 """From Latin-1, in which text of unknown encoding is read, to Windows-1254."""
 
 
-def _in_words(text: str) -> str:
-    """Return a text without capitals throughout: "El Centro - Hwy 8/Meloland Overpass"; a code stays: "LGPC", "NP.8040"."""
+def _without_capitals(text: str) -> str:
+    """Return a text in capitals as words: "EL CENTRO - HWY 8" gives "El Centro - Hwy 8"; codes stay: "LGPC", "NP.8040"."""
     text = " ".join(unescape(text).split()).strip(" ,-")
     if not text.isupper() or (" " not in text and (len(text) <= _CODE or not text.isalpha())):
         return text

@@ -1,8 +1,8 @@
 """Spectra of pairs of horizontal components: RotD50, RotD100, the geometric mean and the root of the sum of squares.
 
-An oscillator is linear: with u₁(t) and u₂(t) its responses to two components square to each other, that to the component along
-φ is u₁ cos φ + u₂ sin φ. RotDnn is the nn-th percentile over φ of ω² max_t |u(t, φ)| (Boore 2010, BSSA 100(4), 1830–1835),
-which does not depend on how the instrument was turned: RotD50 is the median over the directions, RotD100 the greatest.
+An oscillator is linear: with responses u₁(t) and u₂(t) to two components square to each other, the response to the component
+along φ is u₁ cos φ + u₂ sin φ. RotDnn is the nn-th percentile over φ of ω² max_t |u(t, φ)| (Boore 2010, BSSA 100(4), 1830–1835),
+independent of the orientation of the instrument: RotD50 is the median over the directions, RotD100 the maximum.
 """
 
 import math
@@ -22,7 +22,7 @@ from rockbatch.motions.spectrum import PERIODS, Samples, as_periods, responses
 Array = npt.NDArray[np.float64]
 
 ANGLES = np.radians(np.arange(180.0))
-"""Directions that count [rad]: a degree apart, of half a turn, which reverses a component."""
+"""Directions [rad], one degree apart over half a turn; the other half only reverses the components."""
 
 _JITTER = 0.1  # of dt: starts that differ by less from a whole number of samples count as simultaneous
 
@@ -31,31 +31,34 @@ PAIR_RULES = ("srss", "geomean", "rotd50", "rotd100")
 """Measures of a pair: the root of the sum of squares, the geometric mean, and the median and greatest over all directions."""
 
 
-WORDS = {
-    "srss": "the root of the sum of squares", "geomean": "the geometric mean", "rotd50": "RotD50", "rotd100": "RotD100",
-}  # fmt: skip
-"""Them in words."""
+RULE_NAMES = {
+    "srss": "the root of the sum of squares",
+    "geomean": "the geometric mean",
+    "rotd50": "RotD50",
+    "rotd100": "RotD100",
+}
+"""Names of these measures in words."""
 
-DIRECTIONS = ("geomean", "rotd50", "rotd100")
-"""Those of them that take both components; of one alone, the root of the sum of squares is that component."""
+TWO_COMPONENT_RULES = ("geomean", "rotd50", "rotd100")
+"""Measures that need both components; the root of the sum of squares of one alone is that component."""
 
 
-def measured(first: Array, second: Array) -> dict[str, float]:
-    """Return the measures of a pair by the histories of both oscillators, shape (n,), in their unit."""
-    a, b = _most(first), _most(second)
-    directions = _greatest(first, second)
+def pair_measures(first: Array, second: Array) -> dict[str, float]:
+    """Return the measures by ``PAIR_RULES`` of two histories, shape (n,), in their unit."""
+    a, b = _peak(first), _peak(second)
+    directions = _peaks_by_direction(first, second)
     values = (math.hypot(a, b), math.sqrt(a * b), float(np.median(directions)), float(directions.max()))
     return dict(zip(PAIR_RULES, values, strict=True))
 
 
-def _most(u: Array) -> float:
+def _peak(u: Array) -> float:
     return float(np.abs(u).max())
 
 
-def _greatest(first: Array, second: Array) -> Array:
-    """Return the greatest |u₁ cos φ + u₂ sin φ| in each of the directions ANGLES, shape (180,).
+def _peaks_by_direction(first: Array, second: Array) -> Array:
+    """Return max |u₁ cos φ + u₂ sin φ| for each of the directions ``ANGLES``, shape (180,).
 
-    Only points outside a circle count whose radius is exceeded in every direction: mostly a hundredth of all.
+    Only points outside a circle can be the maximum whose radius is exceeded in every direction: mostly a hundredth of all.
     """
     radius = np.hypot(first, second)
     far = np.argpartition(radius, -min(len(radius), 64))[-64:]
@@ -67,11 +70,11 @@ def _greatest(first: Array, second: Array) -> Array:
     )
 
 
-def aligned(first: Motion, second: Motion) -> tuple[Samples, Samples]:
+def common_samples(first: Motion, second: Motion) -> tuple[Samples, Samples]:
     """Return the horizontal accelerations of two motions over their common time, shape (n,) each.
 
-    Motions without absolute times start together. Raises ``InputError`` for azimuths that are not square to each other, other
-    sampling intervals, starts that no whole number of samples lies between, and no time in common.
+    Motions without absolute times start together. Raises ``InputError`` for azimuths not square to each other, different
+    sampling intervals, starts not a whole number of samples apart, and no time in common.
     """
     names = f"{first.name} and {second.name}"
     if askew := not_square(first.azimuth, second.azimuth, names):
@@ -91,9 +94,9 @@ def aligned(first: Motion, second: Motion) -> tuple[Samples, Samples]:
 
 
 def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
-    """Return two motions of a station that are square to each other; of more, turned to many directions, the first such two.
+    """Return the first two of a station's motions that are square to each other.
 
-    Raises ``InputError`` for a station that has none, with the reason.
+    Raises ``InputError`` for a station without such a pair, with the reason.
     """
     if len(motions) < 2:
         raise InputError("its station has one horizontal component, and two are needed")
@@ -101,7 +104,7 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
     for i, first in enumerate(motions):
         for second in motions[i + 1 :]:
             try:
-                aligned(first, second)
+                common_samples(first, second)
             except InputError as error:
                 problems = problems or error.messages
             else:
@@ -109,8 +112,8 @@ def square_pair(motions: Sequence[Motion]) -> tuple[Motion, Motion]:
     raise InputError(*problems)
 
 
-def unpaired(motions: Sequence[Motion]) -> str:
-    """Return why motions of a station have no two that are square to each other; empty if they have."""
+def pairing_obstacle(motions: Sequence[Motion]) -> str:
+    """Return why a station's motions have no pair square to each other; empty if they have one."""
     try:
         pair_of(motions)
     except InputError as error:
@@ -119,19 +122,22 @@ def unpaired(motions: Sequence[Motion]) -> str:
 
 
 def pair_of(motions: Sequence[Motion]) -> tuple[Samples, Samples]:
-    """Return two horizontal accelerations of a station over their common time, shape (n,) each, that are square to each other.
+    """Return two accelerations of a station square to each other, over their common time, shape (n,) each.
 
-    They do not depend on the directions to which its ``motions`` are turned. Raises ``InputError`` as :func:`square_pair`.
+    Measures of them do not depend on the directions to which ``motions`` are rotated. Raises ``InputError`` as
+    :func:`square_pair`.
     """
-    with_other = next((motion for motion in motions if motion.across is not None), None)
-    if with_other is None or with_other.across is None:
-        return aligned(*square_pair(motions))
-    return with_other.horizontal, with_other.across
+    for motion in motions:
+        if motion.across is not None:
+            return motion.horizontal, motion.across
+    return common_samples(*square_pair(motions))
 
 
-def squared(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
-    """Return the accelerations, with their sampling intervals [s], whose spectra SRSS takes: two that are square to each other,
-    which need no common time; the first one alone if there are none."""
+def srss_components(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
+    """Return a station's accelerations for SRSS, with their sampling intervals [s]: the first two square to each other.
+
+    They need no common time. Without such a pair, the first one alone.
+    """
     first = motions[0]
     for i, motion in enumerate(motions):
         if motion.across is not None:
@@ -143,12 +149,12 @@ def squared(motions: Sequence[Motion]) -> list[tuple[Samples, float]]:
 
 
 def station_spectra(motions: Sequence[Motion], periods: npt.ArrayLike, damping: float) -> dict[str, Array]:
-    """Return the spectral accelerations [m/s²] of a station by all of PAIR_RULES, each shape (periods,).
+    """Return the spectral accelerations [m/s²] of a station by ``PAIR_RULES``, shape (periods,) each.
 
-    Raises ``InputError`` as :func:`square_pair`, and for periods and damping that are out of range.
+    Raises ``InputError`` as :func:`square_pair`, and for periods and damping out of range.
     """
     histories = (responses(a, motions[0].dt, periods, damping) for a in pair_of(motions))
-    rows = [measured(u, v) for u, v in zip(*histories, strict=True)]
+    rows = [pair_measures(u, v) for u, v in zip(*histories, strict=True)]
     return {rule: np.array([row[rule] for row in rows]) for rule in PAIR_RULES}
 
 
@@ -172,9 +178,9 @@ def pair_spectrum(
     DataFrame, shape (n, 6)
         Pseudo-spectral accelerations [9.81 m/s²] by ``period_s``: ``first_g``, ``second_g``, the components; ``srss_g``, the root
         of the sum of their squares; ``geomean_g``, their geometric mean; ``rotd50_g`` and ``rotd100_g``, the median and the
-        greatest over all directions (Boore 2010).
+        maximum over all directions (Boore 2010).
 
-    Raises ``InputError`` for components that are not such a pair, and impossible periods and damping.
+    Raises ``InputError`` for components that are no such pair, and impossible periods and damping.
 
     Examples
     --------
@@ -186,8 +192,8 @@ def pair_spectrum(
     1.0         0.419     0.365   0.556      0.391     0.392      0.547
     """
     undamped = PERIODS if periods is None else as_periods(periods)
-    histories = [responses(a, first.dt, undamped, damping) for a in aligned(first, second)]
-    rows = [[_most(u), _most(v), *measured(u, v).values()] for u, v in zip(*histories, strict=True)]
+    histories = [responses(a, first.dt, undamped, damping) for a in common_samples(first, second)]
+    rows = [[_peak(u), _peak(v), *pair_measures(u, v).values()] for u, v in zip(*histories, strict=True)]
     names = [f"{name}_g" for name in ("first", "second", *PAIR_RULES)]
     sa = np.array(rows).reshape(-1, len(names)) / GRAVITY
     return pd.DataFrame(sa, columns=names, index=pd.Index(undamped, name="period_s"))

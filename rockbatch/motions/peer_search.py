@@ -1,4 +1,4 @@
-"""What PEER's search lists of the records beside it, in ``_SearchResults.csv``: scale factor, event, site, duration and pulse."""
+"""PEER's ``_SearchResults.csv`` beside its records: scale factor, event, site, duration and pulse of each."""
 
 import csv
 import math
@@ -9,13 +9,13 @@ from pathlib import Path
 from rockbatch.common.errors import InputError
 from rockbatch.motions import archives
 from rockbatch.motions.files import SourceFile
-from rockbatch.motions.listed import NOTHING, Listed
+from rockbatch.motions.listed import NOT_LISTED, Listed
 from rockbatch.motions.record_file import text_of
 
 NAME = "_searchresults.csv"
 _LARGEST = 2**24  # bytes; a search of a hundred records with its spectra has 0.3 MB
 _NUMBER, _FILE = "record sequence number", re.compile(r"(?:horizontal-[12]|vertical) acc\. filename")
-_KEYS = {  # beginnings of heads, in the order in which they are looked for
+_KEYS = {  # beginnings of column heads, in the order of preference
     "scale": ("scale factor",),
     "magnitude": ("magnitude",),
     "distance_km": ("rrup", "closstdist", "rjb"),
@@ -30,7 +30,7 @@ Lists = Mapping[tuple[Path, str], Listed]
 
 
 def listed_in(files: Sequence[SourceFile]) -> Lists:
-    """Return what the lists among these files say, by the folder of each and the records in it; none of one that is damaged."""
+    """Return the rows of all lists among these files, by folder and record; damaged lists are skipped."""
     lists: dict[tuple[Path, str], Listed] = {}
     for file in files:
         if file.path.name.lower() == NAME and not file.refusal:
@@ -39,22 +39,19 @@ def listed_in(files: Sequence[SourceFile]) -> Lists:
             except (InputError, OSError, csv.Error):
                 continue
             for row in rows:
-                of_record = _listed(row)
-                names = [f"RSN{row[_NUMBER].strip()}"]
-                names += [
-                    Path(name.strip()).name.lower() for head, name in row.items() if _FILE.match(head) and name.strip()
-                ]
-                lists.update({(file.path.parent, name): of_record for name in names})
+                record_files = [name.strip() for head, name in row.items() if _FILE.match(head) and name.strip()]
+                keys = [f"RSN{row[_NUMBER].strip()}", *(Path(name).name.lower() for name in record_files)]
+                lists.update(dict.fromkeys(((file.path.parent, key) for key in keys), _listed(row)))
     return lists
 
 
 def of_file(lists: Lists, path: Path, site: str) -> Listed:
-    """Return what the list in a file's folder says of it, by its name or by its number, ``site``."""
-    return lists.get((path.parent, path.name.lower())) or lists.get((path.parent, site)) or NOTHING
+    """Return the row of a file in its folder's list, by its name or its number ``site``; ``NOT_LISTED`` without one."""
+    return lists.get((path.parent, path.name.lower())) or lists.get((path.parent, site)) or NOT_LISTED
 
 
 def _rows(text: str) -> list[dict[str, str]]:
-    """Return the rows of the table that has a column of records' numbers, by its heads in lower case, down to another line."""
+    """Return the rows of the table with a column of record numbers, by heads in lower case, up to its first other line."""
     rows: list[dict[str, str]] = []
     heads: list[str] = []
     for cells in csv.reader(text.splitlines(), skipinitialspace=True):
@@ -70,13 +67,16 @@ def _rows(text: str) -> list[dict[str, str]]:
 
 
 def _listed(row: Mapping[str, str]) -> Listed:
-    heads = {key: [head for start in starts for head in row if head.startswith(start)] for key, starts in _KEYS.items()}
-    values = {key: _above_0(row[of_key[0]]) for key, of_key in heads.items() if of_key}
+    """Return the facts in a row; None for those whose column is missing or not above 0."""
+    values = {}
+    for key, beginnings in _KEYS.items():
+        heads = [head for beginning in beginnings for head in row if head.startswith(beginning)]
+        values[key] = _above_0(row[heads[0]]) if heads else None
     return Listed(**values)
 
 
 def _above_0(cell: str) -> float | None:
-    """Return the number of a cell; ``None`` where it has none, or -999 and the like."""
+    """Return the number in a cell; ``None`` for no number, and for -999 and others not above 0."""
     try:
         value = float(cell)
     except ValueError:

@@ -1,9 +1,9 @@
-"""Where a sensor stands, by the words of its place or of its station's name: on the ground, on a structure, below the surface.
+"""Location of a sensor on the ground, on a structure or in a borehole, by the words for its place or its station's name.
 
-All words of all languages are in one table (``_PLACES``); accents and capitals do not matter. A word of a structure counts
-wherever it stands, in "Base of column" as in "Top of pier", but where the text says that the sensor is in the free field, or on
-the ground beside the structure: "Ground, N of pier 2". Names of stations may be those of streets and towns: words that are
-such, too, count in places only.
+Words of all languages are in one table (``_PLACES``); accents and capitals do not matter. A word for a structure counts anywhere
+in the text, in "Base of column" as in "Top of pier", unless the text states that the sensor is in the free field, or on the
+ground beside the structure: "Ground, N of pier 2". Stations are also named after streets and towns: words that occur in such
+names count in places only.
 """
 
 import re
@@ -13,9 +13,9 @@ from functools import lru_cache
 
 
 class Stand(Enum):
-    """Where a sensor stands, as far as words tell."""
+    """Location of a sensor."""
 
-    GROUND = auto()  # or nothing that says otherwise
+    GROUND = auto()  # also if unknown
     STRUCTURE = auto()
     BOREHOLE = auto()
 
@@ -119,11 +119,12 @@ _DIRECTED = re.compile(
     r" *(?:from|away|of|to|off|n|s|e|w|ne|nw|se|sw|north|south|east|west|above|high|tall|wide|long|span|elev|asl|de|du|del|von"
     r"|vom|dal)(?![a-z])"
 )
+_LEVEL = re.compile(r"(?:(?:^|[ (=,;]|gl ?|g\.l\. ?|z ?= ?)[-−–]|\b(?:gl|at|@)[ -]*)$")
 _HIGH = re.compile(r"\b(?:elev|el|elevation|alt|altitude|height|h|within|about|~|span|cota|quota)[. =:]*$")
 
 
 def stand(place: str, name: str) -> tuple[Stand, str]:
-    """Return where a sensor stands, and the text that says so: its place, or the name of its station."""
+    """Return the location of a sensor and the text, place or station's ``name``, that states it; on the ground, ""."""
     for text, is_name in ((place, _folded(place) == _folded(name)), (name, True)):
         where = _stand(text, is_name)
         if where is not Stand.GROUND:
@@ -138,6 +139,7 @@ def depth_as_place(depth: float | None) -> str | None:
 
 @lru_cache(maxsize=1024)
 def _stand(text: str, is_name: bool) -> Stand:
+    """Return the location that a text states, the name of a station or the words for a place."""
     folded = _folded(text)
     if not folded:
         return Stand.GROUND
@@ -147,7 +149,7 @@ def _stand(text: str, is_name: bool) -> Stand:
 
 
 def _folded(text: str) -> str:
-    """Return a text in lower case, without accents, with blanks for signs that part words."""
+    """Return a text in lower case, without accents, with blanks for signs between words."""
     text = text.casefold().replace("ı", "i").replace("ß", "ss").replace("ø", "o")
     plain = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
     plain = unicodedata.normalize("NFC", plain)
@@ -156,7 +158,7 @@ def _folded(text: str) -> str:
 
 @lru_cache(maxsize=64)
 def _pattern(*kinds: str) -> re.Pattern[str]:
-    """Return the pattern of the words of these kinds, whole ones or such as begin so."""
+    """Return a pattern that matches the words of these kinds in ``_PLACES``."""
     words = {word.strip() for kind in kinds for listed in _PLACES[kind].values() for word in listed.split(",")}
     wide = [re.escape(word) for word in words if re.search(f"[{_WIDE}]", word)]
     plain = sorted(words - {word for word in words if re.search(f"[{_WIDE}]", word)}, key=len, reverse=True)
@@ -169,7 +171,7 @@ def _pattern(*kinds: str) -> re.Pattern[str]:
 
 
 def _is_on_structure(text: str, is_name: bool) -> bool:
-    """Return whether a folded text says that a sensor is on a structure, above the ground floor of one, or on an embankment."""
+    """Return whether a folded text places a sensor on a structure or embankment, or above the ground floor."""
     if _pattern("free field").search(text):
         return False
     kinds = ("structure",) if is_name else ("structure", "structure, in places only")
@@ -182,21 +184,21 @@ def _is_on_structure(text: str, is_name: bool) -> bool:
 
 
 def _is_beside(before: str) -> bool:
-    """Return whether the words before that of a structure say that the sensor is on the ground near it."""
+    """Return whether the text before a structure's word places the sensor on the ground near it: "Ground, N of"."""
     ground = _pattern("ground").search(before)
     between = "" if ground is None else before[ground.end() :]
     return any(pattern.search(between) for pattern in (_pattern("near"), _CARDINAL, re.compile(_LENGTH)))
 
 
 def _is_street(text: str, end: int) -> bool:
-    """Return whether the word that ends there is the name of a street or a town: "Crest Drive"."""
+    """Return whether the word that ends at ``end`` is the name of a street or a town: "Crest Drive"."""
     following = re.match(r"[ .]*([a-z]+)", text[end:])
     return following is not None and following[1] in _STREETS.split()
 
 
 @lru_cache(maxsize=1)
 def _upper_floor() -> re.Pattern[str]:
-    """Return the pattern of floors above that of the entrance, in digits or words, before or behind the word for it."""
+    """Return a pattern of floors from the second on, in digits or words, before or after the word for floor."""
     floor = _pattern("floor").pattern
     number = r"(?<![\d.b-])(?:[2-9]|[1-9]\d)(?![\d])"
     ordinal = r"(?:st|nd|rd|th|er|do|to|mo|e|eme|ieme|o|a|°|º|ª|\.|os|inci|uncu|ncu)?"
@@ -205,7 +207,7 @@ def _upper_floor() -> re.Pattern[str]:
 
 
 def _is_below(text: str, is_name: bool) -> bool:
-    """Return whether a folded text says that a sensor is in a borehole, or states its depth."""
+    """Return whether a folded text places a sensor in a borehole, or states a depth of more than 2 m."""
     if _pattern("surface").search(text) and not re.search(r"below (?:the |ground )?surface", text):
         return False
     kinds = ("borehole",) if is_name else ("borehole", "borehole, in places only")
@@ -216,25 +218,21 @@ def _is_below(text: str, is_name: bool) -> bool:
 
 def _depths(text: str, is_name: bool) -> list[float]:
     """Return the depths [m] that a folded text states: "30 m depth", "GL-100m", and in places a bare "30 m"."""
-    depth, depths = _pattern("depth"), []
+    depth, depths = _pattern("depth").pattern, []
     for match in re.finditer(_LENGTH, text):
         before, behind = text[: match.start()], text[match.end() :]
-        stated = re.search(rf"(?:{depth.pattern})[ .=(-]*(?:of )?$", before) or re.match(
-            rf"[ )]*(?:de |di |en )?(?:{depth.pattern})", behind
+        stated = re.search(rf"(?:{depth})[ .=(-]*(?:of )?$", before) or re.match(
+            rf"[ )]*(?:de |di |en )?(?:{depth})", behind
         )
-        level = re.search(r"(?:^|[ (=,;]|gl ?|g\.l\. ?|z ?= ?)[-−–]$", before) or re.search(
-            r"\b(?:gl|at|@)[ -]*$", before
-        )
-        bare = not is_name and not _DIRECTED.match(behind) and not _HIGH.search(before)
-        if stated or (not is_name and level and not _DIRECTED.match(behind)) or (bare and _ends_so(before, behind)):
+        in_place = not is_name and not _DIRECTED.match(behind)
+        if stated or (in_place and (_LEVEL.search(before) or _stands_alone(before, behind))):
             number = float(match["number"].replace(",", "."))
             depths.append(number * (_FOOT if match["unit"].startswith("f") else 1.0))
     return depths
 
 
-def _ends_so(before: str, behind: str) -> bool:
-    """Return whether a length stands alone, at the end of its text or of a part of it."""
-    return (
-        re.fullmatch(r"[ )]*(?:[;,].*)?", behind) is not None
-        and re.fullmatch(r"(?:.*[;,(-] ?|.*array ?|)", before) is not None
-    )
+def _stands_alone(before: str, behind: str) -> bool:
+    """Return whether a length is a part of its text by itself, and no height: "Array, 30 m"."""
+    if _HIGH.search(before) or not re.fullmatch(r"[ )]*(?:[;,].*)?", behind):
+        return False
+    return re.fullmatch(r"(?:.*[;,(-] ?|.*array ?|)", before) is not None

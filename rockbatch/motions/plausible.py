@@ -1,7 +1,7 @@
-"""Oddities of a record: a peak that a wrong unit explains, faults of instruments, and where the sensor stood.
+"""Oddities of a record: a peak that suggests a wrong unit, faults of instruments, and the location of the sensor.
 
-Each judge looks for one thing and returns a :class:`Finding`, or nothing; a further one joins by its name in ``JUDGES``.
-The limits are held against real records in motions/README.md.
+Each judge looks for one oddity and returns a :class:`Finding` or None; a new one is added to ``JUDGES``. The limits are
+compared with real records in motions/README.md.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -20,46 +20,46 @@ LOWEST, HIGHEST = 0.001, 5.0
 """PGA [g] beyond which a wrong unit is likelier than the record; the largest recorded ones reach 2 to 4 g."""
 
 STRONG = 2.0
-"""PGA [g] that few records exceed, and many do whose header says g of numbers in m/s²."""
+"""PGA [g] that few records exceed, but many with numbers in m/s² and a header of g."""
 
 FLAT, FLATTER = 0.005, 20.0
-"""Samples within this share of the PGA of an extreme are its top; it is flat if the samples beside it lie so many times further
-off than those in it lie apart: of a parabola that is 4 at most."""
+"""Samples within this share of the PGA of an extreme form its top; it is flat if the samples beside it are so many times further
+below than the spread within it: 4 at most for a parabola."""
 
 FARTHEST, ABSURD = 15.0, 100.0
-"""PGD [m] beyond which no ground has moved (beside the ruptures of the largest earthquakes it was some 10 m), and beyond
-which not even an unprocessed acceleration drifts: it may be a velocity."""
+"""PGD [m] beyond which no ground has moved (some 10 m beside the ruptures of the largest earthquakes), and beyond which not even
+an unprocessed acceleration drifts: it may be a velocity."""
 
 UNEQUAL = 5.0
-"""Ratio of the PGAs of two horizontal components of a station beyond which one gain is likelier wrong than right."""
+"""Ratio of the PGAs of two horizontal components of a station beyond which a wrong gain is likelier."""
 
 FAINT = 20.0
-"""Ratio of the PGA of the horizontal components of a station to that of its vertical one, beyond which a gain is likelier wrong;
+"""Ratio of the PGA of a station's horizontal components to that of its vertical one, beyond which a wrong gain is likelier;
 real records have 0.4 to 3."""
 
 STEADY = 0.12
-"""Distance of the growth of ∫a² dt from a straight line below which a vertical component is noise, if its horizontal one has
-twice as much; real records have 0.24 and more, white noise of a few hundred samples some 0.05."""
+"""Distance of the growth of ∫a² dt from a straight line below which a vertical component is noise, if the horizontal has twice
+as much; real records have 0.24 and more, white noise of a few hundred samples some 0.05."""
 
 ALTERNATION = 0.25
-"""Share of the PGA that swings to and fro, sample by sample, eight samples long, beyond which it is an instrument's."""
+"""Amplitude over the PGA of an alternation from sample to sample over eight samples, beyond which it is the recorder's."""
 
 FARTHEST_MEAN = 0.15
-"""Mean over the peak, PGA, beyond which a series is hardly a record's: the ground would end with this share of PGA times
+"""Mean over the PGA beyond which a series is hardly a record: the ground would end with a velocity of this share of PGA times
 duration. Real records as they are used have 0.0003 at most; one cut at 1 m/s after 3 s of 3 m/s² would have 0.11."""
 
 ANY = ("*",)
 """Confirms every record."""
 
 _SWINGS = 7
-_SAME_SHAPE = 1e-3  # of the peak: what printing a scaled copy may cost a sample
-_LONG_TOP = 4  # samples of a flat top, or of several together and one more
-_ENOUGH = 8  # samples: fewer tell nothing about their mean
+_SAME_SHAPE = 1e-3  # of the peak: rounding of a sample in a printed, scaled copy
+_LONG_TOP = 4  # samples: least length of one flat top; several together must have one more
+_ENOUGH = 8  # samples: the mean of fewer says nothing
 
 
 @dataclass(frozen=True)
-class Judged:
-    """A motion, and what it is judged by."""
+class Candidate:
+    """A motion to be judged, with the components of its station."""
 
     motion: Motion
     component: Component  # its horizontal component
@@ -67,12 +67,12 @@ class Judged:
     gravity: float  # [m/s²]
 
 
-def unlikely_peak(judged: Judged) -> Finding | None:
-    """Find a PGA that no earthquake has, so that the unit is probably wrong."""
-    horizontal = judged.motion.pga / judged.gravity
-    vertical = (judged.motion.pga_vertical or 0.0) / judged.gravity
+def unlikely_peak(candidate: Candidate) -> Finding | None:
+    """Return a finding on a PGA outside 0.001–5 g, so that the unit is probably wrong, or above 2 g in a file in g."""
+    horizontal = candidate.motion.pga / candidate.gravity
+    vertical = (candidate.motion.pga_vertical or 0.0) / candidate.gravity
     if LOWEST <= horizontal <= HIGHEST >= vertical:
-        return _strong(max(horizontal, vertical)) if judged.component.unit.strip().lower() == "g" else None
+        return _strong(max(horizontal, vertical)) if candidate.component.unit.strip().lower() == "g" else None
     peak = f"PGA {horizontal:.3g} g"
     if vertical > HIGHEST:
         peak += f", vertical {vertical:.3g} g,"
@@ -80,7 +80,7 @@ def unlikely_peak(judged: Judged) -> Finding | None:
 
 
 def _strong(peak: float) -> Finding | None:
-    """Find a peak [g] of a record in g that would be a usual one in m/s²."""
+    """Return a finding on a peak [g] above 2 g, which would be a usual one in m/s²; None below."""
     if peak <= STRONG:
         return None
     text = f"PGA {peak:.3g} g, as few records have; if its numbers are in m/s², it is {peak / GRAVITY:.2g} g: check the unit"
@@ -88,10 +88,10 @@ def _strong(peak: float) -> Finding | None:
 
 
 def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
-    """Return what is odd about the unit of a motion that was read from no file; empty if nothing, or it is confirmed."""
+    """Return a complaint about a PGA above 5 g of a motion from Python; [] for others, and if judged or confirmed already."""
     peak = max(motion.pga, motion.pga_vertical or 0.0)
-    judged = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
-    if judged or "pga" in motion.confirm or peak <= HIGHEST * gravity:
+    candidate = motion.source == "pulse" or any(finding.what == "PGA" for finding in motion.findings)
+    if candidate or "pga" in motion.confirm or peak <= HIGHEST * gravity:
         return []
     return [
         f'motion "{motion.name}": PGA {peak / gravity:.3g} g, where the strongest earthquakes had 2 to 4 g: samples are in m/s², '
@@ -99,9 +99,9 @@ def unlikely_samples(motion: Motion, gravity: float) -> list[str]:
     ]
 
 
-def no_zero_line(judged: Judged) -> Finding | None:
-    """Find a series that does not swing about zero: a spectrum, an envelope, an offset."""
-    components = (("", judged.motion.horizontal), ("its vertical component ", judged.motion.vertical))
+def no_zero_line(candidate: Candidate) -> Finding | None:
+    """Return a finding on samples of one sign, as of a spectrum or envelope, or with a mean above 15 % of their peak."""
+    components = (("", candidate.motion.horizontal), ("its vertical component ", candidate.motion.vertical))
     moving = [(name, a) for name, a in components if a is not None and len(a) >= _ENOUGH and np.any(a)]
     for name, a in moving:
         if a.min() >= 0 or a.max() <= 0:
@@ -117,15 +117,15 @@ def no_zero_line(judged: Judged) -> Finding | None:
     return None
 
 
-def alternation(judged: Judged) -> Finding | None:
-    """Find samples that swing to and fro: the recorder, or its file, and not the ground."""
-    for name, samples in (("", judged.motion.horizontal), ("vertical: ", judged.motion.vertical)):
+def alternation(candidate: Candidate) -> Finding | None:
+    """Return a finding on samples that alternate in sign from one to the next, a fault of the recorder or its file."""
+    for name, samples in (("", candidate.motion.horizontal), ("vertical: ", candidate.motion.vertical)):
         if samples is None:
             continue
         swing, peak = alternating(samples), float(np.abs(samples).max())
         if swing > ALTERNATION * peak:
             text = (
-                f"{name}it alternates from sample to sample by {swing / judged.gravity:.3g} g, {swing / peak:.0%} of its "
+                f"{name}it alternates from sample to sample by {swing / candidate.gravity:.3g} g, {swing / peak:.0%} of its "
                 "PGA: check the file"
             )
             return Finding("alternates", text, gross=True)
@@ -133,24 +133,24 @@ def alternation(judged: Judged) -> Finding | None:
 
 
 def alternating(samples: Samples) -> float:
-    """Return the largest amplitude of eight samples in a row of which every one lies on the other side of its neighbours.
+    """Return the largest amplitude of an alternation from sample to sample over eight samples, in their unit.
 
-    Half of the least of their seven swings, in the unit of ``samples``; 0 for fewer samples.
+    It is half the least of their seven swings; 0 without an alternation, or for fewer than eight samples.
     """
     if len(samples) <= _SWINGS:
         return 0.0
     swings = np.diff(samples)
-    swings[1::2] *= -1.0  # of one sign where samples alternate
+    swings[1::2] *= -1.0  # so that alternating samples have swings of one sign
     least, greatest = swings, swings
-    for shift in (1, 2, 3):  # of two, of four, of seven in a row
+    for shift in (1, 2, 3):  # extremes over two, four, seven swings in a row
         least = np.minimum(least[shift:], least[:-shift])
         greatest = np.maximum(greatest[shift:], greatest[:-shift])
     return max(0.0, float(least.max()), -float(greatest.min())) / 2.0
 
 
-def clipped(judged: Judged) -> Finding | None:
-    """Find flat tops: the recorder, or its digitiser, ended there, and the ground did not."""
-    for name, samples in (("", judged.component.acceleration), ("vertical: ", judged.motion.vertical)):
+def flat_top(candidate: Candidate) -> Finding | None:
+    """Return a finding on flat tops of four or more samples at the largest value: clipped by recorder or digitiser."""
+    for name, samples in (("", candidate.component.acceleration), ("vertical: ", candidate.motion.vertical)):
         tops = [] if samples is None else flat_tops(samples)
         if max(tops, default=0) >= _LONG_TOP or (len(tops) > 1 and sum(tops) > _LONG_TOP):
             text = (
@@ -162,7 +162,7 @@ def clipped(judged: Judged) -> Finding | None:
 
 
 def flat_tops(samples: Samples) -> list[int]:
-    """Return how many samples each flat stretch at the largest and at the smallest value has; natural peaks have none."""
+    """Return the number of samples of each flat top at the largest and smallest value; [] for natural peaks."""
     peak = float(np.abs(samples).max(initial=0.0))
     values = np.unique(samples)
     if peak == 0.0 or len(values) < _ENOUGH:
@@ -182,9 +182,9 @@ def flat_tops(samples: Samples) -> list[int]:
     return tops
 
 
-def displacement(judged: Judged) -> Finding | None:
-    """Find a displacement that no ground has, gross for a corrected record, or beyond ``ABSURD``; or one that runs away."""
-    motion = judged.motion
+def displacement(candidate: Candidate) -> Finding | None:
+    """Return a finding on a PGD above 15 m, gross if the record is corrected or above 100 m, or on a drift."""
+    motion = candidate.motion
     pgd = measures.pgd(motion.horizontal, motion.dt, motion.initial)
     if pgd > FARTHEST:
         text = f"its displacement reaches {pgd:.3g} m, more than {FARTHEST:g} m: check its baseline"
@@ -192,44 +192,44 @@ def displacement(judged: Judged) -> Finding | None:
     if measures.believable_pgd(motion) is not None:
         return None
     text = (
-        f"no PGD: from rest its displacement runs away, to {pgd:.3g} m; it is unprocessed, or its file does not tell "
-        "the velocity that it begins with"
+        f"no PGD: integrated displacement drifts to {pgd:.3g} m; the record is unprocessed, or its initial velocity is "
+        "missing"
     )
     return Finding("no PGD", text)
 
 
-def unequal_horizontals(judged: Judged) -> Finding | None:
-    """Find a horizontal component many times the other one of its station."""
-    if len(judged.peaks) != 2:
+def unequal_horizontals(candidate: Candidate) -> Finding | None:
+    """Return a finding on two horizontal components of a station whose PGAs differ by a factor above 5."""
+    if len(candidate.peaks) != 2:
         return None
-    (low, least), (high, most) = sorted(judged.peaks, key=lambda peak: peak[1])
+    (low, least), (high, most) = sorted(candidate.peaks, key=lambda peak: peak[1])
     if not most > UNEQUAL * least:
         return None
     text = f"PGA of {high.name} is {most / max(least, 1e-300):.3g} times that of {low.name}: check their gains"
     return Finding("unequal", text)
 
 
-def copied_horizontal(judged: Judged) -> Finding | None:
-    """Find a horizontal component with the samples of the other one of its station."""
-    others = [c for c, _ in judged.peaks if c is not judged.component and len(judged.peaks) == 2]
-    copied = [c.name for c in others if _factor(judged.component.acceleration, c.acceleration)]
+def copied_horizontal(candidate: Candidate) -> Finding | None:
+    """Return a finding on a horizontal component that is a scaled copy of the station's other one."""
+    others = [c for c, _ in candidate.peaks if c is not candidate.component and len(candidate.peaks) == 2]
+    copied = [c.name for c in others if _common_factor(candidate.component.acceleration, c.acceleration)]
     text = f"it has the samples of {', '.join(copied)}, square to it: check their files"
     return Finding("copy", text) if copied else None
 
 
-def unlike_vertical(judged: Judged) -> Finding | None:
-    """Find a vertical component that is none of this ground: a copy of a horizontal one, noise, or of another gain."""
-    motion = judged.motion
+def unlike_vertical(candidate: Candidate) -> Finding | None:
+    """Return a finding on a vertical component that is a copy of a horizontal one, noise, or of another gain."""
+    motion = candidate.motion
     if motion.vertical is None or not np.any(motion.vertical):
         return None
-    peers = {c.name: c.acceleration for c, _ in judged.peaks} | {motion.name: motion.horizontal}
-    factors = ((name, factor) for name, a in peers.items() if (factor := _factor(motion.vertical, a)))
+    peers = {c.name: c.acceleration for c, _ in candidate.peaks} | {motion.name: motion.horizontal}
+    factors = ((name, factor) for name, a in peers.items() if (factor := _common_factor(motion.vertical, a)))
     if copied := next(factors, None):
         name, factor = copied
         times = "" if (same := abs(abs(factor) - 1.0) <= _SAME_SHAPE) else f" times {abs(factor):.3g}"
         text = f"its vertical component has the samples of the horizontal one {name}{times}: check the file"
         return Finding("vertical", text, gross=same)
-    most = max([motion.pga, *(peak for _, peak in judged.peaks)])
+    most = max([motion.pga, *(peak for _, peak in candidate.peaks)])
     ratio = np.abs(motion.vertical).max() / max(most, 1e-300)
     if not 1.0 / FAINT <= ratio <= UNEQUAL:
         text = f"PGA of its vertical component is {ratio:.3g} times that of the horizontal ones: check their gains"
@@ -240,8 +240,8 @@ def unlike_vertical(judged: Judged) -> Finding | None:
     return None
 
 
-def _factor(a: Samples, b: Samples) -> float:
-    """Return the factor by which samples are those of ``b``; 0 if they are others."""
+def _common_factor(a: Samples, b: Samples) -> float:
+    """Return the factor from samples ``b`` to ``a`` if they are scaled copies; else 0."""
     if len(a) != len(b) or not b.any():
         return 0.0
     factor = float(a @ b) / float(b @ b)
@@ -249,14 +249,14 @@ def _factor(a: Samples, b: Samples) -> float:
 
 
 def _growth_apart(samples: Samples) -> float:
-    """Return how far the share of ∫a² dt that has grown is apart from that of the time, at most."""
+    """Return the greatest distance of the normalised ∫a² dt from its straight line in time, 0 to 1."""
     energy = np.cumsum(np.square(samples))
     return float(np.abs(energy / (energy[-1] or 1.0) - np.arange(1, len(energy) + 1) / len(energy)).max())
 
 
-def in_a_structure(judged: Judged) -> Finding | None:
-    """Return that a sensor is on a structure, or in a borehole, by its place or its station's name."""
-    where, text = _stand(judged.component)
+def in_a_structure(candidate: Candidate) -> Finding | None:
+    """Return a finding on a sensor on a structure or in a borehole, by its place or its station's name."""
+    where, text = _stand(candidate.component)
     if where is Stand.BOREHOLE:
         return Finding("borehole", f'"{text}" is in a borehole, and not at the surface', gross=True)
     if where is Stand.STRUCTURE:
@@ -270,61 +270,61 @@ def in_a_borehole(component: Component) -> bool:
 
 
 def _stand(component: Component) -> tuple[Stand, str]:
+    """Return the location of a component's sensor, and the words that state it."""
     return stand(component.sensor.place or "", component.origin.station)
 
 
-def unprocessed(judged: Judged) -> Finding | None:
-    """Find a record as the instrument left it."""
-    if judged.motion.processed is not False:
+def lack_of_processing(candidate: Candidate) -> Finding | None:
+    """Return a finding on an uncorrected record; None if corrected or unknown."""
+    if candidate.motion.processed is not False:
         return None
-    return Finding("unprocessed", "unprocessed: as recorded, with what the instrument adds at long periods")
+    return Finding("unprocessed", "unprocessed: long-period noise not removed")
 
 
-def differing_copies(judged: Judged) -> Finding | None:
-    """Return how its header, or copies of it that are left out, differ; those of its vertical component too."""
-    both = (*judged.component.findings, *judged.motion.findings)
+def differing_copies(candidate: Candidate) -> Finding | None:
+    """Return the findings of the readers on both components, on headers and copies, as one; None without any."""
+    both = (*candidate.component.findings, *candidate.motion.findings)
     if not both:
         return None
     return Finding(both[0].what, "; ".join(finding.text for finding in both), any(finding.gross for finding in both))
 
 
-JUDGES: tuple[Callable[[Judged], Finding | None], ...] = (
+JUDGES: tuple[Callable[[Candidate], Finding | None], ...] = (
     unlikely_peak,
     no_zero_line,
     alternation,
-    clipped,
+    flat_top,
     displacement,
     unequal_horizontals,
     copied_horizontal,
     unlike_vertical,
     in_a_structure,
     differing_copies,
-    unprocessed,
+    lack_of_processing,
 )
 
 
-def findings(judged: Judged) -> tuple[Finding, ...]:
-    """Return all that is odd about a motion."""
-    findings_or_none = (check(judged) for check in JUDGES)
-    return tuple(finding for finding in findings_or_none if finding is not None)
+def findings(candidate: Candidate) -> tuple[Finding, ...]:
+    """Return the findings of all ``JUDGES`` on a motion."""
+    return tuple(finding for judge in JUDGES if (finding := judge(candidate)) is not None)
 
 
 def gross_findings(component: Component) -> list[Finding]:
-    """Return what is grossly odd about a component alone, and neither it nor a manifest confirms."""
+    """Return the gross findings on a component by itself, without those that a manifest confirms."""
     alone = Motion(
         component.name, component.dt, component.acceleration, initial=component.initial, processed=component.processed
     )
-    all_findings = findings(Judged(alone, component, (), GRAVITY))
-    return [
-        finding
-        for finding in all_findings
-        if finding.gross and not {"confirm", finding.key}.intersection(component.confirmed)
-    ]
+    return _unconfirmed(findings(Candidate(alone, component, (), GRAVITY)), component.confirmed)
 
 
-def doubt(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
-    """Return why the motion ``name`` has to be confirmed, and how; empty where it need not be, or ``confirmed`` has the key."""
-    unconfirmed = [f for f in findings if f.gross and not {"confirm", f.key}.intersection(confirmed)]
+def _unconfirmed(findings: Sequence[Finding], confirmed: Collection[str]) -> list[Finding]:
+    """Return the gross findings that no key in ``confirmed`` confirms."""
+    return [f for f in findings if f.gross and not {"confirm", f.key}.intersection(confirmed)]
+
+
+def confirmation_request(name: str, findings: Sequence[Finding], confirmed: Collection[str]) -> str:
+    """Return the gross findings on the motion ``name`` and how to confirm them; empty if ``confirmed`` has their keys."""
+    unconfirmed = _unconfirmed(findings, confirmed)
     if not unconfirmed:
         return ""
     key = unconfirmed[0].key if len(unconfirmed) == 1 else "confirm"
@@ -334,6 +334,6 @@ def doubt(name: str, findings: Sequence[Finding], confirmed: Collection[str]) ->
     )
 
 
-def fits(name: str, patterns: Sequence[str]) -> bool:
+def matches_any(name: str, patterns: Sequence[str]) -> bool:
     """Return whether a record's name is one of ``patterns``, or matches one with ``*`` and ``?``."""
     return any(name == pattern or fnmatchcase(name, pattern) for pattern in patterns)

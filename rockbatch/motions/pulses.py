@@ -1,4 +1,4 @@
-"""Ground motions that are a formula: pulses.
+"""Ground motions by formulas: pulses.
 
 Each pulse starts at t = 0 and lasts T_p; with T = ``period``, f = 1/T, ω = 2π/T and a = ``amplitude``:
 
@@ -32,7 +32,7 @@ from rockbatch.motions.motion import MOST_SAMPLES, Initial, Motion, Samples
 SHAPES = ("sine", "cosine", "half-sine", "ricker", "mavroeidis-papageorgiou")
 
 MOST_PULSE = 3.0
-"""Amplitude [g] beyond which a wrong unit is likelier than a pulse; those of near-fault records have 0.1 to 1 g."""
+"""Amplitude [g] beyond which a wrong unit is likely; pulses of near-fault records have 0.1 to 1 g."""
 
 LEAST_SAMPLES = 5.0
 """Samples in a period; with fewer a sine loses a fifth of its peak and more."""
@@ -107,7 +107,7 @@ def pulse(
 
 
 def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
-    """Return what is odd about the "amplitude" [g] of a pulse, and about its "dt" [s] for its period [s], by these names."""
+    """Return complaints by key: "amplitude" above 3 g, and "dt" [s] above a fifth of the period [s]; {} for usual values."""
     doubts = {}
     if amplitude_g > MOST_PULSE:
         doubts["amplitude"] = (
@@ -119,7 +119,7 @@ def unlikely(amplitude_g: float, period: float, dt: float) -> dict[str, str]:
 
 
 def pulse_length(shape: str, period: float, gamma: float | None = None) -> float:
-    """T_p [s], the table at the head of this module, of a pulse with ``period`` [s]."""
+    """Return the duration T_p [s] of a pulse with ``period`` [s], by the table at the head of this module."""
     return _formula(shape, 1.0, period, gamma, 0.0)[1]
 
 
@@ -132,7 +132,7 @@ def _problems(
     gamma: float | None,
     nu: float | None,
 ) -> list[Problem]:
-    """Return what is wrong about the values of a pulse."""
+    """Return the problems of impossible values of a pulse."""
     wrong = [
         Problem(name, value, "must be a number above 0 [s]", kind=OutOfRange)
         for name, value in (("period", period), ("dt", dt), ("duration", duration))
@@ -173,7 +173,7 @@ def _problems(
 def _formula(
     shape: str, a: float, period: float, gamma: float | None, nu: float | None
 ) -> tuple[Callable[[Samples], Samples], float]:
-    """Return the acceleration [m/s²] as a function of time [s], and how long it lasts [s]."""
+    """Return the acceleration [m/s²] as a function of time [s], and its duration [s]."""
     omega = 2.0 * math.pi / period
     if shape in ("sine", "half-sine"):
         return lambda t: a * np.sin(omega * t), period if shape == "sine" else period / 2
@@ -195,13 +195,13 @@ def _formula(
 
 
 def _mavroeidis_papageorgiou(cycles: Samples, gamma: float, nu: float) -> Samples:
-    """−dv/dτ / (−A ω/2) of the velocity pulse, at t/T = ``cycles``: zero at both ends, in its value."""
+    """Return the dimensionless acceleration (dv/dt)/(A ω/2) of the velocity pulse at t/T = ``cycles``; 0 at both ends."""
     tau = 2.0 * np.pi * (cycles - gamma / 2.0)
     return -(np.sin(tau / gamma) * np.cos(tau + nu) / gamma + np.sin(tau + nu) * (1.0 + np.cos(tau / gamma)))
 
 
 def _peak(gamma: float, nu: float) -> float:
-    """Return the largest absolute value of the dimensionless pulse, to 1e-9: a grid, and a finer one at its peak."""
+    """Return the largest absolute value of the dimensionless acceleration, to 1e-9, by a grid and a finer one at its peak."""
     cycles = np.linspace(0.0, gamma, math.ceil(2000 * gamma) + 1)
     i = int(np.abs(_mavroeidis_papageorgiou(cycles, gamma, nu)).argmax())
     fine = np.linspace(cycles[max(i - 1, 0)], cycles[min(i + 1, len(cycles) - 1)], 2001)

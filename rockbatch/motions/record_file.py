@@ -1,9 +1,11 @@
-"""A file as all readers get it, and what the user says about files that do not say it themselves."""
+"""A file as passed to all readers, and the user's statements for files that lack them."""
 
 import codecs
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from rockbatch.common.arguments import checked
 from rockbatch.common.errors import InputError
@@ -12,7 +14,7 @@ from rockbatch.motions.limits import SAME_STEP, STEPS, is_step
 from rockbatch.motions.stationxml import Inventories
 
 LAYOUTS = ("columns", "wrapped")
-"""Of numbers in text files: a column for each component, or one series that goes on from line to line."""
+"""Layouts of numbers in text files: a column for each component, or one series wrapped over lines."""
 
 ROLES = ("horizontal",)
 """Roles that may be stated for all components of unknown direction."""
@@ -24,10 +26,10 @@ _SAME_UNIT = 1e-9  # relative
 @checked
 @dataclass(frozen=True)
 class ReadOptions:
-    """Statements of a study about files that do not make them themselves.
+    """A study's statements for files that lack them.
 
-    A file that states its own keeps it. Where the header is one that people write, as of text columns and AT2 files, a note
-    tells where it differs.
+    A file's own statement takes precedence. For headers that people write, as of text columns and AT2 files, a note says so
+    if they differ.
 
     Attributes
     ----------
@@ -36,8 +38,7 @@ class ReadOptions:
     dt : float or None
         Sampling interval [s] of text columns without time.
     columns : tuple of str or None
-        What the columns of text files are: "time", a component such as "000", "NS" or "up", or "-" (leave
-        out).
+        Meaning of the columns of text files: "time", a component such as "000", "NS" or "up", or "-" (leave out).
     role : str or None
         Role of components of unknown direction: "horizontal".
     sensitivity : float or None
@@ -45,7 +46,7 @@ class ReadOptions:
     layout : str or None
         "wrapped": a text file without columns is one series wrapped over lines.
     instead : frozenset of str
-        Which of these a manifest states for this very file, in place of what it says itself.
+        Names of these statements that a manifest makes for this file, with precedence over the file's own.
 
     Examples
     --------
@@ -91,8 +92,13 @@ class ReadOptions:
         if wrong:
             raise InputError(*wrong)
 
+    def with_statement(self, stated: Mapping[str, object]) -> "ReadOptions":
+        """Return these options with the statements of a manifest for one file, by field."""
+        values: dict[str, Any] = dict(stated)
+        return replace(self, **values, instead=self.instead.union(stated))
+
     def overruled(self, unit: str, dt: float, gravity: float) -> tuple[str, ...]:
-        """Return notes on a study's unit and step that a file does not take, since it states another ``unit`` or ``dt`` [s]."""
+        """Return notes on the study's unit and step, overruled by a file that states another ``unit`` or ``dt`` [s]."""
         notes = []
         if self.unit is not None and "unit" not in self.instead:
             by_file, stated = acceleration_factor(unit, gravity), acceleration_factor(self.unit, gravity)
@@ -104,7 +110,7 @@ class ReadOptions:
 
 
 def no_acceleration(called: str, kind: str) -> InputError:
-    """Return the refusal of samples that their header says are of another ``kind``, with what to write if they are not."""
+    """Return the refusal of a file ``called`` so whose header says that it holds another ``kind``, "velocities"."""
     return InputError(
         f"{called} holds {kind}, and accelerations are expected; if it does hold them, write unit = … for this file in "
         "motions.toml"
@@ -113,7 +119,7 @@ def no_acceleration(called: str, kind: str) -> InputError:
 
 @dataclass(frozen=True)
 class RecordFile:
-    """A file to be read: where it lies, its bytes, what the study says about it, and the StationXML beside it."""
+    """A file to be read: its path, its bytes, the study's statements about it, and the StationXML beside it."""
 
     path: Path
     source: str
@@ -125,7 +131,7 @@ class RecordFile:
 
     @property
     def stem(self) -> str:
-        """Return the file name without its suffix."""
+        """Return the file's name without its suffix."""
         return self.path.stem
 
     @property
@@ -135,7 +141,10 @@ class RecordFile:
 
 
 def text_of(data: bytes) -> str:
-    """Return the text of a file: UTF-16 where it begins with that mark (Excel's "Unicode text"), UTF-8, or else Latin-1."""
+    """Return the text of bytes: UTF-16 with its mark (Excel's "Unicode text"), else UTF-8, else Latin-1.
+
+    Raises ``InputError`` for bytes with that mark which are no UTF-16.
+    """
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         try:
             return data.decode("utf-16")

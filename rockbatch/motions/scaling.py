@@ -10,8 +10,8 @@ from rockbatch.common.units import GRAVITY
 from rockbatch.motions import measures
 from rockbatch.motions.motion import Motion, Samples, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.pairs import DIRECTIONS, WORDS, station_spectra, unpaired
-from rockbatch.motions.plausible import fits
+from rockbatch.motions.pairs import RULE_NAMES, TWO_COMPONENT_RULES, pairing_obstacle, station_spectra
+from rockbatch.motions.plausible import matches_any
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 
@@ -27,8 +27,8 @@ class Target:
     period_s, damping : float
         ... of an oscillator of this period [s], required with ``sa_g``, and this fraction of critical damping.
     pairs : str
-        With ``sa_g``: "apart", every component has it, or one of :data:`rockbatch.motions.pairs.DIRECTIONS`, by which a station
-        has it, whose components then have one factor.
+        With ``sa_g``: "apart", every component is scaled to it by its own factor, or "geomean", "rotd50", "rotd100", this
+        measure of a station is, by one factor of both components.
     """
 
     pga_g: float | None = None
@@ -42,37 +42,34 @@ class Target:
         targets = [value for value in (self.pga_g, self.pgv_m_s, self.sa_g) if value is not None]
         if len(targets) != 1 or not targets[0] > 0 or (self.sa_g is None) != (self.period_s is None):
             raise InputError("a target is one of pga_g, pgv_m_s, or sa_g with period_s, above 0")
-        if self.pairs != "apart" and (self.sa_g is None or self.pairs not in DIRECTIONS):
+        if self.pairs != "apart" and (self.sa_g is None or self.pairs not in TWO_COMPONENT_RULES):
             raise InputError(
-                f'pairs = "{self.pairs}": must be one of {", ".join(("apart", *DIRECTIONS))}, and is for sa_g'
+                f'pairs = "{self.pairs}": must be one of {", ".join(("apart", *TWO_COMPONENT_RULES))}, and is for sa_g'
             )
 
     def __str__(self) -> str:
         if self.sa_g is not None:
-            measure = "" if self.pairs == "apart" else f" of {WORDS[self.pairs]}"
+            measure = "" if self.pairs == "apart" else f" of {RULE_NAMES[self.pairs]}"
             return f"SA({self.period_s:g} s, {100 * self.damping:g} %){measure} = {self.sa_g:g} g"
         return f"PGA = {self.pga_g:g} g" if self.pga_g is not None else f"PGV = {self.pgv_m_s:g} m/s"
 
     def factors_of(self, motions: Sequence[Motion], gravity: float) -> list[float]:
-        """Return what brings each of ``motions`` to the target; infinite for one without motion.
+        """Return the factor that scales each of ``motions`` to the target; infinite for one without motion.
 
-        Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`rockbatch.motions.pairs.unpaired`).
+        Raises ``InputError`` if the rule takes pairs, and a station has none (:func:`rockbatch.motions.pairs.pairing_obstacle`).
         """
         if self.pairs == "apart":
             return [self._factor(motion, gravity) for motion in motions]
         assert self.sa_g is not None
         assert self.period_s is not None
-        stations = grouped(motions, lambda motion: motion.of_station)
-        measured = {
-            name: station_spectra(station, [self.period_s], self.damping)[self.pairs][0]
-            for name, station in stations.items()
-        }
-        return [
-            self.sa_g * gravity / float(sa) if (sa := measured[motion.of_station]) > 0 else math.inf
-            for motion in motions
-        ]
+        factors = {}
+        for name, station in grouped(motions, lambda motion: motion.of_station).items():
+            sa = float(station_spectra(station, [self.period_s], self.damping)[self.pairs][0])
+            factors[name] = self.sa_g * gravity / sa if sa > 0 else math.inf
+        return [factors[motion.of_station] for motion in motions]
 
     def _factor(self, motion: Motion, gravity: float) -> float:
+        """Return the factor that scales one motion to the target; infinite for one without motion."""
         if self.pga_g is not None:
             target, present = self.pga_g * gravity, motion.pga
         elif self.pgv_m_s is not None:
@@ -86,24 +83,24 @@ class Target:
 
 
 MOST_FACTOR = 4.0
-"""By which a record is brought to a spectrum; a weak record made strong has not the shape of a strong one."""
+"""Greatest factor that scales a record to a spectrum; an amplified weak record has not the shape of a strong one."""
 
 
 def at_target(
     motion_set: MotionSet, target: Target | SpectrumTarget, gravity: float = GRAVITY, confirmed: Sequence[str] = ()
 ) -> MotionSet:
-    """Return all motions scaled to ``target``, with the factor noted; one without motion is unusable.
+    """Return all motions scaled to ``target``, with a note of the factor; those without motion are unusable.
 
-    So is one that takes more than :data:`MOST_FACTOR` to meet a spectrum, unless its name fits a pattern in ``confirmed``.
+    So are those that need more than :data:`MOST_FACTOR` to meet a spectrum, unless a pattern in ``confirmed`` matches.
     """
     motions: list[Motion] = []
-    unusable = _lone(motion_set.motions, target)
+    unusable = _without_pair(motion_set.motions, target)
     lone = {file.name for file in unusable}
     paired = [motion for motion in motion_set.motions if motion.name not in lone]
     for motion, factor in zip(paired, target.factors_of(paired, gravity), strict=True):
         if math.isinf(factor):
             unusable.append(Unusable(motion.name, motion.files, f"has no motion that can be scaled to {target}"))
-        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not fits(motion.name, confirmed):
+        elif isinstance(target, SpectrumTarget) and factor > MOST_FACTOR and not matches_any(motion.name, confirmed):
             unusable.append(Unusable(motion.name, motion.files, _too_weak(motion, factor, target, gravity)))
         elif factor == 1.0:
             motions.append(motion)
@@ -113,8 +110,8 @@ def at_target(
     return motion_set.reduced_to(motions, unusable)
 
 
-def scaled_as_listed(motion_set: MotionSet) -> MotionSet:
-    """Return all motions times the factors that a list beside them has, with the factor noted; those without one are unusable."""
+def scale_as_listed(motion_set: MotionSet) -> MotionSet:
+    """Return all motions scaled by the factors of PEER's lists beside them, with a note; those without one are unusable."""
     lacking = [motion for motion in motion_set if motion.listed.scale is None]
     reason = 'has no scale factor: scale = "list" takes those of PEER\'s _SearchResults.csv in its folder'
     unusable = [Unusable(m.name, m.files, f"{m.label} {reason}", station=m.of_station) for m in lacking]
@@ -126,7 +123,7 @@ def scaled_as_listed(motion_set: MotionSet) -> MotionSet:
     return motion_set.reduced_to(scaled, unusable)
 
 
-def at_targets(
+def scale_to_targets(
     motion_set: MotionSet,
     target: Target | SpectrumTarget | None,
     vertical_target: Target | SpectrumTarget | None,
@@ -134,12 +131,15 @@ def at_targets(
     gravity: float,
     confirmed: Sequence[str] = (),
 ) -> MotionSet:
-    """Return motions scaled by :func:`at_target` and :func:`with_vertical`, which are fitted again without those that are
-    refused until none is: a common factor holds for the motions that it was found from."""
+    """Return motions scaled to both targets, fitted again without the refused ones until none is refused.
+
+    A common factor is right only for the motions from which it was computed. ``vertical_scale`` multiplies the vertical
+    components; without targets motions keep their scale.
+    """
     recorded = {motion.name: motion.vertical for motion in motion_set}
     while True:
         scaled = motion_set if target is None else at_target(motion_set, target, gravity, confirmed)
-        scaled = with_vertical(scaled, recorded, vertical_target, vertical_scale, gravity, confirmed)
+        scaled = scale_verticals(scaled, recorded, vertical_target, vertical_scale, gravity, confirmed)
         used = {motion.name for motion in scaled}
         if len(used) == len(motion_set.motions):
             return scaled
@@ -148,7 +148,7 @@ def at_targets(
 
 
 def verticals(motions: Sequence[Motion]) -> list[Motion]:
-    """Return the vertical component of each station as a motion on its own, called as the station, those that move."""
+    """Return a motion of each station's vertical component, named as the station; none for stations without one, or at rest."""
     moving = {motion.of_station: motion for motion in reversed(motions) if motion.pga_vertical}
     return [
         Motion(name, motion.dt, motion.vertical, source=motion.vertical_source)
@@ -157,7 +157,7 @@ def verticals(motions: Sequence[Motion]) -> list[Motion]:
     ]
 
 
-def with_vertical(
+def scale_verticals(
     motion_set: MotionSet,
     recorded: Mapping[str, Samples | None],
     target: Target | SpectrumTarget | None,
@@ -165,11 +165,11 @@ def with_vertical(
     gravity: float,
     confirmed: Sequence[str] = (),
 ) -> MotionSet:
-    """Return motions whose vertical components have a factor of their own, the same for all components of a station.
+    """Return motions whose vertical components have their own factor, the same for all components of a station.
 
-    ``recorded`` has the vertical components before they were scaled, by the motions' names. They are scaled to ``target``, if
-    there is one, instead of by the factor of their horizontal ones, and by ``scale`` on top. As of :func:`at_target` a motion is
-    unusable whose vertical component takes more than :data:`MOST_FACTOR` to meet a spectrum.
+    ``recorded`` has the vertical components before scaling, by the motions' names. They are scaled to ``target``, or without
+    one by the factor of their horizontals, and by ``scale``. As by :func:`at_target`, a motion is unusable if its vertical
+    component needs more than :data:`MOST_FACTOR` to meet a spectrum.
     """
     if target is None and scale == 1.0:
         return motion_set
@@ -177,7 +177,7 @@ def with_vertical(
     reasons: dict[str, str] = {}
     if target is not None:
         as_recorded = [replace(m, vertical=recorded[m.name]) for m in motion_set.motions if m.vertical is not None]
-        named = [motion.of_station for motion in motion_set.motions if fits(motion.name, confirmed)]
+        named = [motion.of_station for motion in motion_set.motions if matches_any(motion.name, confirmed)]
         scaled = at_target(MotionSet(verticals(as_recorded)), target, gravity, named)
         factors = {motion.name: motion.factor for motion in scaled}
         reasons = {file.name: file.reason for file in scaled.unusable}
@@ -194,30 +194,25 @@ def with_vertical(
             factor = factors.get(station, motion.factor) * scale
             words = [f"vertical scaled by {factors[station]:.4g} to {target}"] if station in factors else []
             words += [f"vertical times {scale:g}"] if scale != 1.0 else []
-            motions.append(replace(
-                motion, vertical=unscaled * factor, vertical_factor=factor, notes=(*motion.notes, *words),
-            ))  # fmt: skip
+            notes = (*motion.notes, *words)
+            motions.append(replace(motion, vertical=unscaled * factor, vertical_factor=factor, notes=notes))
     return motion_set.reduced_to(motions, unusable)
 
 
-def _lone(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:
-    """Return what cannot be used because the target takes both horizontal components of a station."""
-    if target.pairs not in DIRECTIONS or (isinstance(target, SpectrumTarget) and target.factors == "none"):
+def _without_pair(motions: Sequence[Motion], target: Target | SpectrumTarget) -> list[Unusable]:
+    """Return the motions of stations without a pair, unusable for a target that takes both components; else []."""
+    if target.pairs not in TWO_COMPONENT_RULES or (isinstance(target, SpectrumTarget) and target.factors == "none"):
         return []
-    stations, lacks = grouped(motions, lambda motion: motion.of_station), f'no pair for pairs = "{target.pairs}"'
-    return [
-        Unusable(
-            motion.name,
-            motion.files,
-            f'{lacks}: {reason}; write pairs = "apart", or leave it out',
-        )
-        for station in stations.values()
-        if (reason := unpaired(station))
-        for motion in station
-    ]
+    unusable = []
+    for station in grouped(motions, lambda motion: motion.of_station).values():
+        if obstacle := pairing_obstacle(station):
+            reason = f'no pair for pairs = "{target.pairs}": {obstacle}; write pairs = "apart", or leave it out'
+            unusable += [Unusable(motion.name, motion.files, reason) for motion in station]
+    return unusable
 
 
 def _too_weak(motion: Motion, factor: float, target: SpectrumTarget, gravity: float) -> str:
+    """Return the refusal of a motion that needs a ``factor`` above ``MOST_FACTOR``, with the PGA that it would have."""
     vertical = "" if motion.pga_vertical is None else f", vertical {factor * motion.pga_vertical / gravity:.2g} g"
     return (
         f"takes {factor:.3g} times its motion, PGA {factor * motion.pga / gravity:.2g} g{vertical}, to meet {target}; beyond "

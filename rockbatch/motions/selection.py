@@ -13,11 +13,11 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Selection:
-    """Least and largest value of each measure, both of them included; ``None`` where it does not matter.
+    """Least and largest value of each measure, both included; ``None`` for no limit.
 
-    PGA [g] and PGV [m/s] are those of the horizontal component before it is brought to a target; ``duration_s`` is the
-    record's length from the first to the last sample, ``d5_95_s`` its significant duration, in which Arias intensity
-    grows from 5 to 95 %; the magnitude is the one that a manifest has.
+    PGA [g] and PGV [m/s] are of the horizontal component before scaling to a target; ``duration_s`` is the record's length
+    from the first to the last sample, ``d5_95_s`` its significant duration, in which Arias intensity grows from 5 to 95 %;
+    the magnitude comes from a manifest.
     """
 
     pga_g: Range | None = None
@@ -37,7 +37,7 @@ _MEASURES: dict[str, Callable[[Motion, float], float | None]] = {
 
 
 def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVITY) -> MotionSet:
-    """Return the motions within ``selection``; others are left out, and those of unknown magnitude unusable, if it counts."""
+    """Return the motions within ``selection``, others as left out; unknown magnitudes are unusable if magnitude is selected."""
     chosen: list[Motion] = []
     unusable: list[Unusable] = []
     left_out: list[LeftOut] = []
@@ -47,12 +47,11 @@ def selected(motion_set: MotionSet, selection: Selection, gravity: float = GRAVI
             reason = "selected by magnitude, which is not known; write magnitude in motions.toml"
             unusable.append(Unusable(motion.name, motion.files, reason))
             continue
-        values = {key: _MEASURES[key](motion, gravity) for key in ranges}
-        outside = [
-            f"{key} = {value:.4g} is not within {ranges[key][0]:g}..{ranges[key][1]:g}"
-            for key, value in values.items()
-            if value is not None and not ranges[key][0] <= value <= ranges[key][1]
-        ]
+        outside = []
+        for key, (low, high) in ranges.items():
+            value = _MEASURES[key](motion, gravity)
+            if value is not None and not low <= value <= high:
+                outside.append(f"{key} = {value:.4g} is not within {low:g}..{high:g}")
         if outside:
             left_out.append(LeftOut(motion.name, motion.files, f"not selected: {', '.join(outside)}"))
         else:

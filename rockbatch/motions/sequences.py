@@ -1,14 +1,14 @@
 """Sequences of shocks as one motion: records one after the other, with the ground brought to rest in the pauses.
 
-A record rarely ends with the ground at rest, and one that was triggered late does not begin so. Nothing is changed in a record:
-what its velocity lacks is made up in the pause, by the acceleration (Δv/P) (1 − cos(2πt/P)) over a pause of length P, which
-begins and ends with 0. P is long, so that this is far below what lifts a pier; :data:`MOST_IN_PAUSE` bounds it.
+A record rarely ends with the ground at rest, and a late-triggered one does not begin so. Records are not changed: the
+difference Δv in velocity is made up in the pause of length P, by the acceleration (Δv/P) (1 − cos(2πt/P)), which begins and
+ends with 0. P is long, so that this is far below the acceleration that lifts a pier; :data:`MOST_IN_PAUSE` bounds it.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
@@ -27,20 +27,24 @@ from rockbatch.toml.meant import names
 from rockbatch.toml.reader import TomlFile
 from rockbatch.toml.section import CONFIRM, Key, Section
 
+T = TypeVar("T")
+
 PAUSE = 20.0
-"""Pause between two shocks [s], unless another is given."""
+"""Default pause between two shocks [s]."""
 
 MOST_IN_PAUSE = 0.005 * GRAVITY
-"""Greatest acceleration that may bring the ground to rest in a pause [m/s²]: a tenth of what lifts a pier of α = 0.05."""
+"""Greatest acceleration that may bring the ground to rest in a pause [m/s²]: a tenth of that which lifts a pier of α = 0.05."""
 
-_NOTED = 1e-6  # m/s²: less is rounding
+_NOTED = 1e-6  # m/s²: smaller accelerations in pauses are rounding
 _SAME = 1e-6  # relative: steps that differ by less are the same
 
 
 @dataclass(frozen=True)
 class ShockSequence:
-    """A sequence by the names of its records; :data:`SEQUENCE` says what each key means. One value of ``factors`` and of
-    ``polarity`` is for all records, none for 1 and "+"."""
+    """A sequence by the names of its records; its fields are the keys of :data:`SEQUENCE`.
+
+    One value of ``factors`` or ``polarity`` is for all records; none means 1 or "+".
+    """
 
     name: str
     records: tuple[str, ...]
@@ -50,17 +54,15 @@ class ShockSequence:
     alone: bool = False
 
     def __post_init__(self) -> None:
-        counts = {"factors": len(self.factors), "polarity": len(self.polarity)}
-        wrong = [
-            f"{key}: {count} given for {len(self.records)} records; write one for each, or one for all"
-            for key, count in counts.items()
-            if count not in (0, 1, len(self.records))
-        ]
+        wrong, n = [], len(self.records)
+        for key, count in (("factors", len(self.factors)), ("polarity", len(self.polarity))):
+            if count not in (0, 1, n):
+                wrong.append(f"{key}: {count} given for {n} records; write one for each, or one for all")
         if wrong:
             raise InputError(*wrong)
 
-    def joined(self, parts: Sequence[Motion]) -> Motion:
-        """Return the sequence of its records, in their order."""
+    def as_motion(self, parts: Sequence[Motion]) -> Motion:
+        """Return its records ``parts``, in their order, as one motion."""
         n = len(parts)
         factors = self.factors * (n if len(self.factors) == 1 else 1) or (1.0,) * n
         signs = self.polarity * (n if len(self.polarity) == 1 else 1) or ("+",) * n
@@ -69,30 +71,52 @@ class ShockSequence:
 
 _SEQUENCE = {
     "name": Key(text, '"main shock and aftershock"', "Its name in tables.", required=True),
-    "records": Key(text, '["CHAN15", "CHAN24"]',
-        "Names of its records, as in tables, in the order of the shocks; repetitions are allowed.", required=True, many=True,
-        distinct=False),
-    "pause_s": Key(positive, "20.0",
+    "records": Key(
+        text,
+        '["CHAN15", "CHAN24"]',
+        "Names of its records, as in tables, in the order of the shocks; repetitions are allowed.",
+        required=True,
+        many=True,
+        distinct=False,
+    ),
+    "pause_s": Key(
+        positive,
+        "20.0",
         "Time between the last sample of a shock and the first one of the next, in which the ground is brought to rest.",
-        usual=Usual(600.0, "s: a pier that rocks comes to rest in less")),
-    "factors": Key(positive, "[1.0, 0.8]", "Factor on all components of each shock, or one for all.", many=True, distinct=False,
-        usual=Usual(10.0, "times as recorded; 150 % are 1.5")),
-    "polarity": Key(choice("+", "-"), '["+", "-"]',
-        'Of each shock, or one for all: "-" reverses its horizontal component.', many=True, distinct=False),
+        usual=Usual(600.0, "s: a pier that rocks comes to rest in less"),
+    ),
+    "factors": Key(
+        positive,
+        "[1.0, 0.8]",
+        "Factor on all components of each shock, or one for all.",
+        many=True,
+        distinct=False,
+        usual=Usual(10.0, "times as recorded; 150 % are 1.5"),
+    ),
+    "polarity": Key(
+        choice("+", "-"),
+        '["+", "-"]',
+        'Of each shock, or one for all: "-" reverses its horizontal component.',
+        many=True,
+        distinct=False,
+    ),
     "alone": Key(boolean, "true", "Whether its records are also run on their own."),
     **CONFIRM,
-}  # fmt: skip
-SEQUENCE = Section(("motions", "sequence"), (
+}
+SEQUENCE = Section(
+    ("motions", "sequence"),
     "Shocks as one motion: a main shock and its aftershocks, one after the other on the same pier. A sequence is selected and "
-    "scaled as one record; `shocks.csv` and the report have the results of each shock."
-), _SEQUENCE, many=True, homes=(ShockSequence,), also=names({
-    "records": "motions shocks", "pause_s": "gap interval rest", "factors": "scale scales",
-}))  # fmt: skip
-"""Of a study."""
+    "scaled as one record; `shocks.csv` and the report have the results of each shock.",
+    _SEQUENCE,
+    many=True,
+    homes=(ShockSequence,),
+    also=names({"records": "motions shocks", "pause_s": "gap interval rest", "factors": "scale scales"}),
+)
+"""The table [[motions.sequence]] of a study."""
 
 
 def read_sequences(file: TomlFile, *at: str) -> tuple[ShockSequence, ...]:
-    """Return the sequences of the tables ``[[at]]`` of a study or manifest; mistakes are noted."""
+    """Return the sequences in the tables ``[[at]]`` of a study or manifest; collect mistakes in the file."""
     sequences: list[ShockSequence] = []
     for table in file.tables(*at, title="name"):
         read = table.read(SEQUENCE)
@@ -122,8 +146,8 @@ def sequence(
     name : str
         Of the sequence.
     pause : float
-        From the last sample of a shock to the first of the next [s], rounded to a whole number of samples. The ground is brought
-        to rest in it, or to the velocity with which the next record begins, by an acceleration (Δv/P) (1 − cos(2πt/P)).
+        Time from the last sample of a shock to the first of the next [s], rounded to a whole number of samples. In it the ground
+        is brought to the initial velocity of the next record, mostly 0, by an acceleration (Δv/P) (1 − cos(2πt/P)).
     factors : sequence of float, optional
         On all components of each shock.
     polarity : sequence of str, optional
@@ -132,11 +156,11 @@ def sequence(
     Returns
     -------
     Motion
-        With the times of its ``shocks``. Its sampling interval is the least of theirs; records with another one are interpolated
-        linearly, which changes nothing where that is a multiple. Where some shocks have a vertical component, those without have
-        zeros, and a note says so. A sequence of one has the record's samples.
+        With the times of its ``shocks``. Its sampling interval is the least of theirs; records with a longer one are interpolated
+        linearly, which changes nothing for a multiple. If some shocks have a vertical component, the others get zeros, with a
+        note. A sequence of one has the record's samples.
 
-    Raises ``InputError`` for no motions, lists of other lengths, and ground that takes more than 0.005 g to be brought to rest.
+    Raises ``InputError`` for no motions, lists of other lengths, and more than 0.005 g needed to bring the ground to rest.
 
     Examples
     --------
@@ -148,18 +172,14 @@ def sequence(
     signs = ["+"] * len(motions) if polarity is None else list(polarity)
     times = [1.0] * len(motions) if factors is None else list(factors)
     _check(motions, name, pause, times, signs)
-    parts = [
-        m.times(f, reverse=s == "-") if (f, s) != (1.0, "+") else m
-        for m, f, s in zip(motions, times, signs, strict=True)
-    ]
+    notes = [f"shock {i}, {m.name}: {note}" for i, m in enumerate(motions, 1) for note in m.notes]
+    parts = list(motions)
+    for i, (factor, sign) in enumerate(zip(times, signs, strict=True)):
+        if (factor, sign) != (1.0, "+"):
+            parts[i] = parts[i].times(factor, reverse=sign == "-")
+            notes.append(f"shock {i + 1}, {parts[i].name}: times {factor:g}{', reversed' * (sign == '-')}")
     dt = min(part.dt for part in parts)
     _check_size(parts, dt, name, pause)
-    notes = [f"shock {i}, {m.name}: {note}" for i, m in enumerate(parts, 1) for note in m.notes]
-    notes += [
-        f"shock {i}, {m.name}: times {f:g}{', reversed' * (s == '-')}"
-        for i, (m, f, s) in enumerate(zip(parts, times, signs, strict=True), 1)
-        if (f, s) != (1.0, "+")
-    ]
     parts = [_resampled(part, dt, notes) for part in parts]
     pause_steps = max(2, round(pause / dt))
     starts = np.cumsum([0, *(part.npts - 1 + pause_steps for part in parts[:-1])])
@@ -167,26 +187,35 @@ def sequence(
     if any(part.vertical is not None for part in parts):
         lacking = [part.name for part in parts if part.vertical is None]
         notes += [f"no vertical component in {lacks}: zeros" for lacks in dict.fromkeys(lacking)]
-        vertical = _joined([part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts],
-                           [Initial()] * len(parts), dt, pause_steps, name, "vertical: ", notes)  # fmt: skip
+        verticals = [part.vertical if part.vertical is not None else np.zeros(part.npts) for part in parts]
+        vertical = _concatenated(verticals, [Initial()] * len(parts), dt, pause_steps, name, "vertical: ", notes)
     across = None
     acrosses = [part.across for part in parts if part.across is not None]
     if len(acrosses) == len(parts):
-        across = _joined(acrosses, [Initial()] * len(parts), dt, pause_steps, name, "across: ", notes)
+        across = _concatenated(acrosses, [Initial()] * len(parts), dt, pause_steps, name, "across: ", notes)
     initial = [part.initial or Initial() for part in parts]
-    horizontal = _joined([part.horizontal for part in parts], initial, dt, pause_steps, name, "", notes)
-    return _described(parts, name, replace(
-        parts[0], name=name, dt=dt, across=across, horizontal=horizontal, vertical=vertical, notes=tuple(notes),
-        shocks=tuple(
-            Shock(part.name, i * dt, (i + part.npts - 1) * dt, (i + part.npts - 1 + pause_steps) * dt)
-            for i, part in zip(map(int, starts), parts, strict=True)
-        ),
-    ))  # fmt: skip
+    horizontal = _concatenated([part.horizontal for part in parts], initial, dt, pause_steps, name, "", notes)
+    shocks = []
+    for start, part in zip(map(int, starts), parts, strict=True):
+        end = start + part.npts - 1
+        shocks.append(Shock(part.name, start * dt, end * dt, (end + pause_steps) * dt))
+    whole = replace(
+        parts[0],
+        name=name,
+        dt=dt,
+        across=across,
+        horizontal=horizontal,
+        vertical=vertical,
+        notes=tuple(notes),
+        shocks=tuple(shocks),
+    )
+    return whole if len(parts) == 1 else _with_common_origin(parts, whole)
 
 
 def _check(
     motions: Sequence[Motion], name: str, pause: float, factors: Sequence[float], polarity: Sequence[str]
 ) -> None:
+    """Raise ``InputError`` for impossible arguments of :func:`sequence`."""
     wrong = [] if motions else [f"{name}: a sequence has one motion at least"]
     if not 0 < pause < math.inf:
         wrong.append(f"{name}: pause = {pause:g}: must be a number above 0 [s]")
@@ -203,6 +232,7 @@ def _check(
 
 
 def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> None:
+    """Raise ``InputError`` for sampling intervals too far apart, and for more samples than a record may have."""
     coarse = max(part.dt for part in parts)
     length = sum(part.duration for part in parts) + pause * (len(parts) - 1)
     if coarse > MOST_STEPS * dt:
@@ -214,26 +244,31 @@ def _check_size(parts: Sequence[Motion], dt: float, name: str, pause: float) -> 
 
 
 def _resampled(motion: Motion, dt: float, notes: list[str]) -> Motion:
-    """Return a motion with a sampling interval [s], its samples interpolated linearly, with a note in ``notes``."""
+    """Return a motion interpolated linearly to a sampling interval ``dt`` [s], and append a note; itself if it has that."""
     if abs(motion.dt - dt) <= _SAME * dt:
         return motion
     notes.append(f"{motion.name} interpolated linearly from dt = {motion.dt:g} s to {dt:g} s")
-    positions, samples = (
-        np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt,
-        np.arange(motion.npts),
+    places = np.arange(math.floor(motion.duration / dt * (1 + _SAME)) + 1) * dt / motion.dt  # in samples of the motion
+
+    def interpolated(component: Samples) -> Samples:
+        return np.interp(places, np.arange(motion.npts), component)
+
+    return replace(
+        motion,
+        dt=dt,
+        horizontal=interpolated(motion.horizontal),
+        vertical=None if motion.vertical is None else interpolated(motion.vertical),
+        across=None if motion.across is None else interpolated(motion.across),
     )
-    vertical, across = (
-        None if component is None else np.interp(positions, samples, component)
-        for component in (motion.vertical, motion.across)
-    )
-    horizontal = np.interp(positions, samples, motion.horizontal)
-    return replace(motion, dt=dt, horizontal=horizontal, vertical=vertical, across=across)
 
 
-def _joined(
+def _concatenated(
     series: Sequence[Samples], initial: Sequence[Initial], dt: float, gap: int, name: str, part: str, notes: list[str]
 ) -> Samples:
-    """Return accelerations one after the other, ``gap`` steps apart, each beginning with the velocity of its ``initial``."""
+    """Return accelerations one after the other, ``gap`` steps apart, each preceded by its ``initial`` velocity.
+
+    ``part`` names the component in ``notes`` and errors. Raises ``InputError`` if the pauses need too much acceleration.
+    """
     if len(series) == 1:
         return series[0]
     joined = []
@@ -255,38 +290,42 @@ def _joined(
     return np.concatenate([*joined, series[-1]])
 
 
-def _described(parts: Sequence[Motion], name: str, whole: Motion) -> Motion:
-    """Return ``whole`` with what its parts say of where it is from."""
-    if len(parts) == 1:
-        return whole
-
-    def common(name: str) -> Any:
-        values = {getattr(part, name) for part in parts}
-        return values.pop() if len(values) == 1 else None
-
-    def files(name: str) -> str:
-        return ", then ".join(dict.fromkeys(filter(None, (getattr(part, name) for part in parts))))
-
+def _with_common_origin(parts: Sequence[Motion], whole: Motion) -> Motion:
+    """Return ``whole`` with the sources and findings of all ``parts``, and the facts common to them; None for others."""
     return replace(
         whole,
-        source=files("source"),
-        vertical_source=files("vertical_source"),
+        source=_in_turn(part.source for part in parts),
+        vertical_source=_in_turn(part.vertical_source for part in parts),
         findings=tuple(dict.fromkeys(finding for part in parts for finding in part.findings)),
-        station=" + ".join(sorted({part.of_station for part in parts})),  # in whatever order, and however often
+        station=" + ".join(sorted({part.of_station for part in parts})),  # the same for any order and repetition
         origin=UNKNOWN_ORIGIN,
         lacks_vertical=any(part.lacks_vertical for part in parts),
-        **{key: common(key) for key in ("azimuth", "magnitude", "distance_km", "processed")},
+        azimuth=_common(part.azimuth for part in parts),
+        magnitude=_common(part.magnitude for part in parts),
+        distance_km=_common(part.distance_km for part in parts),
+        processed=_common(part.processed for part in parts),
     )
 
 
-def with_sequences(
+def _in_turn(sources: Iterable[str]) -> str:
+    """Return different sources joined by "then"; empty ones are skipped."""
+    return ", then ".join(dict.fromkeys(filter(None, sources)))
+
+
+def _common(values: Iterable[T]) -> T | None:
+    """Return the value of all; None if they differ."""
+    different = set(values)
+    return different.pop() if len(different) == 1 else None
+
+
+def add_sequences(
     motions: MotionSet, sequences: Sequence[ShockSequence], pulses: Sequence[Motion] = (), source: str = ""
 ) -> tuple[MotionSet, list[Motion]]:
-    """Return records and pulses with sequences of them behind them, in place of those that are not run ``alone``, too.
+    """Return records and pulses followed by their sequences, which replace the records that are not also run ``alone``.
 
-    A sequence of pulses alone is a pulse, which no target scales. A sequence is unusable if one of its records is, or if it
-    cannot be joined. Raises ``InputError`` for sequences with the name of a record, and for names of no record, unless they stand
-    in a manifest, ``source``: then the sequence is unusable, or left out if none of its records is read.
+    A sequence of pulses only is a pulse, which no target scales. A sequence is unusable if one of its records is, or if they
+    cannot be joined. Raises ``InputError`` for sequences with the name of a record, and for names of no record; in a manifest,
+    ``source``, the sequence is then unusable, or left out if none of its records is read.
     """
     if not sequences:
         return motions, list(pulses)
@@ -295,11 +334,8 @@ def with_sequences(
     reasons = {file.name: file.reason for file in not_used}
     joined_motions: list[Motion] = []
     refused: list[Unusable | LeftOut] = []
-    wrong = [
-        f"{source}{entry.name}: a record has this name; give the sequence one of its own"
-        for entry in sequences
-        if entry.name in by_name
-    ]
+    taken = [entry.name for entry in sequences if entry.name in by_name]
+    wrong = [f"{source}{name}: a record has this name; give the sequence one of its own" for name in taken]
     for entry in sequences:
         try:
             joined = _sequence_or_refusal(entry, by_name, reasons, source)
@@ -330,24 +366,30 @@ def with_sequences(
 def _sequence_or_refusal(
     entry: ShockSequence, by_name: Mapping[str, Motion], reasons: Mapping[str, str], source: str
 ) -> Motion | Unusable | LeftOut:
-    """Return a sequence, or why it cannot be made; ``reasons`` says by name why records cannot be used."""
+    """Return a sequence of the motions ``by_name``, or its refusal; ``reasons`` has those of unusable records by name.
+
+    Raises ``InputError`` for names of no record in a study, where ``source`` is "".
+    """
     missing = [name for name in entry.records if name not in by_name]
     reasons_of_parts = [f"its record {name} cannot be used: {reasons[name]}" for name in missing if name in reasons]
-    unknown = [_unknown(name, by_name) for name in missing if name not in reasons]
+    unknown = [_unknown_record(name, by_name) for name in missing if name not in reasons]
     if unknown and not source:
         raise InputError(*(f"[[motions.sequence]] {shown(entry.name)}: {message}" for message in unknown))
-    if len(unknown) == len(entry.records):  # a file beside the manifest, or records that are turned
+    if len(unknown) == len(
+        entry.records
+    ):  # only one file beside the manifest is read, or rotation has renamed the records
         return LeftOut(entry.name, source, f"none of its records is read: {unknown[0]}")
     if not missing:
         try:
-            return entry.joined([by_name[name] for name in entry.records])
+            return entry.as_motion([by_name[name] for name in entry.records])
         except InputError as error:
             reasons_of_parts = list(error.messages)
     reason = f"sequence {shown(entry.name)}: {'; '.join((*reasons_of_parts, *unknown))}"
     return Unusable(entry.name, source or "[[motions.sequence]]", reason)
 
 
-def _unknown(name: str, records: Mapping[str, Motion]) -> str:
+def _unknown_record(name: str, records: Mapping[str, Motion]) -> str:
+    """Return the complaint about a name of no record, with the closest one."""
     nearest = closest(name, records)
     return f"records: there is no record {shown(name)}; " + (
         f"did you mean {shown(nearest)}?" if nearest else "`rockbatch motions PATH` lists them"

@@ -10,16 +10,16 @@ from rockbatch.motions.motion import Motion
 from rockbatch.motions.spectrum import spectral_acceleration
 
 MOST_POINTS = 300
-"""Of a trace; the extremes are kept."""
+"""Greatest number of points of a trace; thinning keeps its extremes."""
 
 PERIODS = np.geomspace(0.05, 5.0, 31)
-"""Of the spectra [s]."""
+"""Periods of the spectra [s]."""
 
 _HEIGHT = 44.0  # [px]
 
 
 def trace(motion: Motion) -> Figure:
-    """Return the horizontal acceleration on its own scale, with the length of the record."""
+    """Return a figure of the horizontal acceleration on its own scale, with the length of the record."""
     times = motion.dt * np.arange(motion.npts, dtype=float)
     x, y = thin(times, motion.horizontal / GRAVITY, MOST_POINTS // 4)
     peak, end = motion.pga_g or 1.0, motion.duration or motion.dt
@@ -29,13 +29,13 @@ def trace(motion: Motion) -> Figure:
 
 
 def spectra(motions: Sequence[Motion]) -> list[Figure]:
-    """Return the response spectrum of each motion, 5 % damped, all of them on one logarithmic scale of three decades."""
-    found = [spectral_acceleration(motion.horizontal, motion.dt, PERIODS, 0.05) / GRAVITY for motion in motions]
-    top = max((float(sa.max()) for sa in found), default=0.0) or 1.0
+    """Return a figure of each motion's response spectrum, 5 % damped, all on one logarithmic scale of three decades."""
+    ordinates = [spectral_acceleration(motion.horizontal, motion.dt, PERIODS, 0.05) / GRAVITY for motion in motions]
+    top = max((float(sa.max()) for sa in ordinates), default=0.0) or 1.0
     x, y = Axis("", float(PERIODS[0]), float(PERIODS[-1]), log=True), Axis("", 1e-3 * top, top, log=True)
     powers = np.array([power for power in 10.0 ** np.arange(-9, 9) if y.low < power < top])
     figures = []
-    for motion, sa in zip(motions, found, strict=True):
+    for motion, sa in zip(motions, ordinates, strict=True):
         marks = [Rule("y", powers, look=Look("grid")), Polyline(PERIODS, sa, look=Look("curve", 1))]
         panel = Panel(x, y, marks, width=80.0, height=_HEIGHT, framed=False)
         figures.append(Figure([panel], f"Response spectrum of {motion.label}"))

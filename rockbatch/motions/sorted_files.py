@@ -1,4 +1,4 @@
-"""Records as FEMA P-695's programs write them: samples, step and count of a record, each in a text file of its own.
+"""Records as FEMA P-695's programs write them: a text file each for samples, step and count.
 
 ``SortedEQFile_(120111).txt`` has the samples, ``DtFile_(120111).txt`` the step [s], ``NumPointsFile_(120111).txt`` the count.
 """
@@ -19,7 +19,7 @@ _LONGEST = 100  # bytes of a file that holds a number
 
 
 def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str, ...]], dict[Path, str]]:
-    """Return the lines that other files state of a record's file, and of these what they are, by path."""
+    """Return header lines for each record's file from the step and count files beside it, and a remark on each of those."""
     named = {(file.path.parent, *_parts(match)): file for file in files if (match := _NAMED.fullmatch(file.path.stem))}
     stated: dict[Path, tuple[str, ...]] = {}
     companions: dict[Path, str] = {}
@@ -32,13 +32,13 @@ def statements_beside(files: Sequence[SourceFile]) -> tuple[dict[Path, tuple[str
 
 
 def _parts(match: Mapping[str, str] | re.Match[str]) -> tuple[str, str]:
-    """Return the kind of a file, by three letters or the two of "DT", and the number of its record."""
+    """Return the kind of a file ("DT", "NUM", "SOR" or "EQF") and the number of its record."""
     kind = match["kind"].upper()
     return "DT" if kind.startswith("DT") else kind[:3], match["number"]
 
 
 def _number(path: Path) -> str:
-    """Return the number that is all that a file holds; empty if it is not."""
+    """Return the only number in a file as text; empty if the file holds anything else or cannot be read."""
     try:
         text = archives.content(path, _LONGEST + 1).decode("latin-1").strip()
         float(text)

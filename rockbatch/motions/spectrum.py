@@ -19,15 +19,15 @@ from rockbatch.common.errors import InputError
 Samples = npt.NDArray[np.float64]
 
 PERIODS = np.geomspace(0.05, 5.0, 101)
-"""Periods of a suite's spectra [s]: fifty a decade: a curve through them has no corners that are not its own."""
+"""Periods of a suite's spectra [s], fifty a decade, so that a polygon through them looks smooth."""
 
-_BLOCK = 64  # samples that are gone through one after the other; the blocks side by side
-_TOGETHER = 16  # oscillators whose histories are held at a time
-_PER_PERIOD = 20  # samples a period at least, so that a peak between them is missed by less than 1.3 %
+_BLOCK = 64  # samples stepped one after the other; blocks advance side by side
+_TOGETHER = 16  # oscillators whose histories are in memory at a time
+_PER_PERIOD = 20  # least samples per period, so that a peak between them is missed by less than 1.3 %
 
 
 def as_periods(periods: npt.ArrayLike) -> Samples:
-    """Return periods as an array, shape (n,); raise ``InputError`` if they are no numbers in a row."""
+    """Return periods as an array, shape (n,); raise ``InputError`` unless they are a sequence of numbers."""
     try:
         values = np.asarray(periods, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
@@ -40,7 +40,7 @@ def as_periods(periods: npt.ArrayLike) -> Samples:
 def spectral_acceleration(
     acceleration: Samples, dt: float, periods: npt.ArrayLike, damping: float = 0.05
 ) -> npt.NDArray[np.float64]:
-    """Pseudo-spectral acceleration ω² max|u|.
+    """Return the pseudo-spectral acceleration ω² max|u|.
 
     Parameters
     ----------
@@ -56,44 +56,44 @@ def spectral_acceleration(
     Returns
     -------
     ndarray, shape (n,)
-        In m/s², the largest value until the last sample. Periods with fewer than 20 samples are given more of them,
-        on the straight lines between the record's.
+        In m/s², the largest value up to the last sample. For periods with fewer than 20 samples the record is interpolated
+        linearly.
 
     Raises
     ------
     InputError
-        For periods and damping that are out of range.
+        For periods and damping out of range.
     """
     periods = as_periods(periods)
     peaks = np.empty(len(periods))
-    for among, finer, step in _sampled(acceleration, dt, periods, damping):
+    for among, finer, step in _refined(acceleration, dt, periods, damping):
         peaks[among] = _peaks(finer, step, 2.0 * math.pi / periods[among], damping)
     return peaks
 
 
 def responses(acceleration: Samples, dt: float, periods: npt.ArrayLike, damping: float = 0.05) -> list[Samples]:
-    """Return ω² u(t) [m/s²] of an oscillator of each period, as :func:`spectral_acceleration` has it, from which its peak is.
+    """Return the history ω² u(t) [m/s²] of an oscillator of each period; its peak is the :func:`spectral_acceleration`.
 
-    Each has the sampling interval that its period takes, the same for every record of this ``dt``.
+    Its sampling interval is ``dt``, or an even part of it for short periods, the same for every record of this ``dt``.
     """
     periods = as_periods(periods)
-    every: dict[int, Samples] = {}
-    for among, finer, step in _sampled(acceleration, dt, periods, damping):
+    by_place: dict[int, Samples] = {}
+    for among, finer, step in _refined(acceleration, dt, periods, damping):
         places = np.flatnonzero(among)
         for block in np.array_split(places, -(-len(places) // _TOGETHER)):
             omega = 2.0 * math.pi / periods[block]
             blocks = np.stack(list(_march(finer, step, omega, damping, whole=True)), axis=1)
             histories = blocks.reshape(-1, len(block))[: len(finer)] * (omega / math.sqrt(1.0 - damping**2))
-            every |= zip(map(int, block), np.ascontiguousarray(histories.T), strict=True)
-    return [every[i] for i in range(len(periods))]
+            by_place |= zip(map(int, block), np.ascontiguousarray(histories.T), strict=True)
+    return [by_place[i] for i in range(len(periods))]
 
 
-def _sampled(
+def _refined(
     acceleration: Samples, dt: float, periods: npt.NDArray[np.float64], damping: float
 ) -> Iterator[tuple[npt.NDArray[np.bool_], Samples, float]]:
-    """Yield which periods belong together, and for these the acceleration with as many samples a period as they take, and its dt.
+    """Yield a mask of periods, and for these the acceleration refined to 20 samples a period at least, and its dt [s].
 
-    Raises ``InputError`` for periods and damping that are out of range.
+    Raises ``InputError`` for periods and damping out of range.
     """
     wrong = [f"period = {period:g}: must be a number above 0 [s]" for period in periods if not 0 < period < math.inf]
     if not 0 <= damping < 1:
@@ -112,14 +112,14 @@ def _sampled(
 
 
 def periods_over(low: float, high: float) -> npt.NDArray[np.float64]:
-    """``PERIODS``, and as many a decade beyond them as it takes to reach from ``low`` to ``high`` [s]."""
+    """Return ``PERIODS``, extended at fifty a decade to reach from ``low`` to ``high`` [s]."""
     below = max(0, math.ceil(50 * math.log10(PERIODS[0] / low) - 1e-9))
     above = max(0, math.ceil(50 * math.log10(high / PERIODS[-1]) - 1e-9))
     return np.asarray(PERIODS[0] * 10.0 ** (np.arange(-below, len(PERIODS) + above) / 50.0), dtype=np.float64)
 
 
 def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float) -> npt.NDArray[np.float64]:
-    """ω² max|u| at the samples, shape (n,), of oscillators of ``omega`` [rad/s], shape (n,)."""
+    """Return ω² max|u| at the samples, shape (n,), of oscillators of ``omega`` [rad/s], shape (n,)."""
     largest = np.zeros(len(omega))
     for u in _march(a, dt, omega, damping):
         np.maximum(largest, np.abs(u, out=u).max(axis=0, initial=0.0), out=largest)
@@ -129,17 +129,17 @@ def _peaks(a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float
 def _march(
     a: Samples, dt: float, omega: npt.NDArray[np.float64], damping: float, whole: bool = False
 ) -> Iterator[npt.NDArray[np.float64]]:
-    """Yield ω_d u at the k-th sample of every block, shape (blocks, n), for k from 0 on; ``whole``: of the last block beyond the
-    last sample, too.
+    """Yield ω_d u at the k-th sample of every block, shape (blocks, n), for k from 0 on.
 
-    With w = z + c₁a the recursion has one term of load, w(t + Δ) = λ w(t) − (c₀ + λc₁) a(t). It is gone through in
-    blocks side by side: first what each block leaves to the next, then every block from there.
+    The last block ends with the last sample, or goes on over zeros if ``whole``. With w = z + c₁a the recursion has one load
+    term, w(t + Δ) = λ w(t) − (c₀ + λc₁) a(t). First the state at the start of each block is found, then all blocks advance
+    side by side.
     """
     omega_d = omega * math.sqrt(1.0 - damping**2)
     s = -damping * omega + 1j * omega_d
     growth = np.expm1(s * dt)
     factor = growth + 1.0
-    c1 = (growth - s * dt) / (s**2 * dt)  # loses digits as (sΔ)⁻²: ten of sixteen are left at T = 6000 Δ
+    c1 = (growth - s * dt) / (s**2 * dt)  # cancellation grows as (sΔ)⁻²: ten of sixteen digits are left at T = 6000 Δ
     load = growth / s - c1 + factor * c1
 
     blocks = -(-len(a) // _BLOCK)

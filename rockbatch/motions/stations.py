@@ -1,8 +1,8 @@
 """Components of one station and recording, and those that count as one record.
 
-:func:`by_station` finds a vertical for a horizontal within a folder. :func:`station_names` is about records: files in
-several folders or formats, the parts of a long recording, and scaled copies are one record. What says nothing of its event
-is a record of its own, unless a manifest's ``station`` joins it.
+:func:`by_station` groups horizontals with their vertical within a folder. :func:`station_names` groups records: files in several
+folders or formats, the parts of a long recording, and scaled copies are one record. A component without an event is a record by
+itself, unless a manifest's ``station`` joins it to others.
 """
 
 import math
@@ -19,36 +19,32 @@ from rockbatch.motions.component import Component, file_of
 
 _NUMBERED = re.compile(r"RSN\d+")
 _HOUR = 3600.0  # s
-_SAME_SHAPE = 1e-4  # of the peak: what printing a scaled copy may cost a sample
+_SAME_SHAPE = 1e-4  # of the peak: rounding of a sample in a printed, scaled copy
 
 
 def is_numbered(site: str) -> bool:
-    """Return whether a site is PEER's number of a record, which no other record has."""
+    """Return whether a site is PEER's unique number of a record: "RSN779"."""
     return _NUMBERED.fullmatch(site) is not None
 
 
 def in_one_event(a: Component, b: Component) -> bool:
-    """Return whether two components of one sensor or station are of one event: by their times, or by what they say of it."""
+    """Return whether two components of one station are of one event, by their dates, else by their headers' event.
+
+    False without either.
+    """
     return overlap(a, b) if a.dated and b.dated else bool(a.event) and a.event == b.event
 
 
 def by_station(components: Iterable[Component]) -> list[list[Component]]:
-    """Return components of one station, folder and time together, in order of their first ones: by header, then by name.
+    """Return components grouped by station, folder and time, in order of first ones: by header, then by file name.
 
-    Names join what headers leave without a vertical, or without a horizontal: components of the same RSN, and those
-    of which one has no header that tells its station. Several files of one station that each hold a vertical and a
-    horizontal, such as the parts of a long recording, are as many sets.
+    Names join groups that lack a vertical or a horizontal: those of one RSN, and those of which one has no station in its
+    header. Files of one station that each hold a vertical and a horizontal, such as the parts of a long recording, are
+    groups of their own.
     """
-    by_header = grouped(components, lambda c: (c.folder, c.station or id(c)))
     stations: list[list[Component]] = []
     by_name: dict[tuple[str, str, bool], list[Component]] = {}
-    for group in (
-        part
-        for whole in by_header.values()
-        for record in _by_time(whole)
-        for of_file in _by_file(record)
-        for part in _by_name(of_file)
-    ):
+    for group in _by_header(components):
         folder, headed = group[0].folder, bool(group[0].station)
         sites = list(dict.fromkeys(component.site for component in group if component.site))
         of_name = (by_name.get((folder, site, headed and not is_numbered(site))) for site in sites)
@@ -65,11 +61,18 @@ def by_station(components: Iterable[Component]) -> list[list[Component]]:
     return stations
 
 
-def _by_time(group: list[Component]) -> list[list[Component]]:
-    """Return the records of one station: components that share time with others of theirs.
+def _by_header(components: Iterable[Component]) -> Iterator[list[Component]]:
+    """Yield components of one folder and one station by their headers, split by time, file and name."""
+    for station in grouped(components, lambda c: (c.folder, c.station or id(c))).values():
+        for record in _by_time(station):
+            for of_file in _by_file(record):
+                yield from _by_name(of_file)
 
-    Where times and events are not known, a direction that comes again is that of another recording: then each file, or
-    each name of a station, is one.
+
+def _by_time(group: list[Component]) -> list[list[Component]]:
+    """Return the components of a station by record: each overlaps in time with others of its record.
+
+    Without times and events, a repeated direction means several recordings: then each file, or each site, is one.
     """
     if not all(component.dated for component in group):
         if all(component.event for component in group) or len(_directions(group)) == len(group):
@@ -87,7 +90,7 @@ def _by_time(group: list[Component]) -> list[list[Component]]:
 
 
 def _by_file(record: list[Component]) -> Iterator[list[Component]]:
-    """Return one set for each file that holds a whole one, where several do, and one of the rest; else all together."""
+    """Yield the components of each complete file, then the rest, if two files or more are complete; else all together."""
     files = grouped(record, lambda c: file_of(c.source))
     whole = [components for components in files.values() if _is_whole(components)]
     if len(whole) < 2:
@@ -100,7 +103,7 @@ def _by_file(record: list[Component]) -> Iterator[list[Component]]:
 
 
 def _by_name(record: list[Component]) -> list[list[Component]]:
-    """Return one set for each name of a station, if a direction comes again and none does within a name of several; else all."""
+    """Return the components by site, if directions repeat, but within no site, each with two or more; else all together."""
     sites = grouped(record, lambda c: c.site)
     if len(_directions(record)) == len(record) or len(sites) < 2:
         return [record]
@@ -114,26 +117,26 @@ def _directions(components: Iterable[Component]) -> set[tuple[bool, float | None
 
 
 def _may_join(station: Sequence[Component], group: Sequence[Component]) -> bool:
-    """Return whether two sets of one name may be one recording: not if both are complete, nor if they do not overlap in time."""
+    """Return whether two groups of one name may be one recording: not both are complete, and they overlap in time."""
     if _is_whole(station) and _is_whole(group):
         return False
     return any(overlap(member, component) for member in station for component in group)
 
 
 def _is_whole(station: Sequence[Component]) -> bool:
-    """Return whether there are both a vertical and a horizontal component."""
+    """Return whether components include a vertical and a horizontal one."""
     return len({component.orientation.vertical for component in station}) == 2
 
 
 def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
-    """Return a name for each of ``stations``, as ``by_station`` has them; those of one record share theirs.
+    """Return a name for each of ``stations``, from ``by_station``; those of one record share their name.
 
-    It is PEER's number, the station by its header, or what the names of its files share; of several records of that name
-    with the event, the folder or a number behind it.
+    It is PEER's number, the header's station, or the site by the file's name; records of one name get the network, the
+    event, the folder or a number added.
     """
     root = list(range(len(stations)))
 
-    def first_of(i: int) -> int:
+    def first_of(i: int) -> int:  # union–find with path compression
         while root[i] != i:
             root[i] = i = root[root[i]]
         return i
@@ -141,15 +144,15 @@ def station_names(stations: Sequence[Sequence[Component]]) -> list[str]:
     keyed = [(key, (i, c)) for i, station in enumerate(stations) for c in station for key in _keys(c)]
     for group in grouped(keyed, lambda pair: pair[0]).values():
         namesakes = [of_station for _, of_station in group]
-        for pairs in (pairwise(namesakes), combinations(namesakes, 2)):  # neighbours first: mostly, that is all
+        for pairs in (pairwise(namesakes), combinations(namesakes, 2)):  # comparing neighbours mostly joins all of them
             if len({first_of(i) for i, _ in namesakes}) > 1:
                 for (i, a), (j, b) in pairs:
                     low, high = sorted((first_of(i), first_of(j)))
-                    if low != high and (_together(a, b) or _copies(a, b)):
+                    if low != high and (_share_record(a, b) or _copies(a, b)):
                         root[high] = low
-    for i, j, k in _turned(stations):
-        low = min(map(first_of, (i, j, k)))
-        for station in (i, j, k):
+    for triple in _turned_triples(stations):
+        low = min(map(first_of, triple))
+        for station in triple:
             root[first_of(station)] = low
     records = list(dict.fromkeys(map(first_of, root)))
     firsts = [stations[i][0] for i in records]
@@ -171,9 +174,9 @@ def station_of(component: Component) -> str:
 
 
 def _keys(component: Component) -> Iterator[Hashable]:
-    """Return what components of one record may have in common: those that share nothing of it need not be compared.
+    """Yield keys of which components of one record share at least one, so that only those have to be compared.
 
-    At a station that is an event, or an hour, in which both recorded, or their file.
+    They are a station with an event, an hour of recording, or a file; PEER's number; and the shape of the samples.
     """
     places: list[Hashable] = [(component.folder, component.station)] if component.station else []
     places += [component.sensor.number.upper()] if component.sensor.number else []
@@ -190,12 +193,12 @@ def _keys(component: Component) -> Iterator[Hashable]:
     peak = int(np.abs(component.acceleration).argmax())
     if component.acceleration[peak]:
         mean = float(np.square(component.acceleration / component.acceleration[peak]).mean())
-        for half in (0.0, 0.5):  # what lies close together shares one of the two, whatever the rounding
+        for half in (0.0, 0.5):  # close values share one of two staggered bins, whatever their rounding
             yield len(component.acceleration), peak, half, math.floor(mean / (10.0 * _SAME_SHAPE) + half)
 
 
-def _together(a: Component, b: Component) -> bool:
-    """Return whether headers, or PEER's numbers, say that both are of one station and earthquake, whatever sensor and stage."""
+def _share_record(a: Component, b: Component) -> bool:
+    """Return whether two components are of one station and earthquake by PEER's numbers, else by headers."""
     if is_numbered(a.site) and is_numbered(b.site):
         return a.site == b.site
     if a.station and (a.folder, a.station) == (b.folder, b.station):
@@ -207,7 +210,7 @@ def _together(a: Component, b: Component) -> bool:
 
 
 def _copies(a: Component, b: Component) -> bool:
-    """Return whether the samples of both are the same but for a factor."""
+    """Return whether the samples of two components are equal except for a factor."""
     first, second = a.acceleration, b.acceleration
     if len(first) != len(second) or abs(a.dt - b.dt) > 1e-6 * a.dt:
         return False
@@ -217,15 +220,14 @@ def _copies(a: Component, b: Component) -> bool:
     return bool(np.abs(first / first[i] - second / second[i]).max() <= _SAME_SHAPE)
 
 
-def _turned(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[int, int, int]]:
-    """Yield the places of three stations, some of which may be one, with horizontal components that are one pair turned to three
-    directions: one of them is a combination of the others.
+def _turned_triples(stations: Sequence[Sequence[Component]]) -> Iterator[tuple[int, int, int]]:
+    """Yield the indices of three stations, not all equal, whose horizontals are one pair rotated to three directions.
 
-    Of three lines in a plane two are 60° apart at most, and their samples have a correlation of a half or more.
+    One of three such components is a combination of the others. Two of three lines in a plane are 60° apart at most, and so
+    their samples have a correlation of a half or more.
     """
-    horizontals = [
-        (i, c) for i, station in enumerate(stations) for c in station if not c.orientation.vertical and c.pga
-    ]
+    members = [(i, c) for i, station in enumerate(stations) for c in station]
+    horizontals = [(i, c) for i, c in members if not c.orientation.vertical and c.pga]
     for alike in grouped(horizontals, lambda pair: (len(pair[1].acceleration), round(pair[1].dt, 9))).values():
         if len({i for i, _ in alike}) < 2 or len(alike) < 3:
             continue

@@ -1,7 +1,7 @@
-"""The few values of StationXML files that turn counts into accelerations: sensitivity and orientation, with their epochs.
+"""The values of StationXML that turn counts into accelerations: sensitivity and orientation, with their epochs.
 
-A channel may be described by several files, and by several epochs of one: all that cover a record are asked
-(:func:`contradiction`), since the first of them is not more right than the others.
+A channel may be described by several files, and by several epochs of one: all that cover a record are compared
+(:func:`contradiction`), since none of them is more reliable than the others.
 """
 
 import math
@@ -18,7 +18,7 @@ from rockbatch.motions import archives
 from rockbatch.motions.orientation import same_azimuth
 
 LARGEST = 64 * 2**20
-"""Bytes: a network with the responses of all its stations."""
+"""Greatest size [bytes]: of a network with the responses of all its stations."""
 
 _ROOT = "FDSNStationXML"
 _LEVELS = ((_ROOT, "Network"), (_ROOT, "Network", "Station"), (_ROOT, "Network", "Station", "Channel"))
@@ -28,11 +28,11 @@ _GAIN = "Response/Stage/StageGain/Value"
 _LONGEST = 200  # characters of these
 _DEEPEST = 50  # elements within one another; the format has 9
 _SAME_GAIN = 1e-3  # relative: printed with few digits, or at another frequency
-_SAME_STAGES = 0.05  # relative: what filters may add to the product of the stages' gains
+_SAME_STAGES = 0.05  # relative difference of the sensitivity from the product of the stages' gains, by filters
 _LEVEL = 80.0  # degrees of dip beyond which azimuths mean nothing
 _SAME_DIP = 1.0  # degrees
 _DAY = 86400.0  # s
-_NEVER = 2100  # the year from which on an epoch is open: 2599-12-31 and the like
+_NEVER = 2100  # year: epochs that end later are open, such as 2599-12-31
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Channel:
     azimuth: float | None  # degrees from north
     dip: float | None  # degrees down from the horizontal (−90: positive up)
     depth: float | None = None  # of the sensor below the surface [m]
-    stages: float | None = None  # product of the gains of all stages, where the file has them
+    stages: float | None = None  # product of the gains of all stages, if the file has them
     file: str = ""
 
     @property
@@ -63,10 +63,10 @@ class Channel:
 
 
 class Inventories:
-    """Channels of the StationXML files beside records, which are read once, when the first record asks for one.
+    """Channels of the StationXML files beside records, read at the first use.
 
-    ``files`` are paths, their names for people, and why they are not to be opened, "" where they may be. Other .xml files
-    have no channels. ``within`` are channels that come with the records.
+    ``files`` are paths, their names for people, and why they must not be opened ("" if they may). Other .xml files have no
+    channels. ``within`` are channels in the records' own files.
     """
 
     def __init__(self, files: Sequence[tuple[Path, str, str]] = (), within: Sequence[Channel] = ()) -> None:
@@ -74,6 +74,7 @@ class Inventories:
 
     @cached_property
     def _read(self) -> tuple[dict[str, list[Channel]], list[str]]:
+        """Return the channels by id, and the files that could not be read, with reasons."""
         channels: list[Channel] = [*self._within]
         refused: list[str] = []
         for path, name, refusal in self._files:
@@ -89,20 +90,20 @@ class Inventories:
 
     @property
     def refused(self) -> list[str]:
-        """Return the files that were not read, with the reason."""
+        """Return the files that could not be read, with the reason."""
         return self._read[1]
 
-    def also(self, within: Sequence[Channel]) -> "Inventories":
-        """Return these, with the channels that a file of records has itself."""
+    def with_channels(self, within: Sequence[Channel]) -> "Inventories":
+        """Return an inventory with the same files, and channels from within a file of records."""
         return Inventories(self._files, within)
 
-    def of(self, channel_id: str) -> list[Channel]:
-        """Return the epochs of a channel in all files, in their order."""
+    def epochs_of(self, channel_id: str) -> list[Channel]:
+        """Return the epochs of a channel in all files, in order; [] for an unknown one."""
         return self._read[0].get(channel_id, [])
 
 
 def contradiction(channels: Sequence[Channel]) -> str:
-    """Return the two statements in which epochs of one channel contradict each other, or one itself; empty where all agree."""
+    """Return two contradictory statements of epochs of one channel, or of one epoch; empty if all agree."""
     for channel in channels:
         if channel.stages and channel.sensitivity and abs(channel.stages / channel.sensitivity - 1.0) > _SAME_STAGES:
             return f"{channel.gain} ({channel.named}) and {channel.stages:.6g} as the product of its stages' gains"
@@ -116,21 +117,18 @@ def contradiction(channels: Sequence[Channel]) -> str:
 
 
 def _same_gain(a: Channel, b: Channel) -> bool:
-    """Return whether both mean the same accelerations."""
+    """Return whether two channels with sensitivities have the same counts per m/s²; without units of acceleration, equal ones."""
     assert a.sensitivity
     assert b.sensitivity
     try:
-        factors = [acceleration_factor(channel.unit) for channel in (a, b)]
-    except ValueError:  # no accelerations, or in a unit that is not understood
+        first, second = (a.sensitivity / acceleration_factor(a.unit), b.sensitivity / acceleration_factor(b.unit))
+    except ValueError:  # no accelerations, or in an unknown unit
         return a.unit == b.unit and a.sensitivity == b.sensitivity
-    per_m_s2 = [
-        channel.sensitivity / factor for channel, factor in zip((a, b), factors, strict=True) if channel.sensitivity
-    ]
-    return abs(per_m_s2[0] - per_m_s2[1]) <= _SAME_GAIN * abs(per_m_s2[0])
+    return abs(first - second) <= _SAME_GAIN * abs(first)
 
 
 def _same_direction(a: Channel, b: Channel) -> bool:
-    """Return whether dip and azimuth agree, as far as both have them."""
+    """Return whether dip and azimuth agree; True if one channel has no dip."""
     if a.dip is None or b.dip is None:
         return True
     if abs(a.dip - b.dip) > _SAME_DIP:
@@ -144,7 +142,7 @@ def _direction(channel: Channel) -> str:
 
 
 def _day(time: float) -> str:
-    """Return a time as people write it, without a clock at midnight; empty where it has no end, or a far one."""
+    """Return a time [s since 1970] in ISO format, without the clock at midnight; empty for open epochs."""
     try:
         moment = datetime.fromtimestamp(time, UTC)
     except (ValueError, OverflowError, OSError):
@@ -155,9 +153,9 @@ def _day(time: float) -> str:
 
 
 def channels_of(data: bytes, name: str) -> list[Channel]:
-    """Return the channels of a StationXML file, which ``name`` is for people; none of other XML.
+    """Return the channels of a StationXML file called ``name``; [] for other XML.
 
-    Raises ``InputError`` for a file that is too large, damaged, or in an encoding that nobody knows.
+    Raises ``InputError`` for a file that is too large, damaged, or in an unknown encoding.
     """
     from xml.etree.ElementTree import XMLParser
 
@@ -176,11 +174,11 @@ def channels_of(data: bytes, name: str) -> list[Channel]:
 
 
 class _NoStationXML(Exception):  # noqa: N818
-    """Another XML file, which is no concern of a record's."""
+    """An XML file of another kind."""
 
 
 class _Reader:
-    """Takes the channels out of what the parser finds, and keeps nothing else: no tree is built."""
+    """Parser target that collects channels without building a tree."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -213,7 +211,7 @@ class _Reader:
 
     @property
     def _key(self) -> str:
-        """Return the place of the present element below its channel."""
+        """Return the path of the current element below its channel: "Response/InstrumentSensitivity/Value"."""
         return "/".join(self.above[len(_LEVELS[-1]) :])
 
     def _channel(self) -> Channel:
@@ -238,6 +236,7 @@ class _Reader:
 
 
 def _number(text: str) -> float | None:
+    """Return the finite number of a text; None for other texts."""
     try:
         value = float(text)
     except ValueError:
@@ -246,6 +245,7 @@ def _number(text: str) -> float | None:
 
 
 def _time(text: str | None, otherwise: float) -> float:
+    """Return an ISO time [s since 1970], in UTC without a zone; ``otherwise`` for other texts."""
     try:
         moment = datetime.fromisoformat(text or "")
         return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()

@@ -1,14 +1,14 @@
 """Pulse-like records: the wavelet criterion of Baker (2007) for one horizontal component.
 
 Baker, J. W. (2007). Quantitative classification of near-fault ground motions using wavelet analysis. BSSA 97(5), 1486–1501.
-The largest coefficient of the continuous transform of the ground velocity with the Daubechies wavelet of order 4 gives
-period and place of the pulse. It is the sum of ten such wavelets of that period, one after the other the largest of what is
-left near that place. With the residual's peak and energy over the record's,
+The largest coefficient of the continuous transform of the ground velocity with the Daubechies wavelet of order 4 gives period
+and time of the pulse. The pulse is the sum of ten such wavelets of that period, each the largest of the remainder near that
+time. With the residual's peak and energy over the record's,
 
     PI = 1/(1 + exp(−23.3 + 14.6 (PGV ratio) + 20.5 (energy ratio))),
 
-a record is pulse-like with PI > 0.85, if PGV is 0.3 m/s or more and the pulse arrives early: 10 % of its ∫v² dt before
-20 % of the record's."""
+a record is pulse-like if PI > 0.85, PGV is 0.3 m/s or more and the pulse arrives early: 10 % of its ∫v² dt before 20 % of the
+record's."""
 
 import math
 from functools import cache
@@ -20,10 +20,10 @@ from rockbatch.motions.measures import velocity
 from rockbatch.motions.motion import Motion, Samples
 
 PERIODS_OF_PULSES = (0.25, 15.0)
-"""Shortest and longest pulse that is looked for [s]."""
+"""Shortest and longest pulse period that is tried [s]."""
 
 LEAST_PGV = 0.30
-"""Of a pulse-like record [m/s]."""
+"""Least PGV of a pulse-like record [m/s]."""
 
 PULSE_LIKE = 0.85
 """Indicator PI beyond which a record is pulse-like."""
@@ -48,8 +48,8 @@ def period_of_pulse(v: Samples, dt: float) -> float | None:
     if float(np.abs(v).max()) < LEAST_PGV:
         return None
     scale, place = _largest(v, dt)
-    pulse = _extracted(v, scale, place)
-    is_early = _reaches(pulse, 0.10) < _reaches(v, 0.20)
+    pulse = _wavelet_sum(v, scale, place)
+    is_early = _sample_reaching(pulse, 0.10) < _sample_reaching(v, 0.20)
     return _PSEUDO_PERIOD * scale * dt if is_early and _indicator(v, pulse) > PULSE_LIKE else None
 
 
@@ -61,7 +61,7 @@ def _indicator(v: Samples, pulse: Samples) -> float:
 
 
 def _largest(v: Samples, dt: float) -> tuple[float, int]:
-    """Scale, in samples, and place of the largest coefficient: over all scales first, then about the best of them."""
+    """Return scale [samples] and index of the largest coefficient, over all scales first, then around the best of them."""
     shortest, longest = (period / _PSEUDO_PERIOD / dt for period in PERIODS_OF_PULSES)
     scales = np.geomspace(shortest, longest, _SCALES)
     transform = _Transform(v, longest)
@@ -72,8 +72,8 @@ def _largest(v: Samples, dt: float) -> tuple[float, int]:
     return float(scale), place
 
 
-def _extracted(v: Samples, scale: float, place: int) -> Array:
-    """Return the pulse: ten wavelets of one scale near ``place``."""
+def _wavelet_sum(v: Samples, scale: float, place: int) -> Array:
+    """Return the pulse, shape (npts,): the sum of ten wavelets of one scale near the index ``place``."""
     near = math.ceil(_NEAR * scale)
     window = slice(max(place - near, 0), place + near + 1)
     wavelet = _wavelet(scale)
@@ -81,7 +81,7 @@ def _extracted(v: Samples, scale: float, place: int) -> Array:
     pulse = np.zeros(len(v) + 2 * half)
     inside = pulse[half : half + len(v)]
     for _ in range(_WAVELETS):
-        coefficients = _Transform(v - inside, scale).at(scale)[window]
+        coefficients = _Transform(v - inside, scale).coefficients(scale)[window]
         k = int(np.argmax(np.abs(coefficients)))
         first = window.start + k
         pulse[first : first + len(wavelet)] += coefficients[k] / norm * wavelet
@@ -89,34 +89,34 @@ def _extracted(v: Samples, scale: float, place: int) -> Array:
 
 
 class _Transform:
-    """The continuous wavelet transform of a signal at its samples, by Fourier transforms."""
+    """Continuous wavelet transform of a signal at its samples, by Fourier transforms."""
 
     def __init__(self, signal: Samples, largest_scale: float) -> None:
         self.length = len(signal)
         self.padded = 1 << (self.length + len(_wavelet(largest_scale)) - 1).bit_length()
         self.spectrum = np.fft.rfft(signal, self.padded)
 
-    def at(self, scale: float) -> Array:
-        """Coefficients, shape (npts,), of wavelets of that scale centred on each sample."""
+    def coefficients(self, scale: float) -> Array:
+        """Return the coefficients, shape (npts,), of wavelets of a scale [samples] centred on each sample."""
         wavelet = _wavelet(scale)
         product = self.spectrum * np.conj(np.fft.rfft(wavelet, self.padded))
         return np.roll(np.fft.irfft(product, self.padded), len(wavelet) // 2)[: self.length]
 
     def largest(self, scale: float) -> tuple[float, int]:
-        """Return the largest of them, without its sign, and where it is."""
-        coefficients = np.abs(self.at(scale))
+        """Return the largest absolute coefficient of a scale, and its index."""
+        coefficients = np.abs(self.coefficients(scale))
         place = int(np.argmax(coefficients))
         return float(coefficients[place]), place
 
 
-def _reaches(v: Samples, share: float) -> int:
-    """Return the first sample at which ∫v² dt has grown to a share of its final value."""
+def _sample_reaching(v: Samples, share: float) -> int:
+    """Return the index of the first sample at which ∫v² dt reaches a share of its final value."""
     energy = np.cumsum(v * v)
     return int(np.searchsorted(energy, share * energy[-1]))
 
 
 def _wavelet(scale: float) -> Array:
-    """Return the wavelet of a scale [samples] at an odd number of samples, in the middle of which its support has its own."""
+    """Return the wavelet of a scale [samples], at an odd number of samples centred on the middle of its support."""
     half = math.ceil(0.5 * _SUPPORT * scale)
     x, psi = _daubechies()
     places = np.arange(-half, half + 1) / scale + 0.5 * _SUPPORT
@@ -137,14 +137,14 @@ def _daubechies() -> tuple[Array, Array]:
     phi = np.real(vectors[:, np.argmin(np.abs(values - 1.0))])
     phi /= phi.sum()
     for halving in range(_HALVINGS):
-        phi = _refined(h, phi, 1 << halving)
+        phi = _on_finer_grid(h, phi, 1 << halving)
     mirrored = h[::-1] * (-1.0) ** np.arange(n)
-    psi = _refined(mirrored, phi, 1 << _HALVINGS)
+    psi = _on_finer_grid(mirrored, phi, 1 << _HALVINGS)
     return np.arange(len(psi)) / (1 << (_HALVINGS + 1)), psi
 
 
-def _refined(coefficients: Array, phi: Array, per_unit: int) -> Array:
-    """√2 Σ c_k φ(2x − k) on a grid of half the step of φ, which has ``per_unit`` steps to the unit."""
+def _on_finer_grid(coefficients: Array, phi: Array, per_unit: int) -> Array:
+    """Return √2 Σ c_k φ(2x − k) on a grid of half the step of φ, which has ``per_unit`` steps per unit of x."""
     finer = np.zeros(2 * len(phi) - 1)
     for k, coefficient in enumerate(coefficients):
         finer[k * per_unit : k * per_unit + len(phi)] += math.sqrt(2.0) * coefficient * phi
@@ -152,7 +152,7 @@ def _refined(coefficients: Array, phi: Array, per_unit: int) -> Array:
 
 
 def _filter() -> Array:
-    """Low-pass filter with four vanishing moments: the factor of least phase (Daubechies 1992, 6.1)."""
+    """Return the low-pass filter with four vanishing moments, shape (8,): the minimum-phase factor (Daubechies 1992, 6.1)."""
     order = 4
     y = np.roots([math.comb(order - 1 + k, k) for k in reversed(range(order))])
     pairs = [np.roots([1.0, 4.0 * root - 2.0, 1.0]) for root in y]

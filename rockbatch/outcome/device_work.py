@@ -17,7 +17,7 @@ class Courses(NamedTuple):
     """Elongation [m], force [N/kg] and energy taken [J/kg] of all devices at every row; shape (rows, devices) each.
 
     Without the energy it is that of the force along the way, by the trapezoidal rule. With the times ``t`` [s] of the rows and
-    the ``speed`` [m/s] of the elongation a device turns between rows, where its elongation is cubic; else at rows.
+    the ``speed`` [m/s] of each device, without its brace, a device turns between rows, where its way is cubic; else at rows.
     """
 
     elongation: Samples
@@ -68,12 +68,12 @@ def with_turns(t: Samples, way: Samples, speed: Samples) -> Samples:
     rows = np.flatnonzero((h > 0.0) & (speed[:-1] * speed[1:] < 0.0))
     h, start, travel = h[rows], way[rows], way[rows + 1] - way[rows]
     first, last = h * speed[rows], h * speed[rows + 1]
-    # the rate is first + 2 linear s + square s², and has one zero between its ends, whose signs differ
+    # the rate is first + 2 linear s + square s²; its signs at the ends differ, so one zero is between them but for rounding
     square, linear = 3.0 * (first + last - 2.0 * travel), 3.0 * travel - 2.0 * first - last
     larger = -(linear + np.copysign(np.sqrt(np.maximum(linear**2 - square * first, 0.0)), linear))
-    s = first / larger
-    outside = ~((s >= 0.0) & (s <= 1.0))
-    s[outside] = larger[outside] / square[outside]
+    with np.errstate(divide="ignore"):
+        one, other = first / larger, larger / square
+    s = np.clip(np.where(np.abs(one - 0.5) <= np.abs(other - 0.5), one, other), 0.0, 1.0)
     turns = start + s * travel + s * (1.0 - s) * ((1.0 - s) * (first - travel) + s * (travel - last))
     return np.insert(way, rows + 1, turns)
 
@@ -88,17 +88,14 @@ def work_of(pier: Pier, base: Base, courses: Courses, least_stroke: float) -> Wo
     per_lambda = pier.gravity * pier.size / pier.half_width**2  # stiffness over the mass [1/s²] of λ = 1
     braces = [per_lambda * device.brace if isinstance(device, Damper) else math.inf for device in devices]
     way = elongation - pull / np.array(braces)
-    halves, travels = [], []
-    for j, course in enumerate(way.T):
-        if t is not None and speed is not None and braces[j] == math.inf:
-            course = with_turns(t, course, speed[:, j])
+    halves, travels, strain = [], [], np.full(len(devices), math.nan)
+    for j, device in enumerate(devices):
+        course = way[:, j] if t is None or speed is None else with_turns(t, way[:, j], speed[:, j])
         travels.append(np.abs(np.diff(course)).sum())
         ranges, counts = rainflow(course)
         halves.append(counts[ranges >= least_stroke].sum())
-    strain = np.full(len(devices), math.nan)
-    for j, device in enumerate(devices):
         if isinstance(device, Tendon) and device.strength < math.inf:
-            most = device.psi * pier.gravity + device.lam * per_lambda * elongation[:, j].max()
+            most = device.psi * pier.gravity + device.lam * per_lambda * course.max()
             strain[j] = max(most, 0.0) / (device.strength * pier.gravity)
     taken = (0.5 * (pull[1:] + pull[:-1]) * np.diff(way, axis=0)).sum(axis=0) if lost is None else lost[-1] - lost[0]
     return Work(np.array(travels), taken, np.array(halves), strain)

@@ -285,6 +285,8 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     base, pier, sides = response.base, response.pier, ("left", "right")
     if not base.on_springs:
         return ()
+    if not base.two_springs:
+        return _bed(response, look, pixels)
     names = ("v/δ_y", "F/F_y") if base.yields else ("v [mm]", "F/(M g)")
     unit = yield_deflection(pier, base) if base.yields else 1e-3
     forces = [response.z_left, response.z_right] if base.yields else [
@@ -306,6 +308,21 @@ def _springs(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
     for side, own, force in zip(sides, v, forces, strict=True):
         marks: list[Mark] = [Polyline(*without_repeats(own, force, pixels), y.plain, look=look)]
         panels.append(Panel(x, y, marks + [yields] * base.yields, side, width=WIDTH / 2, height=LOOPS, reads="plane"))
+    return tuple(panels)
+
+
+def _bed(response: Response, look: Look, pixels: int) -> tuple[Panel, ...]:
+    """Return the moment of the bed about the middle of the foot, and how deep that is, against the rotation."""
+    pier, history = response.pier, response.history
+    theta = 1000.0 * response.theta
+    left, right = (history[f"force_{side}"].to_numpy(dtype=np.float64) for side in ("left", "right"))
+    moment = pier.half_width * (left - right) / pier.gravity
+    deep = -500.0 * (history["v_left"] + history["v_right"]).to_numpy(dtype=np.float64)
+    panels = []
+    for name, values in (("moment/(M g) [m]", moment), ("depth of the foot [mm]", deep)):
+        x, y = spanning("θ [mrad]", theta, about=3), spanning(name, values, about=3)
+        marks = [Polyline(*without_repeats(theta, values, pixels), y.plain, look=look)]
+        panels.append(Panel(x, y, marks, "bed", width=WIDTH / 2, height=LOOPS, reads="plane"))
     return tuple(panels)
 
 

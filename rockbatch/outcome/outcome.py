@@ -76,7 +76,7 @@ class PeakForces:
     flight_longest : float or None
         The longest flight that was followed [s].
     error : float or None
-        By which share of itself halving the step still changed one of them at most; ``None`` with a fixed step.
+        Four times the share of itself by which halving the step still changed one of them at most; ``None`` with a fixed step.
     landing_force : float or None
         Greatest force of a foot over M at the hardest impact, estimated by a contact stiffness of the base [m/s²].
     slides : bool or None
@@ -137,6 +137,52 @@ class DeviceWork:
     damper_work: float | None = None
     damper_half_cycles: int | None = None
     tendon_strain: float | None = None
+
+
+@dataclass(frozen=True)
+class BedDemands:
+    """Demands on the bed of a footing; SI units, per unit mass of the pier.
+
+    Attributes
+    ----------
+    contact_least : float
+        Least share of the foot that was pressed.
+    force, t_force : float
+        Greatest push of the bed on the foot [m/s²], dashpots included, and its time [s].
+    pressure : float or None
+        Greatest pressure at an edge [MPa]; None if mass or length is not known.
+    t_pressure, pressure_at : float
+        Its time [s], and the place of that edge [m], positive to the right.
+    yielding_rocks : int
+        Rocks to one side in which the ground yielded: half cycles.
+    work : float
+        Plastic work of the ground [J/kg].
+    settlement_left, settlement_right : float or None
+        Settlements of both edges of the foot at rest [m].
+    strips_error : float or None
+        Share of the error of ``theta_max`` that the number of strips has [rad].
+    """
+
+    contact_least: float
+    force: float
+    t_force: float
+    pressure: float | None
+    t_pressure: float
+    pressure_at: float
+    yielding_rocks: int
+    work: float
+    settlement_left: float | None = None
+    settlement_right: float | None = None
+    strips_error: float | None = None
+
+    def mirrored(self) -> "BedDemands":
+        """Return the demands of the mirror image."""
+        return replace(
+            self,
+            pressure_at=0.0 - self.pressure_at,
+            settlement_left=self.settlement_right,
+            settlement_right=self.settlement_left,
+        )
 
 
 @dataclass(frozen=True)
@@ -221,6 +267,8 @@ class Outcome:
         Its demands on the design, if asked for.
     device_work : DeviceWork or None
         The work of its devices, if asked for.
+    bed : BedDemands or None
+        The demands on the bed of a footing.
     tables : mapping
         Rows of tables beside peaks.csv by their files, if asked for; none of a mirror image.
     """
@@ -282,6 +330,7 @@ class Outcome:
     deflection_max_error: float | None = None
     top_drift_max: float | None = None
     top_drift_max_error: float | None = None
+    bed: BedDemands | None = None
     failure: Failure | None = None
     chaotic: bool | None = None
     may_overturn: bool | None = None
@@ -328,6 +377,7 @@ class Outcome:
             dissipated_left=self.dissipated_right,
             dissipated_right=self.dissipated_left,
             forces=self.forces and self.forces.mirrored(),
+            bed=self.bed and self.bed.mirrored(),
             tables={},
         )
 

@@ -1,4 +1,4 @@
-"""The pier and its base: a rigid block on three kinds of base (Palmeri & Makris 2007)."""
+"""The pier and its base: a rigid block on four kinds of base (Palmeri & Makris 2007)."""
 
 from rockbatch.pier.bases import LEAST_ETA as LEAST_ETA
 from rockbatch.pier.bases import MOST_NEGLECTED as MOST_NEGLECTED
@@ -6,6 +6,7 @@ from rockbatch.pier.bases import WITH_EPSILON as WITH_EPSILON
 from rockbatch.pier.bases import Base as Base
 from rockbatch.pier.bases import ElasticBase as ElasticBase
 from rockbatch.pier.bases import Flight as Flight
+from rockbatch.pier.bases import FootingBase as FootingBase
 from rockbatch.pier.bases import Kinematics as Kinematics
 from rockbatch.pier.bases import RigidBase as RigidBase
 from rockbatch.pier.bases import YieldingBase as YieldingBase

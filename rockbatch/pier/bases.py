@@ -10,16 +10,17 @@ from dataclasses import InitVar, dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Self, get_args
 
 from rockbatch.common.arguments import checked
-from rockbatch.common.errors import Contradiction, Problem, Superseded, WrongType, refuse
+from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem, Superseded, WrongType, refuse
 from rockbatch.common.showing import InNotebook, shown
-from rockbatch.common.units import LEAST, MOST, Bounds, Usual
+from rockbatch.common.units import LEAST, MOST, POSITIVE, Bounds, Usual
 from rockbatch.pier.block import Pier
 from rockbatch.pier.first_loading import Curve, Straight
-from rockbatch.pier.frequencies import static_deflection, vertical_frequency, yield_deflection
+from rockbatch.pier.frequencies import rocking_frequency, static_deflection, vertical_frequency, yield_deflection
 from rockbatch.pier.laws import LAWS, Law, SpringLaw
 from rockbatch.pier.places import holds_a_tilt
 from rockbatch.pier.restraints import Restraint, described_restraints
 from rockbatch.pier.sizes import unusual
+from rockbatch.pier.soil import FORMULAS, Formula, Soil, bed_stiffness, radiated
 from rockbatch.pier.supports import beta_of, eta_of, unlikely_supports
 
 LEAST_ETA = 1.000001
@@ -27,6 +28,9 @@ LEAST_ETA = 1.000001
 
 MOST_EXPONENT = 1000.0
 """Greatest n of Bouc–Wen springs: their corner is as sharp as that of elastic–perfectly plastic ones, which have none."""
+
+MOST_STRIPS = 160
+"""Greatest number of strips of a footing's bed; the core has room for no more."""
 
 MOST_NEGLECTED = 0.05
 """Share of inertia and righting moment, neglected by linearised kinematics, from which a note reports it: 0.20 rad at α = 0.2."""
@@ -109,7 +113,13 @@ class _Traits(InNotebook):
     """Properties of a base, asked for by name and not by its class; each class gives those that differ."""
 
     on_springs: ClassVar[bool]
-    """True if two springs carry the pier, and deflect; a literal of each class, by which type checkers know the class."""
+    """True if the ground gives: springs or a bed; a literal of each class, by which type checkers know the class."""
+
+    two_springs: ClassVar[bool] = False
+    """True if these are two springs under the pivots."""
+
+    remembers: ClassVar[bool] = False
+    """True if the ground's state follows from every step of a history, and is no column of it."""
 
     yields: ClassVar[bool] = False
     """True if these springs yield, so that the pier may settle."""
@@ -297,6 +307,8 @@ class ElasticBase(_Traits):
 
     name = "elastic"
     on_springs: ClassVar[Literal[True]] = True
+    two_springs: ClassVar[bool] = True
+    rocking_share: ClassVar[float] = 1.0
 
     def __post_init__(self) -> None:
         self._check()
@@ -429,7 +441,164 @@ class YieldingBase(ElasticBase):
         return super().from_stiffness(pier, stiffness_kN_m, **rest)
 
 
-Base = RigidBase | ElasticBase | YieldingBase
+POISSON = Bounds(0.0, 0.5, why="Poisson's ratio of the soil must be within 0..0.5")
+"""Possible values of ν."""
+
+DEPTH = Bounds(0.0, MOST, " [m], a depth")
+"""Possible depths of a footing."""
+
+STRIPS = 40
+"""Strips of a footing's bed, unless its base says otherwise."""
+
+
+@checked
+@dataclass(frozen=True)
+class FootingBase(_Traits):
+    """A rigid foot on a bed of strips that push and never pull, elastic, then yielding (THEORY.md, A footing).
+
+    The foot is as wide as the pier: ``Pier`` takes its width from it.
+
+    Attributes
+    ----------
+    beta : float
+        β = ω_v/p of the whole bed, vertical over rocking frequency parameter.
+    safety_factor : float, optional
+        FS > 1: strength of the bed over the weight; without it the bed is elastic.
+    zeta : float
+        ζ, 0..1: damping ratio of the vertical vibration in full contact, by dashpots that act while pressed.
+    kinematics : "first-order" or "finite"
+        As on springs (:class:`ElasticBase`).
+    length_m : float, optional
+        Length of the foot across the plane of rocking [m], for pressures.
+    strips : int
+        An even number of them.
+    vertical_over_formula : float, optional
+        Vertical stiffness of the bed over that of the soil's formula, whose rocking stiffness it has.
+    friction, restraints, flight_limit_mm, confirm
+        As on springs. The run goes on while all strips are clear.
+
+    Examples
+    --------
+    >>> tall = rb.Pier.with_deck(width_m=8, height_m=30, mass_t=2000, deck_mass_t=1000)
+    >>> clay = rb.FootingBase.from_soil(tall, shear_modulus_MPa=60, poisson=0.45, length_m=10, bearing_MPa=1.1)
+    >>> f"FS = {clay.safety_factor:.2f}, {clay.vertical_over_formula:.2f} of the vertical stiffness"
+    'FS = 2.99, 2.56 of the vertical stiffness'
+    """
+
+    beta: float
+    safety_factor: float | None = None
+    zeta: float = 0.05
+    kinematics: Kinematics = "first-order"
+    length_m: float | None = field(default=None, kw_only=True)
+    strips: int = field(default=STRIPS, kw_only=True)
+    vertical_over_formula: float | None = field(default=None, kw_only=True)
+    friction: float | None = field(default=None, kw_only=True)
+    restraints: tuple[Restraint, ...] = field(default=(), kw_only=True)
+    flight_limit_mm: float = field(default=FLIGHT_LIMIT_MM, kw_only=True)
+    confirm: Sequence[str] = field(default=(), kw_only=True, compare=False, repr=False)
+
+    name = "footing"
+    on_springs: ClassVar[Literal[True]] = True
+    remembers: ClassVar[bool] = True
+    flight: ClassVar[Flight] = "guided"  # type: ignore[misc]
+    area_m2: ClassVar[None] = None
+    rocking_share: ClassVar[float] = 1.0 / 3.0
+    """Share of the rocking stiffness of the same springs at both edges."""
+    reference_eta: ClassVar[float] = 1.0
+
+    def __post_init__(self) -> None:
+        self._check()
+
+    def _wrong_together(self) -> list[Problem]:
+        wrong = BETA.problems("beta", self.beta)
+        if self.strips < 2 or self.strips > MOST_STRIPS or self.strips % 2:
+            text = f"must be an even number from 2 to {MOST_STRIPS}; half as many give the error"
+            wrong.append(Problem("strips", self.strips, text, kind=OutOfRange))
+        return wrong
+
+    @property
+    def yields(self) -> bool:  # type: ignore[override]
+        """Return whether the bed has a strength."""
+        return self.safety_factor is not None
+
+    def zeta_rocking(self, pier: Pier) -> float:
+        """Return the damping ratio of rocking in full contact, as the dashpots of the bed give it."""
+        omega_v, omega_r = vertical_frequency(pier, self), rocking_frequency(pier, self)
+        share = (omega_v * pier.half_width) ** 2 * self.rocking_share / (pier.inertia + pier.height**2)
+        return self.zeta * share / (omega_v * omega_r)
+
+    def parameters(self, pier: Pier) -> dict[str, Any]:
+        """Return this footing under ``pier`` by the keys of run.json."""
+        values: dict[str, Any] = {"beta": self.beta, "zeta": self.zeta, "zeta_rocking": self.zeta_rocking(pier)}
+        given = ("safety_factor", "length_m", "vertical_over_formula")
+        values |= {name: getattr(self, name) for name in given if getattr(self, name) is not None}
+        values |= {"kinematics": self.kinematics, "strips": self.strips, "flight_limit_mm": self.flight_limit_mm}
+        values |= {"omega_v": vertical_frequency(pier, self), "delta_s_m": static_deflection(pier, self)}
+        return values | _interface(self) | described_restraints(self.restraints)
+
+    @classmethod
+    @checked
+    def from_stiffness(
+        cls, pier: Pier, stiffness_MN_m3: float, *, length_m: float, bearing_MPa: float | None = None, **rest: Any
+    ) -> Self:
+        """Return a footing from the stiffness of the bed [MN/m³], or E/depth of a toe, and its bearing strength [MPa], or with
+        ``safety_factor``, under ``pier``, whose mass is known; ``rest`` as in the class.
+
+        Raises ``InputError`` if the pier has no mass, or for values that are impossible, or unusual and not confirmed.
+        """
+        area = 2.0 * pier.half_width * length_m
+        wrong = [
+            p
+            for name, value in (("stiffness_MN_m3", stiffness_MN_m3), ("length_m", length_m))
+            for p in POSITIVE.problems(name, value)
+        ]
+        wrong += [] if bearing_MPa is None else POSITIVE.problems("bearing_MPa", bearing_MPa)
+        if pier.mass_t is None:
+            text = "is missing: MPa and MN/m³ are of a pier whose mass is known"
+            wrong.append(Problem("mass_t", None, text, kind=MissingKey))
+        if bearing_MPa is not None and rest.get("safety_factor") is not None:
+            text = "safety_factor is given, too, which fixes the same; keep one"
+            wrong.append(Problem("bearing_MPa", bearing_MPa, text, kind=Contradiction))
+        refuse(wrong)
+        assert pier.mass_t is not None
+        if bearing_MPa is not None:
+            rest["safety_factor"] = 1000.0 * bearing_MPa * area / (pier.mass_t * pier.gravity)
+        return cls(math.sqrt(1000.0 * stiffness_MN_m3 * area / pier.mass_t) / pier.p, length_m=length_m, **rest)
+
+    @classmethod
+    @checked
+    def from_soil(
+        cls, pier: Pier, shear_modulus_MPa: float, poisson: float, *, length_m: float, embedment_m: float = 0.0,
+        formula: Formula = "gazetas", density_t_m3: float | None = None, **rest: Any,
+    ) -> Self:  # fmt: skip
+        """Return a footing from G [MPa] and ν of the soil: its bed has the rocking stiffness of the ``formula``.
+
+        With ``density_t_m3`` radiation damping joins ``zeta``. ``rest`` as in :meth:`from_stiffness`.
+        Raises ``InputError`` as that does.
+        """
+        soil, width = Soil(shear_modulus_MPa, poisson, embedment_m), 2.0 * pier.half_width
+        refuse(wrong_soil(soil, length_m, density_t_m3))
+        stiffness = FORMULAS[formula](width, length_m, soil)
+        bed = bed_stiffness(width, length_m, stiffness.rocking)
+        rest["vertical_over_formula"] = bed * width * length_m / stiffness.vertical
+        base = cls.from_stiffness(pier, bed, length_m=length_m, **rest)
+        if density_t_m3 is None or pier.mass_t is None:
+            return base
+        dashpot = 1000.0 * radiated(width, length_m, soil, density_t_m3)
+        return replace(base, zeta=base.zeta + 0.5 * dashpot / (pier.mass_t * vertical_frequency(pier, base)))
+
+
+def wrong_soil(soil: Soil, length_m: float, density_t_m3: float | None = None) -> list[Problem]:
+    """Return what is impossible about soil and length of a footing."""
+    wrong = POSITIVE.problems("shear_modulus_MPa", soil.shear_modulus_MPa) + POSITIVE.problems("length_m", length_m)
+    wrong += POISSON.problems("poisson", soil.poisson) + DEPTH.problems("embedment_m", soil.embedment_m)
+    return wrong + POSITIVE.problems("density_t_m3", density_t_m3)
+
+
+Base = RigidBase | ElasticBase | YieldingBase | FootingBase
+
+BASES: dict[str, type[Base]] = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase, FootingBase)}
+"""Bases by the names that users write."""
 
 IMPULSIVE = (RigidBase.name,)
 """Bases that do not give, on which every landing is an impulse."""
@@ -443,7 +612,7 @@ def _interface(base: Base) -> dict[str, float]:
 
 def in_kilonewtons(pier: Pier, base: Base) -> dict[str, float]:
     """Return K = β² p² M/2 [kN/m] and F_y = η M g/2 [kN] by the keys of a study; empty for a pier without mass or springs."""
-    if pier.mass_t is None or not base.on_springs:
+    if pier.mass_t is None or not base.two_springs:
         return {}
     values = {"stiffness_kN_m": 0.5 * pier.mass_t * vertical_frequency(pier, base) ** 2}
     if isinstance(base, YieldingBase):

@@ -50,6 +50,11 @@ class Device(InNotebook, ABC):
 
     confirm: Sequence[str]
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """What brings quantities: the name of its table, and that of a part of these."""
+        return (self.what,)
+
     def __post_init__(self) -> None:
         refuse(placed(self._wrong(), self.what))
 

@@ -32,7 +32,7 @@ ONSET = 1e-12
 """Rotation [rad] that stands for the first one, at which friction has its full force and stiffnesses have added nothing."""
 
 
-def _bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: float) -> tuple[Array, Array, Array]:
+def bracketed(excess: Callable[[Array], Array], low: Array, high: Array, near: float) -> tuple[Array, Array, Array]:
     """Return a bracket of the depth at which ``excess`` passes 0, and where in it that lies, as a share of the way.
 
     By turns the bracket is halved and cut by its chord; friction makes ``excess`` jump, which the bracket then encloses.
@@ -167,7 +167,10 @@ class SlowTurn:
             if not (isinstance(device, Damper) and device.f == 0.0)  # of speed, which bear nothing at rest
             for place in places(pier, device)
         ]
-        self.spring = spring_of(pier, base) if isinstance(base, ElasticBase) else None
+        self.spring, self.on_pivots = (
+            spring_of(pier, base) if isinstance(base, ElasticBase) else None,
+            not base.on_springs,
+        )
         self.at_rest = 0.5 * (1.0 + prestress_over_weight(pier, devices))
         """Force of each support at rest, over the weight."""
         self.settled = 0.0 if self.spring is None else self.spring.depth(self.at_rest)
@@ -192,7 +195,7 @@ class SlowTurn:
     @property
     def _swing(self) -> float:
         """Horizontal distance [m] of the deck's axis from the pivot about which the pier turns."""
-        return self.b if self.spring is None else 0.0
+        return self.b if self.on_pivots else 0.0
 
     def _by_v(self, theta: Array) -> Array:
         return 1.0 / np.cos(0.5 * theta) if self.finite else np.ones_like(theta)
@@ -262,7 +265,7 @@ class SlowTurn:
             depth = spring.depth(1.0) if bears else math.inf
         else:
             start, near = np.array([self.settled - risen]), NEAR / spring.stiffness
-            low, high, share = _bracketed(excess, start, np.array([limit]), near)
+            low, high, share = bracketed(excess, start, np.array([limit]), near)
             depth = float((low + share * (high - low))[0])
             depth = depth if float(excess(np.array([limit]))[0]) > 0.0 else math.inf
         if not depth < limit:
@@ -302,7 +305,7 @@ class SlowTurn:
             return self._excess(theta, depth, self._pulls(theta, depth, since), heel_at(depth))
 
         room = self.settled + 4.0 * np.abs(self._rise(theta)) + 1.0 / self.spring.stiffness
-        low, high, share = _bracketed(excess, -room, room, NEAR / self.spring.stiffness)
+        low, high, share = bracketed(excess, -room, room, NEAR / self.spring.stiffness)
 
         def between(a: Array, b: Array) -> Array:
             return (1.0 - share) * a + share * b
@@ -320,8 +323,18 @@ class SlowTurn:
             depth, heel, pulls = *self._without_devices(theta, on_both), []
         else:
             depth, pulls, heel = self._balanced(theta, since, on_both)
+        of_devices, down = self._moments(theta, depth, pulls), np.ones_like(theta)
+        for place, pull in zip(self.places, pulls, strict=True):
+            down += 0.0 if place.height else pull * self._by_v(theta)
+        width = 2.0 * self.b * (np.cos(theta) if self.finite else 1.0)
+        level = self.h * np.cos(theta) if self.finite else np.full_like(theta, self.h)
+        lever = level if on_both and self.spring is not None else level + self._rise(theta)
+        of_weight = self._toe_arm(theta) - heel * width
+        return Equilibria(theta, of_weight, *of_devices, lever, down - heel, heel, depth)
+
+    def _moments(self, theta: Array, depth: Array, pulls: list[Array]) -> tuple[Array, Array, Array]:
+        """Return the moments of tendons, of stops and deck springs, and of dampers about the toe [m], from their pulls."""
         of_tendons, of_stops, of_dampers = np.zeros_like(theta), np.zeros_like(theta), np.zeros_like(theta)
-        down = np.ones_like(theta)
         for place, pull in zip(self.places, pulls, strict=True):
             moment = pull * self._arm(place, theta, self.elongation(place, theta, depth))
             if isinstance(place.device, Damper):
@@ -330,12 +343,7 @@ class SlowTurn:
                 of_tendons += moment
             else:
                 of_stops += moment
-            down += 0.0 if place.height else pull * self._by_v(theta)
-        width = 2.0 * self.b * (np.cos(theta) if self.finite else 1.0)
-        level = self.h * np.cos(theta) if self.finite else np.full_like(theta, self.h)
-        lever = level if on_both and self.spring is not None else level + self._rise(theta)
-        of_weight = self._toe_arm(theta) - heel * width
-        return Equilibria(theta, of_weight, of_tendons, of_stops, of_dampers, lever, down - heel, heel, depth)
+        return of_tendons, of_stops, of_dampers
 
     def at(self, theta: Array) -> Equilibria:
         """Return the equilibria at rotations ``theta`` > 0 [rad]; at that of lift-off the pier still stands on both supports."""
@@ -359,6 +367,10 @@ class SlowTurn:
             share = 1.0 if self.spring is None else min(1.0, 2.0 * self.spring.strength - 1.0)
             tangent = share * math.tan(self.pier.alpha)
             return math.atan(tangent) if self.finite else min(tangent, 0.5 * math.pi)
+        return self.search_unstable()
+
+    def search_unstable(self) -> float | None:
+        """Return the rotation from which on the righting moment is negative [rad], by finer and finer grids."""
         low, high, parts = 0.0, 0.5 * math.pi, 96
         for _ in range(5):
             grid = np.linspace(low, high, parts + 1)[1:]

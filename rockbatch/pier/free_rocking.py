@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from rockbatch.pier.bases import Base, ElasticBase, RigidBase
 from rockbatch.pier.block import Pier
-from rockbatch.pier.equilibrium import ONSET, Equilibria, SlowTurn, without_dampers
+from rockbatch.pier.equilibrium import ONSET, Equilibria, without_dampers
+from rockbatch.pier.footings import slow_turn
 from rockbatch.pier.places import symmetric
 
 Array = npt.NDArray[np.float64]
@@ -44,7 +45,7 @@ class FreeRocking:
             else base
         )
         self.pier, self.base, self.even = pier, base, symmetric(pier, holding)
-        self.turn = SlowTurn(pier, springs, holding)
+        self.turn = slow_turn(pier, springs, holding)
 
     def swings(self, amplitudes: Array) -> Swings:
         """Return period and damping at ``amplitudes`` > 0 [rad], below the unstable equilibrium."""
@@ -60,7 +61,7 @@ class FreeRocking:
     @property
     def in_full_contact(self) -> float | None:
         """Return the period of small rocking on both supports [s], 2π/ω_r (12) without devices; None on rigid ground."""
-        if self.turn.spring is None or not self.even:
+        if self.turn.on_pivots or not self.even:
             return None
         theta = 1e-3 * (self.turn.lift_off or self.pier.alpha)
         stiffness = self.pier.gravity * float(self.turn.at(np.array([theta])).moment[0]) / theta
@@ -97,7 +98,7 @@ class FreeRocking:
         return curve.theta, curve.moment, np.concatenate(sinking)
 
     def _moment(self, theta: Array) -> Array:
-        if self.turn.spring is None or not self.turn.places:
+        if self.turn.on_pivots or not (self.turn.places or self.turn.spring is None):
             return self.turn.at(theta).moment
         angles, moments, _ = self._tabulated
         return np.interp(theta, angles, moments)
@@ -105,17 +106,19 @@ class FreeRocking:
     def _inertia(self, theta: Array) -> Array:
         """Return the inertia that belongs to θ̇ [m²] while the centre of mass goes up and down with the rotation."""
         turn, pier = self.turn, self.pier
-        if turn.spring is None:
+        if turn.on_pivots:
             return np.full_like(theta, pier.inertia_about_pivot)
         on_both = theta <= (math.inf if turn.lift_off is None else turn.lift_off)
         rising = turn.b * (np.cos(theta) if turn.finite else np.ones_like(theta))
-        if turn.places:
+        if turn.places or turn.spring is None:
             rising = rising - np.interp(theta, self._tabulated[0], self._tabulated[2])
         else:
             rising = np.where(on_both, 0.0, rising)
         if not turn.finite:
             return pier.inertia + turn.h**2 + rising * (turn.b - turn.h * theta)
-        lever = turn.h * np.cos(theta) + np.where(on_both, 0.0, turn.b * np.sin(theta))
+        lever = turn.h * np.cos(theta)
+        if turn.spring is not None:
+            lever = lever + np.where(on_both, 0.0, turn.b * np.sin(theta))
         return pier.inertia + lever**2 + (rising - turn.h * np.sin(theta)) ** 2
 
     def _work(self, low: Array, high: Array) -> Array:

@@ -14,13 +14,17 @@ class Ground(Protocol):
 
 
 class Springs(Ground, Protocol):
-    """Two springs under a pier, with their damping ratio, if any, and η, by which their deflections are measured."""
+    """Ground that gives: its damping ratio, if any, η, by which deflections are measured, and its rocking stiffness over that
+    of the same springs at both edges."""
 
     @property
     def zeta(self) -> float | None: ...
 
     @property
     def reference_eta(self) -> float: ...
+
+    @property
+    def rocking_share(self) -> float: ...
 
 
 def vertical_frequency(pier: Pier, base: Ground) -> float:
@@ -49,7 +53,9 @@ def tilt_over_residual(gravity: float, height: float, half_width: float, omega_v
 def rocking_frequency(pier: Pier, base: Springs) -> float:
     """Return the circular frequency ω_r [rad/s] of rocking in full contact, on elastic springs (THEORY.md, eq. 12)."""
     mu, alpha = pier.mu, pier.alpha
-    stiffness = mu * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(alpha)
+    stiffness = mu * base.rocking_share * (math.sin(alpha) * base.beta * pier.p) ** 2 - (1 + mu) * pier.p**2 * math.cos(
+        alpha
+    )
     return math.sqrt(max(stiffness, 0.0) / (1 + mu * math.cos(alpha) ** 2))
 
 
@@ -60,7 +66,7 @@ def fastest(pier: Pier, base: Springs) -> float:
     d is ζ ω_v of the vertical one, and ζ ω_v μ sin²α/(1 + μ cos²α) of rocking (THEORY.md, Damped supports).
     """
     damping = (base.zeta or 0.0) * vertical_frequency(pier, base)
-    share = pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)
+    share = base.rocking_share * pier.mu * math.sin(pier.alpha) ** 2 / (1 + pier.mu * math.cos(pier.alpha) ** 2)
 
     def rate(omega: float, decay: float) -> float:
         return omega if decay <= omega else decay + math.sqrt(decay**2 - omega**2)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rockbatch.common.errors import Contradiction, MissingKey, OutOfRange, Problem
 from rockbatch.common.units import rounded_up
-from rockbatch.pier.bases import LEAST_ETA, Base, ElasticBase, RigidBase, YieldingBase
+from rockbatch.pier.bases import LEAST_ETA, Base, ElasticBase, FootingBase, RigidBase, YieldingBase
 from rockbatch.pier.bending import problems as bending_problems
 from rockbatch.pier.block import Pier
 from rockbatch.pier.places import places, prestress_over_weight
@@ -61,7 +61,11 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
             "for them and the beam, with width_m between the outer feet"
         )
         return [Problem("columns", None, text, kind=Contradiction)]
-    wrong = [] if isinstance(base, RigidBase) else _wrong_stiffness(pier, base)
+    wrong: list[Problem] = []
+    if isinstance(base, FootingBase):
+        wrong = _wrong_footing(pier, base)
+    elif isinstance(base, ElasticBase):
+        wrong = _wrong_stiffness(pier, base)
     wrong += wrong_restraints(pier, base.restraints)
     if base.bends:
         wrong += _wrong_bending(pier, base)
@@ -76,6 +80,25 @@ def problems(pier: Pier, base: Base) -> list[Problem]:
             f"above 1 + psi, {rounded_up(least):g}"
         )
         wrong.append(Problem("eta", base.eta, text, kind=OutOfRange))
+    return wrong
+
+
+def _wrong_footing(pier: Pier, base: FootingBase) -> list[Problem]:
+    least, psi = pier.least_beta / math.sqrt(base.rocking_share), prestress_over_weight(pier, base.restraints)
+    wrong = []
+    if not base.beta > least:
+        text = (
+            f"the bed is too soft to hold the pier upright, K_θ = ω_v² b²/3 must be above g h; beta must be above {least:.4g}, "
+            f"the bed {(least / base.beta) ** 2:.3g} times as stiff"
+        )
+        wrong.append(Problem("beta", base.beta, text, kind=OutOfRange))
+    if base.safety_factor is not None and not base.safety_factor > 1.0 + psi:
+        more = f" and the prestress of the tendons, psi = {psi:g} of it" if psi else ""
+        text = f"the bed cannot carry the weight{more}; it must be above {1.0 + psi:g}"
+        wrong.append(Problem("safety_factor", base.safety_factor, text, kind=OutOfRange))
+    if pier.initial_rotation_rad and base.restraints:
+        text = "a pier with devices is let go on springs or rigid ground only; leave one out"
+        wrong.append(Problem("initial_rotation_rad", pier.initial_rotation_rad, text, kind=Contradiction))
     return wrong
 
 

@@ -33,6 +33,8 @@ FIELDS = DAMPERS | {"tendon": ("psi", "lam"), "stop": ("gap_m", "lam", "restitut
 FIELDS["deck_spring"] = FIELDS["stop"]
 """Fields of devices with bounds, but for a tendon's yield force."""
 
+YIELDING_TENDON = "yielding tendon"
+
 MOST_STRENGTH = 10.0
 """Greatest yield force of a tendon over the weight."""
 
@@ -86,6 +88,10 @@ class Tendon(Device):
         """
         values = {"prestress_kN": prestress_kN, "stiffness_kN_m": stiffness_kN_m} | if_finite(yield_kN=yield_kN)
         return cls(**over_weight(pier, **values), **rest)._usual_under(pier)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        return (self.what, YIELDING_TENDON) if self.strength < math.inf else (self.what,)
 
     def _measured(self) -> Sequence[str]:
         return FIELDS[self.what]
@@ -293,6 +299,12 @@ def what_of(values: Mapping[str, Any]) -> str:
     if "side" in values:
         return "deck_spring"
     return "damper" if "kind" in values else "stop" if "gap_m" in values else "tendon"
+
+
+def kinds_of(values: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return :attr:`Device.kinds` of the device that has these fields in run.json."""
+    yields = values.get("strength") is not None and values["strength"] < math.inf
+    return (what_of(values), YIELDING_TENDON) if yields else (what_of(values),)
 
 
 def restraint_of(values: Mapping[str, Any]) -> Restraint:

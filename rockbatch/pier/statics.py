@@ -10,10 +10,11 @@ from rockbatch.common.arguments import checked
 from rockbatch.common.errors import refuse
 from rockbatch.common.lazy import pd
 from rockbatch.common.showing import Shown
-from rockbatch.pier.bases import Base, ElasticBase
+from rockbatch.pier.bases import Base
 from rockbatch.pier.block import Pier
 from rockbatch.pier.devices import unlikely_devices
 from rockbatch.pier.equilibrium import ONSET, Array, Equilibria, SlowTurn, without_dampers
+from rockbatch.pier.footings import slow_turn
 from rockbatch.pier.free_rocking import FreeRocking, Swings
 from rockbatch.pier.frequencies import vertical_frequency
 from rockbatch.pier.places import symmetric
@@ -141,7 +142,7 @@ class Statics(Shown):
     @property
     def restitution(self) -> float | None:
         """Return the factor e on the angular velocity at an impact on rigid ground; None on springs."""
-        if isinstance(self.base, ElasticBase):
+        if self.base.on_springs:
             return None
         return self.pier.restitution if self.base.restitution is None else self.base.restitution
 
@@ -181,7 +182,8 @@ class Statics(Shown):
 
         ``theta_rad``, ``theta_over_alpha``; ``acceleration_g`` that holds the pier there; ``moment_over_weight_m``, and in it
         the shares of weight with supports, of tendons, of stops with deck springs, and of dampers; ``toe_over_weight`` and
-        ``heel_over_weight``, the forces of the two supports; ``moment_kN_m`` if the mass is known.
+        ``heel_over_weight``, the forces of the two supports, or of a footing ``edge_pressure_over_rest`` and ``contact_share``;
+        ``moment_kN_m`` if the mass is known.
         """
         equilibria = self.equilibria
         columns = {
@@ -193,9 +195,11 @@ class Statics(Shown):
             "of_tendons_m": equilibria.tendons,
             "of_stops_m": equilibria.stops,
             "of_dampers_m": equilibria.dampers,
-            "toe_over_weight": equilibria.toe,
-            "heel_over_weight": equilibria.heel,
         }
+        of_supports = ("toe_over_weight", "heel_over_weight")
+        if not self.base.two_springs and self.base.on_springs:
+            of_supports = ("edge_pressure_over_rest", "contact_share")
+        columns |= zip(of_supports, (equilibria.toe, equilibria.heel), strict=True)
         if self.weight_kN is not None:
             columns["moment_kN_m"] = equilibria.moment * self.weight_kN
         return pd.DataFrame({name: np.round(values, 9) for name, values in columns.items()})
@@ -298,7 +302,7 @@ def statics(pier: Pier, foundation: Base) -> Statics:
     ----------
     pier : Pier
         Its ``mass_t`` gives kN, its ``flexural_period_s`` a comparison with the period of rocking.
-    foundation : RigidBase, ElasticBase or YieldingBase
+    foundation : RigidBase, ElasticBase, YieldingBase or FootingBase
         Its ``restraints`` are the devices, its ``area_m2`` gives bearing stresses.
 
     Returns
@@ -332,7 +336,7 @@ def sheet_of(pier: Pier, foundation: Base) -> Statics:
     sides = [_Side.of(pier, foundation, side) for side in ((1.0,) if even else (1.0, -1.0))]
     weaker, first = min(sides, key=lambda side: side.strength[0]), min(sides, key=lambda side: side.lift_off[0])
     balance = min(side.unstable for side in sides)
-    springs = foundation if isinstance(foundation, ElasticBase) else None
+    springs = foundation if foundation.on_springs else None
     stress = math.nan
     if foundation.area_m2 is not None and pier.mass_t is not None:
         stress = pier.mass_t * pier.gravity / foundation.area_m2 / 1000.0
@@ -370,8 +374,8 @@ class _Side(NamedTuple):
 
     @classmethod
     def of(cls, pier: Pier, base: Base, side: float) -> "_Side":
-        turn = SlowTurn(pier, base, side=side)
-        unstable = SlowTurn(pier, base, without_dampers(base.restraints), side).unstable
+        turn = slow_turn(pier, base, side=side)
+        unstable = slow_turn(pier, base, without_dampers(base.restraints), side).unstable
         curve = turn.curve(min(2.0 * pier.alpha, 0.5 * math.pi) if unstable is None else unstable)
         kinks = turn.kinks(curve)
         curve = turn.with_rotations(curve, kinks)

@@ -6,7 +6,7 @@ from typing import Any
 from rockbatch.pier.bases import ASKING_TENSION, IMPULSIVE
 from rockbatch.pier.block import share_of_shaft
 from rockbatch.pier.laws import RATCHETING
-from rockbatch.pier.restraints import what_of
+from rockbatch.pier.restraints import kinds_of
 
 Case = Mapping[str, Any]
 """``case``, ``columns``, ``pier``, ``base``, ``parameters``, and ``across_of`` of one across the axis of another."""
@@ -71,7 +71,7 @@ def asks_tension(case: Case) -> bool:
 
 def has_device(case: Case, device: str) -> bool:
     """Return True if the pier has a device of this kind."""
-    return any(what_of(restraint) == device for restraint in devices(case))
+    return any(device in kinds_of(restraint) for restraint in devices(case))
 
 
 def holds_a_tilt(case: Case) -> bool:

@@ -66,7 +66,7 @@ class Demand:
         Key of [output] that brings the columns it takes; those of "sections" are of sections.csv, at the height of the check.
     weighed : bool
         True if it takes the mass of the pier.
-    device : "", "damper", "tendon", "stop" or "deck_spring"
+    device : "", "damper", "tendon", "yielding tendon", "stop" or "deck_spring"
         Device that the pier has to have.
     reached : function or None
         Values that runs had reached when their motion ended, n of them, with errors: lower bounds for those that failed later.
@@ -80,7 +80,7 @@ class Demand:
     meaning: str
     evaluate: Evaluate
     unit: str = ""
-    bases: tuple[str, ...] = ("rigid", "elastic", "yielding")
+    bases: tuple[str, ...] = ("rigid", "elastic", "yielding", "footing")
     event: bool = False
     per_case: bool = False
     residual: bool = False

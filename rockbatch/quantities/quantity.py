@@ -10,23 +10,28 @@ from rockbatch.quantities.cases import ONE, Case, Lever
 from rockbatch.quantities.demands import Ceiling, Demand, Evaluate, largest, largest_force
 from rockbatch.quantities.statistics import Values
 
-ALL = ("rigid", "elastic", "yielding")
-SPRINGS = ("elastic", "yielding")
+ALL = ("rigid", "elastic", "yielding", "footing")
+SPRINGS = ("elastic", "yielding", "footing")
+TWO_SPRINGS = ("elastic", "yielding")
 YIELDING = ("yielding",)
 TILTS = (*SPRINGS, "held")
 """Bases on which a pier may rest at a tilt: springs, or any base if friction or hysteretic dampers hold it."""
+
+SETTLING = ("yielding", "footing")
+FOOTING = ("footing",)
 
 BENDING = ("bending",)
 """A rigid base under a shaft that bends."""
 
 BASES_IN_WORDS = {
-    ALL: "", SPRINGS: "springs", YIELDING: "yielding springs", TILTS: "springs, or dampers that hold the pier at a tilt",
-    BENDING: "a shaft that bends",
+    ALL: "", SPRINGS: "springs or a footing", YIELDING: "yielding springs",
+    TILTS: "springs, a footing, or dampers that hold the pier at a tilt", SETTLING: "yielding springs or a footing",
+    TWO_SPRINGS: "springs", FOOTING: "a footing", BENDING: "a shaft that bends",
 }  # fmt: skip
 
 ENDINGS = {
     "m": "m", "s": "s", "rad": "rad", "m/s": "m_s", "1/s": "per_s", "m/s^2": "m_s2", "m^2/s^2": "m2_s2", "J/kg": "J_kg",
-    "kN": "kN", "kJ": "kJ", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
+    "kN": "kN", "MPa": "MPa", "kJ": "kJ", "kN*s": "kN_s", "kN*m": "kNm", "standard_gravity": "g",
 }  # fmt: skip
 """Ends of names by their units, as pint reads these."""
 
@@ -128,7 +133,7 @@ class Quantity:
     needs : str
         Key of [output] that brings it; empty if none does.
     device : str
-        Kind of device that brings it; empty if none does.
+        Kind of device that brings it, one of :attr:`Device.kinds`; empty if none does.
     weighed : bool
         True if it takes the mass of the pier.
     requested : function or None
@@ -180,7 +185,7 @@ class Quantity:
         if self.needs and not getattr(study.output, self.needs):
             return False
         return not self.device or any(
-            device.what == self.device for case in study.cases for device in case.base.restraints
+            self.device in device.kinds for case in study.cases for device in case.base.restraints
         )
 
     def demands(self) -> list[Demand]:

@@ -7,15 +7,14 @@ from rockbatch.pier import (
     Base,
     Damper,
     DeckSpring,
-    ElasticBase,
     Pier,
     Restraint,
     RigidBase,
-    YieldingBase,
     fields_of,
     problems,
     restraint_of,
 )
+from rockbatch.pier.bases import BASES
 from rockbatch.pier.bases import USUAL as OF_BASE
 from rockbatch.pier.plausibility import wrong_restraints
 from rockbatch.pier.sizes import USUAL as OF_PIER
@@ -72,7 +71,7 @@ def restraints_of(case: Case) -> tuple[Restraint, ...]:
 
 def base_of(case: Case, pier: Pier) -> Base | None:
     """Return the base of a case with its devices; None for values that are impossible under ``pier``."""
-    kind: type[Base] = {kind.name: kind for kind in (RigidBase, ElasticBase, YieldingBase)}[case["base"]]
+    kind: type[Base] = BASES[case["base"]]
     values = case["parameters"]
     names = [field.name for field in fields(kind) if field.name not in ("restraints", "confirm")]
     try:

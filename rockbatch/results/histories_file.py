@@ -25,7 +25,7 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from functools import cached_property
 from pathlib import Path
 from shutil import disk_usage
@@ -40,16 +40,14 @@ from rockbatch.outcome.outcome import TERMS
 from rockbatch.outcome.response import EVENT_TYPES, FORCE_UNITS, IMPACT_UNITS, Response
 from rockbatch.pier import (
     Base,
-    ElasticBase,
     Part,
     Pier,
-    RigidBase,
-    YieldingBase,
     places,
     restraint_of,
     vertical_frequency,
 )
-from rockbatch.pier.bases import USUAL as BASES
+from rockbatch.pier.bases import BASES
+from rockbatch.pier.bases import USUAL as OF_BASES
 from rockbatch.pier.sizes import USUAL as PIERS
 from rockbatch.quantities.demands import FORCES
 from rockbatch.results.columns import StudyRun
@@ -88,12 +86,16 @@ UNITS = {
 """Units of the columns of a history, in order."""
 
 OF_SPRINGS = ("v", "z_left", "z_right", "v_left", "v_right", "force_left", "force_right")
-"""Columns of a history of piers on springs only."""
+"""Columns of a history of piers on springs or a footing only."""
+
+OF_TWO_SPRINGS = ("z_left", "z_right")
+"""Those of :data:`OF_SPRINGS` that piers on a footing lack."""
 
 
 def columns_of(base: Base | type[Base], bends: bool) -> list[str]:
     """Return the columns of a history that apply to a pier on ``base`` whose shaft ``bends`` or not."""
-    return [name for name in UNITS if (base.on_springs or name not in OF_SPRINGS) and (bends or name != "deflection")]
+    lacking = () if base.two_springs else OF_TWO_SPRINGS if base.on_springs else OF_SPRINGS
+    return [name for name in UNITS if name not in lacking and (bends or name != "deflection")]
 
 
 LEDGER = "energy_input_J_kg"
@@ -112,7 +114,6 @@ _BESIDE = {"restraints": (), "ledger": TERMS, "forces": tuple(FORCE_UNITS)}
 
 _ALL_UNITS = UNITS | FORCE_UNITS | IMPACT_UNITS | dict.fromkeys(TERMS, "J/kg")
 _OF_RUN = ("record", "case", "polarity", "scale", "status")
-_BASES = {base.name: base for base in (RigidBase, ElasticBase, YieldingBase)}
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError, OverflowError)
 """Exceptions raised while reading a damaged file."""
 
@@ -295,7 +296,7 @@ class Responses(Sequence[Response]):
 def _read(group: "h5py.Group") -> Response:
     """Read a response from its group; raise ``ValueError`` for inconsistent data."""
     base = attributes_of(group_in(group, "base"))
-    kind = _BASES[base.pop("name")]
+    kind = BASES[base.pop("name")]
     if "restraints" in base:
         base["restraints"] = tuple(map(restraint_of, json.loads(base["restraints"])))
     pier = attributes_of(group_in(group, "pier"))
@@ -310,6 +311,8 @@ def _read(group: "h5py.Group") -> Response:
     places = events[["before", "after"]].to_numpy()
     if ((places < 0) | (places >= len(t))).any():
         raise ValueError("an event is beyond the end of the history")
+    # As rigid ground was before it could be chosen
+    before = {"flight": "stop"} if "flight" in {field.name for field in fields(kind)} else {}
     tables: dict[str, Any] = {}
     for name, columns in _BESIDE.items():
         if name in group:
@@ -324,7 +327,7 @@ def _read(group: "h5py.Group") -> Response:
         **_run(group),
         columns=attributes_of(group_in(group, "varied")),
         pier=Pier(**pier, confirm=tuple(PIERS)),
-        base=kind(**{"flight": "stop"} | base, confirm=tuple(BASES)),  # as rigid ground was before it could be chosen
+        base=kind(**before | base, confirm=tuple(OF_BASES)),
         history=history.reindex(columns=[name for name in UNITS if bends or name != "deflection"]),
         events=events.astype(EVENT_TYPES),
         **tables,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, measures
-from rockbatch.motions.pairs import station_spectra, unpaired
+from rockbatch.motions.pairs import pairing_obstacle, station_spectra
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.results import beside_peaks
 from rockbatch.results.labelled import Row
@@ -44,7 +44,7 @@ def intensities(peaks: "pd.DataFrame", study: Study, motions: Sequence[Motion]) 
     @cache
     def of_pair(station: str) -> dict[str, Array]:
         """Return spectral accelerations [m/s²] of a station's pair by the study's rules; NaN without a pair."""
-        if unpaired(stations[station]):
+        if pairing_obstacle(stations[station]):
             return dict.fromkeys(rules, np.full(len(periods), math.nan))
         return station_spectra(stations[station], periods, 0.05)
 

@@ -18,7 +18,7 @@ from rockbatch.motions.motion import Motion, Unusable
 from rockbatch.motions.scaling import verticals
 from rockbatch.motions.spectrum_target import PAIRS, SpectrumTarget
 from rockbatch.pier import Base, Damper, DeckSpring, Pier, Stop, Tendon, described
-from rockbatch.pier.bases import BOUNDS, WORDS
+from rockbatch.pier.bases import BASES, BOUNDS, WORDS
 from rockbatch.pier.free_rocking import FreeRocking
 from rockbatch.pier.statics import COMPARED
 from rockbatch.results.columns import PEAKS, units
@@ -95,7 +95,7 @@ SHAPE = {
             "columns": _VALUES,
             "pier": dict.fromkeys(("alpha", "p", "mu", "gravity", "size_m", "half_width_m", "height_m"), float)
             | dict.fromkeys(_OPTIONAL_OF_PIER, Maybe(_NUMBER)),
-            "base": ("rigid", "elastic", "yielding"),
+            "base": tuple(BASES),
             "parameters": {name: Maybe(_NUMBER) for name in _NUMBERS_OF_BASE}
             | {name: Maybe((str, None)) for name in WORDS}
             | {"restraints": Maybe([_RESTRAINT])},
@@ -163,7 +163,7 @@ def describe(study: Study, motions: MotionSet) -> Row:
         "without_vertical": motions.without_vertical,
         "records": [entry(motion, labels[motion.name], gravity, with_pulse=with_pulses) for motion in motions.motions],
         "spectra": spectra(motions.motions, fitted, gravity, target),
-        **({} if target is None else {"target": target.described(fitted, gravity) | _rocking(study, target)}),
+        **({} if target is None else {"target": target.run_json_entry(fitted, gravity) | _rocking(study, target)}),
         **_vertical_target(study, motions, gravity),
         "unusable": [_not_used(file) for file in motions.unusable],
         "left_out": [asdict(file) for file in motions.left_out],
@@ -223,7 +223,7 @@ def _vertical_target(study: Study, motions: MotionSet, gravity: float) -> Row:
     target = study.motions.vertical_target
     if not isinstance(target, SpectrumTarget):
         return {}
-    return {"vertical_target": target.described(verticals(motions.motions), gravity)}
+    return {"vertical_target": target.run_json_entry(verticals(motions.motions), gravity)}
 
 
 def describe_case(case: Case) -> Row:

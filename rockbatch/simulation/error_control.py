@@ -6,8 +6,9 @@ from rockbatch.core.clock import ON_ITS_SIDE, window_of
 from rockbatch.motions.motion import Motion
 from rockbatch.outcome.changes import change_of_devices
 from rockbatch.outcome.outcome import Failure, Outcome
-from rockbatch.pier import Base, Damper, Pier
+from rockbatch.pier import Base, Damper, FootingBase, Pier
 from rockbatch.simulation.agreement import COUNTS, Agreement, agreement, flight_of, settled, windows
+from rockbatch.simulation.beds import with_fewer_strips, with_strips_error
 from rockbatch.simulation.chaos import MARGIN, look_for_chaos, magnifies, residuals_wander, without_error
 from rockbatch.simulation.models import first_substeps, readings
 from rockbatch.simulation.runs import MOST_STEPS, Run, Stop, Trial, quiet_samples, steps_of, try_all
@@ -88,7 +89,24 @@ def run_all_to_tolerance(runs: Sequence[Run], tolerance: float, quiet_s: float, 
             elif len(agreements[i]) == HALVINGS:
                 outcomes[i] = _not_converged(pier, levels.pop(i), tolerance, "")
         look_for_chaos(runs, outcomes, doubtful, tolerance, quiet_s, stop)
-    return outcomes
+    return _with_strips_error(runs, outcomes, quiet_s, stop)
+
+
+def _with_strips_error(
+    runs: Sequence[Run], outcomes: Sequence[Outcome | None], quiet_s: float, stop: Stop
+) -> list[Outcome | None]:
+    """Return ``outcomes`` with the share of the strips in the errors of those on a footing, by a run on half as many."""
+    found = list(outcomes)
+    fewer = [
+        (i, Run(run.pier, with_fewer_strips(run.base), run.motion), outcome.substeps)
+        for i, (run, outcome) in enumerate(zip(runs, outcomes, strict=True))
+        if isinstance(run.base, FootingBase) and outcome is not None and outcome.status == "ok"
+    ]
+    trials = try_all([run for _, run, _ in fewer], [steps for *_, steps in fewer], quiet_s, stop) if fewer else []
+    for (i, *_), trial in zip(fewer, trials, strict=True):
+        outcome = found[i]
+        found[i] = with_strips_error(outcome, trial.outcome) if trial is not None and outcome is not None else None
+    return found
 
 
 def _window_at(run: Run, t: float, quiet_s: float) -> int:

@@ -13,7 +13,7 @@ from rockbatch.core.devices.laws import FRICTION
 from rockbatch.core.observe.forces import FORCES, Body, Forces, Hold, Outline
 from rockbatch.core.observe.peaks import NEVER, NOTED, Extremes, Limits, Noted, RecordedRun, forces_of_run
 from rockbatch.motions.motion import Samples
-from rockbatch.outcome.changes import Sized, greatest_change
+from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import PeakForces
 from rockbatch.outcome.response import FORCE_UNITS, IMPACT_UNITS
 from rockbatch.pier import Pier, RigidBase, YieldingBase, landing_force, shape_at
@@ -250,11 +250,11 @@ _SIZED = {
 """Fields of PeakForces that have an error, those of both pivots together, and the scale of each."""
 
 
-def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier) -> tuple[PeakForces, str]:
-    """Return ``fine`` with its error, the greatest share of itself by which a quantity differs from that of twice the step.
+def with_error(fine: PeakForces, coarse: PeakForces, pier: Pier, chance: float) -> tuple[PeakForces, str]:
+    """Return ``fine`` with its error: ``chance`` times the greatest change of a quantity from that of twice the step.
 
     The second value is a note on what has not converged; empty if all has.
     """
     worst, most = greatest_change(_SIZED, fine, coarse, pier)
     note = f"forces not settled: halving the step still changed the {worst} by {most:.1%}" if most > LARGE_ERROR else ""
-    return replace(fine, error=most), note
+    return replace(fine, error=chance * max(most, LEAST)), note

@@ -8,15 +8,18 @@ import numpy as np
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.observe.beds import BED_STATE, follow_bed
+from rockbatch.core.observe.ledger import LEDGER
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.half_cycles import HalfCycles, Path, half_cycles
 from rockbatch.outcome.response import EVENT_TYPES, Response
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.forces import LANDINGS
-from rockbatch.simulation.models import acceleration_at, block, flexible_block, springs
+from rockbatch.simulation.models import acceleration_at, block, flexible_block, ground_of, model, springs
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
+from rockbatch.simulation.runs import Run
 
 _EVENTS = {
     types.SEPARATION_LEFT: ("separation", "left"),
@@ -59,7 +62,11 @@ def histories(
     pier, base, motion = run.pier, run.base, run.motion
     added: dict[str, Any] = dict(item for observer in observers for item in observer.histories(recording).items())
     devices = restraints.loops(pier, base, rows) if base.restraints else None
-    state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
+    if isinstance(base, FootingBase):
+        of_bed = _footing_state(run, recording.rows)[recording.shown]
+        state = {name: of_bed[name].copy() for name in of_bed.dtype.names or ()}
+    else:
+        state = _springs_state(pier, base, rows) if base.on_springs else _rigid_state(pier, base, rows)
     t = rows.t.copy()
     vertical = np.zeros(len(t)) if motion.vertical is None else acceleration_at(motion.vertical, motion.dt, t)
     horizontal = acceleration_at(motion.horizontal, motion.dt, t)
@@ -127,6 +134,30 @@ def _energy_of_bending(m: FlexibleBlock, rows: np.recarray, key: Samples) -> Sam
     )
     kinetic += rise * (slope * rows.omega - m.first * sine * rows.u_rate)
     return kinetic + m.gravity * (rows.v - m.first * u * sine) + 0.5 * m.second * (m.frequency * u) ** 2
+
+
+def _footing_state(run: Run, rows: np.recarray) -> np.recarray:
+    """Return state, edges of the foot, forces at them that are equal to the push, and stored energy, at every step."""
+    pier, base, nothing = run.pier, run.base, np.full(len(rows), np.nan)
+    plain, pulls = restraints.apart(base, rows)
+    bed = np.recarray(len(rows), BED_STATE)
+    balance = np.zeros(len(rows), LEDGER).view(np.recarray)
+    follow_bed(model(pier, base), plain, pulls, ground_of(run.motion), float(run.motion.dt), balance, bed)
+    finite = base.kinematics == "finite"
+    rise = pier.half_width * (np.sin(rows.theta) if finite else rows.theta)
+    middle = rows.v + (pier.height * (1.0 - np.cos(rows.theta)) if finite else 0.0)
+    energy, of_edges = bed.stored, bed.moment / pier.half_width
+    if base.restraints:
+        energy = energy + restraints.stored(pier, base, rows)
+    columns = {
+        "theta": rows.theta, "omega": rows.omega, "v": rows.v, "z_left": nothing, "z_right": nothing, "v_left": middle + rise,
+        "v_right": middle - rise, "force_left": -0.5 * (bed.force - of_edges), "force_right": -0.5 * (bed.force + of_edges),
+        "energy": energy,
+    }  # fmt: skip
+    state = np.recarray(len(rows), np.dtype([(name, "f8") for name in columns]))
+    for name, values in columns.items():
+        state[name] = values
+    return state
 
 
 def _springs_state(pier: Pier, base: ElasticBase, rows: np.recarray) -> dict[str, Samples]:

@@ -163,6 +163,6 @@ def _apart(
     parts = {}
     for j, recording in recorded_side_by_side(chosen, their, quiet_s, wait, stop):
         base = chosen[j].base
-        assert base.on_springs
+        assert isinstance(base, ElasticBase)
         parts[numbers[j]] = apart(chosen[j].pier, base, recording.rows)
     return parts

@@ -11,6 +11,8 @@ from rockbatch.core.block.model import Block
 from rockbatch.core.devices.laws import CONTACT, DAMPERS, HYSTERETIC, MAXWELL, SPRING, TENDON, VISCOUS, Element
 from rockbatch.core.flexure import lanes as flexible_lanes
 from rockbatch.core.flexure.model import FlexibleBlock
+from rockbatch.core.footing import lanes as footing_lanes
+from rockbatch.core.footing.model import BEDS, Footing
 from rockbatch.core.ground import ground_rows
 from rockbatch.core.powers import LARGEST_WHOLE
 from rockbatch.core.springs import lanes as spring_lanes
@@ -24,6 +26,7 @@ from rockbatch.pier import (
     Damper,
     DeckSpring,
     ElasticBase,
+    FootingBase,
     Mode,
     Pier,
     Place,
@@ -202,19 +205,48 @@ def _tipping(m: Block, mode: Mode, frequency: float) -> float:
     return low
 
 
-def model(pier: Pier, base: Base) -> Block | FlexibleBlock | Springs:
+def footing(pier: Pier, base: FootingBase) -> Footing:
+    """Return the core's numbers for ``pier`` on a footing, on a bed of its own that is not laid yet."""
+    omega_v = vertical_frequency(pier, base)
+    return Footing(
+        half_width=float(pier.half_width),
+        height=float(pier.height),
+        inertia=float(pier.inertia),
+        gravity=float(pier.gravity),
+        stiffness=float(omega_v**2),
+        strength=math.inf if base.safety_factor is None else float(base.safety_factor * pier.gravity),
+        damping=float(2.0 * base.zeta * omega_v),
+        strips=float(base.strips),
+        gap=0.0,
+        guided=1.0,
+        rest=float(ROUNDING * pier.gravity / omega_v),
+        finite=True if base.kinematics == "finite" else None,
+        shifting=None,
+        bed=np.zeros(BEDS),
+    )
+
+
+Model = Block | FlexibleBlock | Springs | Footing
+"""Numbers of a pier as the core takes them."""
+
+
+def model(pier: Pier, base: Base) -> Model:
     """Return the core's numbers for ``pier`` on ``base``."""
+    if isinstance(base, FootingBase):
+        return footing(pier, base)
     if base.on_springs:
         return springs(pier, base)
     return flexible_block(pier, base) if base.bends else block(pier, base)
 
 
-def system_of(m: Block | FlexibleBlock | Springs) -> System:
+def system_of(m: Model) -> System:
     """Return the system of a pier, whose runs share compiled code; systems are compared by value."""
     if isinstance(m, Block):
         return block_lanes.system_of(m)
     if isinstance(m, FlexibleBlock):
         return flexible_lanes.system_of(m)
+    if isinstance(m, Footing):
+        return footing_lanes.system_of(m)
     system = spring_lanes.system_of(m)
     if m.exponent is None:
         return system
@@ -223,7 +255,7 @@ def system_of(m: Block | FlexibleBlock | Springs) -> System:
 
 
 def line_of(
-    m: Block | FlexibleBlock | Springs,
+    m: Model,
     timing: tuple[float, ...],
     readings: tuple[float, ...],
     prestress: float,
@@ -234,6 +266,8 @@ def line_of(
         return block_lanes.line_of(m, start.theta, 0.0, *timing)
     if isinstance(m, FlexibleBlock):
         return flexible_lanes.line_of(m, start.theta, hanging(m, start.theta), *timing)
+    if isinstance(m, Footing):
+        return footing_lanes.line_of(m, prestress, start.theta, *timing)
     return spring_lanes.line_of(m, *timing, *readings, prestress, start.v, start.theta, start.z_left, start.z_right)
 
 

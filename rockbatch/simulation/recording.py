@@ -34,9 +34,14 @@ class Recording(NamedTuple):
     @property
     def at_samples(self) -> "Recording":
         """The same without the steps between samples and events: to the bit what is recorded without them."""
-        shown = self.rows.kind != types.STEP
+        return self._replace(rows=self.rows[self.shown].view(np.recarray))
+
+    @property
+    def shown(self) -> np.ndarray:
+        """Which rows are those."""
+        shown: np.ndarray = self.rows.kind != types.STEP
         shown[-1:] = True  # an overturned pier may fall between samples
-        return self._replace(rows=self.rows[shown].view(np.recarray))
+        return shown
 
     def until(self, t: float) -> "Recording":
         """Return the rows until a time [s]."""

@@ -17,6 +17,7 @@ from rockbatch.core.devices.laws import (
     STICKS,
     TENDON,
     Element,
+    own_speed,
     stop_force,
 )
 from rockbatch.core.devices.laws import stored as stored_in
@@ -28,8 +29,8 @@ from rockbatch.core.types import Result
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.device_work import Courses, greatest_of, work_of
 from rockbatch.outcome.outcome import DeviceWork
-from rockbatch.pier import Base, ElasticBase, Pier, RigidBase, places
-from rockbatch.simulation.models import elements, model, prestress, springs
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier, RigidBase, places
+from rockbatch.simulation.models import elements, footing, model, prestress, springs
 from rockbatch.simulation.starting import start_of
 
 AT_REST = 1e-9
@@ -67,7 +68,8 @@ def recorded(pier: Pier, base: Base, rows: np.recarray) -> RecordedDevices:
 
 @entry
 def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: ignore[no-untyped-def]
-    """Write elongation [m], its rate, force [N/kg] and stored energy [J/kg] of each device at each row, shape (rows, devices).
+    """Write elongation [m], speed without a brace, force [N/kg] and stored energy [J/kg] of each device at each row, shape
+    (rows, devices).
 
     A force is positive in tension; that of friction is 0 below the speed ``moves`` [m/s].
     """
@@ -79,7 +81,7 @@ def _follow(m, devices, rows, moves, elongation, speed, pull, energy):  # type: 
             gap = gap_of(m, law, pose, y)
             direction = math.copysign(1.0, gap.speed) if abs(gap.speed) > moves else STICKS
             pull[i, j] = recorded_force(law, gap, state, direction)
-            elongation[i, j], speed[i, j] = gap.elongation, gap.speed
+            elongation[i, j], speed[i, j] = gap.elongation, own_speed(law, gap.speed, state)
             energy[i, j] = stored_in(law, gap.elongation, state)
 
 
@@ -110,15 +112,6 @@ def loops(pier: Pier, base: Base, rows: np.recarray) -> "pd.DataFrame":
     return pd.DataFrame(table)
 
 
-def deck_pulls(pier: Pier, base: Base, rows: np.recarray) -> list[tuple[float, Samples]]:
-    """Return the height [m] and the force to the left on the deck [m/s²], at every row, of each device there."""
-    laws = elements(pier, base)
-    if all(law.height == 0.0 for law in laws):
-        return []
-    pull = _followed(pier, base, rows).pull
-    return [(law.height, law.way * pull[:, j]) for j, law in enumerate(laws) if law.height != 0.0]
-
-
 def device_work(pier: Pier, base: Base, rows: np.recarray, least_stroke: float) -> DeviceWork:
     """Return the work of the devices of a run whose ``rows`` are every step; half cycles from ``least_stroke`` [m] up."""
     found = _followed(pier, base, rows)
@@ -145,19 +138,28 @@ def with_devices(pier: Pier, base: Base, rows: np.recarray, terms: Samples) -> S
     return terms
 
 
-def rests_at(pier: Pier, base: ElasticBase, result: Result, level: float, states: Samples, sticks: np.ndarray) -> float:
+def rests_at(
+    pier: Pier, base: ElasticBase | FootingBase, result: Result, level: float, states: Samples, sticks: np.ndarray
+) -> float:
     """Return the rotation [rad] at which the pier comes to rest on its supports after a run with this ``result``.
 
     Static, small, both pivots on their springs; devices give way elastically from their state at its end, and a friction
     damper that does not move stays where it is. ``level`` is v of the pier at rest at the start [m]; ``states`` and ``sticks``,
     shape (devices,), are the state of each device at the end, and whether it is a friction damper that does not move then.
     """
-    m, v, theta = springs(pier, base), result.v_end, result.theta_end
-    k, b, h = m.yield_force * m.stiffness, m.half_width, m.height
-    unstressed = level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
-    stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - m.gravity * h]])
-    left, right = result.base_left, result.base_right
-    load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
+    v, theta = result.v_end, result.theta_end
+    if isinstance(base, FootingBase):
+        bed = footing(pier, base)
+        k, rocking = 0.5 * bed.stiffness, bed.stiffness * base.rocking_share * bed.half_width**2
+        stiffness = np.array([[2.0 * k, 0.0], [0.0, rocking - bed.gravity * bed.height]])
+        load = np.array([-2.0 * k * result.settled - bed.gravity, rocking * result.bed_tilt])
+    else:
+        m = springs(pier, base)
+        k, b, h = m.yield_force * m.stiffness, m.half_width, m.height
+        unstressed = level + 0.5 * (m.gravity + prestress(pier, base)) / k  # at the start
+        stiffness = np.array([[2.0 * k, 0.0], [0.0, 2.0 * k * b * b - m.gravity * h]])
+        left, right = result.base_left, result.base_right
+        load = np.array([k * (2.0 * unstressed + left + right) - m.gravity, k * b * (left - right)])
     for law, state, holding in zip(elements(pier, base), states, sticks, strict=True):
         u, soft = v - level - law.offset * theta, np.array([1.0, -law.offset])
         if law.height != 0.0:

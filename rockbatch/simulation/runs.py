@@ -21,6 +21,7 @@ from rockbatch.pier import (
     MOST_NEGLECTED,
     Base,
     ElasticBase,
+    FootingBase,
     Pier,
     neglected,
     places,
@@ -29,6 +30,7 @@ from rockbatch.pier import (
     yield_deflection,
 )
 from rockbatch.pier.laws import steady
+from rockbatch.simulation.beds import of_bed
 from rockbatch.simulation.compilation import kernel_of
 from rockbatch.simulation.models import (
     Line,
@@ -338,7 +340,9 @@ def _outcome(run: Run, substeps: int, result: Result) -> Outcome:
     failure = _FAILURES.get(result.status)
     status, reason = _STATUS.get(result.status, "failed"), "" if failure is None else _REASONS[failure]
     more: dict[str, Any] = {}
-    if base.on_springs:
+    if isinstance(base, FootingBase):
+        more = of_bed(pier, base, result, survived=status == "ok")
+    elif base.on_springs:
         more = _of_springs(pier, base, result, survived=status == "ok")
     elif base.bends:
         more = {"deflection_max": result.deflection_max, "top_drift_max": result.drift_max}

@@ -7,8 +7,17 @@ import numpy as np
 import numpy.typing as npt
 
 from rockbatch.core.kernel import entry
-from rockbatch.core.observe.peaks import Place, RecordedRun, under_devices_within
-from rockbatch.core.observe.rows import contact_of, ground_at, ground_within, state_of, step_between, within
+from rockbatch.core.observe.peaks import Place, RecordedRun, push_deck, push_deck_within, under_devices_within
+from rockbatch.core.observe.rows import (
+    begin_at,
+    contact_of,
+    ground_at,
+    ground_within,
+    remember,
+    state_of,
+    step_between,
+    within,
+)
 from rockbatch.core.system import rates
 from rockbatch.core.table import record, with_pull
 from rockbatch.core.types import LIFT_OFF, TAKE_OFF, Pull
@@ -17,8 +26,8 @@ from rockbatch.outcome.changes import LEAST, Sized, greatest_change
 from rockbatch.outcome.outcome import Section
 from rockbatch.pier import Pier
 from rockbatch.pier.sections import above
-from rockbatch.simulation.models import ground_of, model
-from rockbatch.simulation.restraints import apart, deck_pulls
+from rockbatch.simulation.models import elements, ground_of, model
+from rockbatch.simulation.restraints import apart
 from rockbatch.simulation.restraints import recorded as recorded_devices
 from rockbatch.simulation.runs import Run
 
@@ -47,7 +56,7 @@ class Recorded(NamedTuple):
     run: Run
     rows: np.recarray  # of its history, shape (n,)
     plain: RecordedRun
-    on_deck: list[tuple[float, Samples]]  # height [m] of each device there, and its push to the left at the rows [m/s²]
+    heights: Samples  # of devices on the deck [m]; 0 of those at the base
 
 
 class InBody(NamedTuple):
@@ -59,7 +68,7 @@ class InBody(NamedTuple):
     squared: Samples  # θ̇² [rad²/s²]
     sine: Samples
     cosine: Samples
-    on_deck: list[tuple[float, Samples]]  # as of Recorded
+    on_deck: list[tuple[float, Samples]]  # height [m] of each device there, and its push to the left [m/s²]
 
 
 class InSection(NamedTuple):
@@ -71,11 +80,23 @@ class InSection(NamedTuple):
 
 
 @entry
-def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
-    """Write the Motion at each share of the step to the row of this number; at share 1 that of the row itself."""
+def _follow(m, run, numbers, shares, out, pushes):  # type: ignore[no-untyped-def]
+    """Write the Motion at each share of the step to the row of this number, and the pushes on the deck, shape (moments, devices).
+
+    At share 1 they are those of the row itself.
+    """
     rows, pulls, devices, ground, dt = run
+    walked = 0
+    begin_at(m, state_of(m, rows[0]))
     for j in range(len(numbers)):
         i, s = numbers[j], shares[j]
+        if i - 1 < walked:
+            begin_at(m, state_of(m, rows[0]))
+            walked = 0
+        while walked < i - 1:
+            length = rows[walked + 1].t - rows[walked].t
+            remember(m, state_of(m, rows[walked]), state_of(m, rows[walked + 1]), length)
+            walked += 1
         pull, line = Pull(pulls[i, 0], pulls[i, 1]), out[j]
         under = with_pull(m, pull)
         t = rows[i].t
@@ -85,7 +106,11 @@ def _follow(m, run, numbers, shares, out):  # type: ignore[no-untyped-def]
             before = Pull(pulls[i - 1, 0], pulls[i - 1, 1])
             step = step_between(with_pull(m, before), under, rows[i - 1], rows[i], ground, dt)
             y, shaking = within(m, step, s), ground_within(step, s)
-            under = under_devices_within(devices, m, pulls, Place(i, step, s), y)
+            place = Place(i, step, s)
+            under = under_devices_within(devices, m, pulls, place, y)
+            push_deck_within(devices, m, place, y, pushes[j])
+        else:
+            push_deck(devices, m, i, y, contact, pushes[j])
         k = rates(under, y, contact, shaking)
         line.theta, line.omega, line.v_acceleration, line.turning = y.theta, y.omega, k.v_rate, k.omega
         line.side, line.horizontal, line.vertical = contact.right - contact.left, shaking.horizontal, shaking.vertical
@@ -96,19 +121,21 @@ def recorded(run: Run, rows: np.recarray) -> Recorded:
     plain, pulls = apart(run.base, rows)
     devices = recorded_devices(run.pier, run.base, rows) if run.base.restraints else None
     whole = RecordedRun(plain, pulls, devices, ground_of(run.motion), float(run.motion.dt))
-    return Recorded(run, rows, whole, deck_pulls(run.pier, run.base, rows))
+    return Recorded(run, rows, whole, np.array([law.height for law in elements(run.pier, run.base)]))
 
 
 def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
-    """Return the accelerations at each of ``shares`` of the step to the row of this number.
-
-    Within a step devices pull by their laws; what those on the deck push in the pier's part above is linear there.
-    """
+    """Return the accelerations at each of ``shares`` of the step to the row of this number, within which devices pull by their
+    laws."""
     pier, base = of.run.pier, of.run.base
-    motion = np.recarray(len(numbers), MOTION)
-    _follow(model(pier, base), of.plain, numbers, shares, motion)
+    motion, pushes = np.recarray(len(numbers), MOTION), np.zeros((len(numbers), len(of.heights)))
+    _follow(model(pier, base), of.plain, numbers, shares, motion, pushes)
     # In flight the shear key of a block holds the pivot that bore last
-    side = motion.side if base.on_springs else np.where(motion.side != 0.0, motion.side, of.rows.bore[numbers])
+    side = (
+        motion.side * base.two_springs
+        if base.on_springs
+        else np.where(motion.side != 0.0, motion.side, of.rows.bore[numbers])
+    )
     sine, cosine, squared = np.sin(motion.theta), np.cos(motion.theta), motion.omega**2
     b, h = side * pier.half_width, pier.height
     sideways = (h * cosine + b * sine) * motion.turning + (b * cosine - h * sine) * squared
@@ -116,9 +143,7 @@ def in_body(of: Recorded, numbers: Places, shares: Samples) -> InBody:
         sine, cosine, sideways = motion.theta, np.ones(len(numbers)), h * motion.turning
     horizontal, vertical = motion.horizontal + sideways, pier.gravity + motion.vertical + motion.v_acceleration
     across, along = horizontal * cosine - vertical * sine, vertical * cosine + horizontal * sine
-    on_deck = [
-        (height, push[numbers - 1] + shares * (push[numbers] - push[numbers - 1])) for height, push in of.on_deck
-    ]
+    on_deck = [(float(height), push) for height, push in zip(of.heights, pushes.T, strict=True) if height != 0.0]
     return InBody(across, along, motion.turning, squared, sine, cosine, on_deck)
 
 

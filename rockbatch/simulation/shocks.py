@@ -8,6 +8,7 @@ import numpy as np
 
 from rockbatch.motions.motion import Motion, Samples
 from rockbatch.outcome.outcome import Outcome, ShockOutcome
+from rockbatch.pier import ElasticBase
 from rockbatch.simulation.leaning import greatest_swing, lean_of, unstressed
 from rockbatch.simulation.runs import Run
 
@@ -86,7 +87,7 @@ def _base(run: Run, rows: np.recarray) -> tuple[Samples | None, Samples | None]:
     """Return the rotation at which the pier would rest [rad], and the mean settlement of its supports [m], at every row; ``None``
     where dampers or tendons have a say in it, or on a rigid base."""
     pier, base = run.pier, run.base
-    if not base.on_springs:
+    if not isinstance(base, ElasticBase):  # a history does not hold the set of a bed
         return None, None
     if not base.yields:
         return np.zeros(len(rows)) if not base.has_residual else None, np.zeros(len(rows))

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from rockbatch.core.devices.laws import CONTACT, FRICTION, HYSTERETIC, SPRING, TENDON, Element
-from rockbatch.pier import Base, ElasticBase, Pier
+from rockbatch.pier import Base, ElasticBase, FootingBase, Pier
 from rockbatch.pier.first_loading import steel
 from rockbatch.simulation.models import Start, elements, prestress, springs
 
@@ -24,6 +24,8 @@ def start_of(pier: Pier, base: Base) -> Start:
     theta = pier.initial_rotation_rad
     if theta == 0.0:
         return _STANDING
+    if isinstance(base, FootingBase):
+        return Start(theta=theta)  # the core finds its level
     if base.on_springs:
         return _on_springs(pier, base)
     states = []

@@ -12,6 +12,7 @@ from rockbatch.pier import (
     WITH_EXPONENT,
     Base,
     ElasticBase,
+    FootingBase,
     Pier,
     RigidBase,
     YieldingBase,
@@ -20,13 +21,14 @@ from rockbatch.pier import (
     least_beta,
     problems,
 )
-from rockbatch.pier.bases import BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
+from rockbatch.pier.bases import BASES, BETA, BOUNDS, EPSILON_AND_ZETA, USUAL, WORDS, wrong_blow
 from rockbatch.pier.block import unlikely_mass
 from rockbatch.pier.laws import meanings
 from rockbatch.pier.plausibility import wrong_device
 from rockbatch.pier.possible import enough_eta
 from rockbatch.pier.sizes import BOUNDS as OF_PIER
 from rockbatch.pier.supports import SUPPORTS
+from rockbatch.study.footing_keys import FOOTING_KEYS, at_pivots, footing_of, on_foot
 from rockbatch.study.lists import Chosen, Grid, complain_where_due, too_many
 from rockbatch.study.piers import PIER, Values, has_mass
 from rockbatch.study.restraint_keys import RESTRAINTS, Device, read_devices
@@ -36,11 +38,11 @@ from rockbatch.toml.meant import names
 from rockbatch.toml.reader import Table, TomlFile, in_table
 from rockbatch.toml.section import CONFIRM, Clash, Key, Section
 
-_BASES: dict[str, type[Base]] = {"rigid": RigidBase, "elastic": ElasticBase, "yielding": YieldingBase}
 _CALLED = {
     "base": names({
         "rigid": "fixed rigidbase rigidground housner rock", "elastic": "spring springs winkler flexible linear compliant",
         "yielding": "inelastic nonlinear plastic elastoplastic elasticplastic epp boucwen bilinear",
+        "footing": "bed soil strip foot spreadfooting shallowfoundation",
     }),
     "spring": names({
         "epp": "bilinear elastoplastic elasticplastic elasticperfectlyplastic perfectlyplastic", "bouc-wen": "smooth",
@@ -51,9 +53,11 @@ _CALLED = {
         "finite": "large largerotations nonlinear exact full",
     }),
 }  # fmt: skip
-_ON_SPRINGS = {"base": tuple(name for name, base in _BASES.items() if base.on_springs)}
-_ON_ROCK = {"base": tuple(name for name, base in _BASES.items() if not base.on_springs)}
-_YIELDS = {"base": tuple(name for name, base in _BASES.items() if base.yields)}
+_ON_SPRINGS = {"base": tuple(name for name, base in BASES.items() if base.two_springs)}
+_ON_GROUND_THAT_GIVES = {"base": tuple(name for name, base in BASES.items() if base.on_springs)}
+_NOT_ON_A_BED = {"base": (*_ON_SPRINGS["base"], "rigid")}
+_ON_ROCK = {"base": tuple(name for name, base in BASES.items() if not base.on_springs)}
+_YIELDS = {"base": tuple(name for name, base in BASES.items() if base.two_springs and base.yields)}
 
 
 def _blow(value: Any) -> str:
@@ -68,12 +72,12 @@ BASE_KEYS = {
         only=_ON_ROCK, usual=USUAL["restitution"]),
     "beta": Key(positive, "40.0",
         "Stiffness as β = ω_v/p, the vertical over the rocking frequency; or give `stiffness_kN_m`.", many=True,
-        only=_ON_SPRINGS,
+        only=_ON_GROUND_THAT_GIVES,
         usual=USUAL["beta"]),
     "stiffness_kN_m": Key(positive, "2.0e6",
         "Stiffness K of one support, if the mass is given; or give `beta`.", many=True, only=_ON_SPRINGS),
     "mass_t": Key(positive, "3000.0", "Mass of all that rocks, unless `[pier]` states it.", many=True,
-        only=_ON_SPRINGS, usual=PIER["mass_t"].usual),
+        only=_ON_GROUND_THAT_GIVES, usual=PIER["mass_t"].usual),
     "epsilon": Key(within(BOUNDS["epsilon"]), "0.05",
         "Restitution ε of the landing pivot, from 0 (no rebound) to 1 (no loss).", many=True,
         only=_ON_SPRINGS | {"impact": WITH_EPSILON}),
@@ -98,7 +102,8 @@ BASE_KEYS = {
         only=_YIELDS | {"spring": WITH_EXPONENT}),
     "flight": Key(choice(*WORDS["flight"]), '"stop"',
         'What happens when both pivots are off the ground: "guided" follows the pier, which shear keys hold sideways, until '
-        'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True),
+        'it lands, and the run goes on; "stop" ends the run there, as in the paper.', many=True,
+        only=_NOT_ON_A_BED),
     "flight_limit_mm": Key(within(BOUNDS["flight_limit_mm"]), "20.0",
         "Height of the lower pivot in flight beyond which a run carries a note: as far as shear keys reach, say.", many=True,
         usual=USUAL["flight_limit_mm"]),
@@ -118,7 +123,9 @@ BASE_KEYS = {
         "What a blow keeps, the momentum of the mode: the only rule, so that the key has no effect and may be left out.",
         many=True, only=_ON_ROCK | {"shaft": ("elastic",)}),
     "area_m2": Key(within(BOUNDS["area_m2"]), "6.0",
-        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True),
+        "Area of one support, for the bearing stresses of the statics sheet; it does not affect any run.", many=True,
+        only=_NOT_ON_A_BED),
+    **FOOTING_KEYS,
 }  # fmt: skip
 """Keys that describe a base; in a list each value is a case."""
 CASE = Section(("case",), (
@@ -126,16 +133,16 @@ CASE = Section(("case",), (
     "and `confirm` may be lists: every combination is a case."
 ), {
     "name": Key(text, '"soft"', "Its name in tables; the base if there is only one case."),
-    "base": Key(choice(*_BASES, called=_CALLED["base"]), '"yielding"',
+    "base": Key(choice(*BASES, called=_CALLED["base"]), '"yielding"',
         '"rigid": Housner\'s block on ground that neither gives nor yields; "elastic": two springs without tension; '
-        '"yielding": the same, and the springs yield.', required=True),
+        '"yielding": the same, and the springs yield; "footing": a foot on a bed of strips.', required=True),
     **BASE_KEYS,
     "other_width_m": Key(within(OF_PIER["width_m"]), "8.0",
         "Width between the pivots across the axis, at right angles to `width_m` of `[pier]`. The case is then run on both axes, "
         "each a planar model under its component of every record, and checks combine them by `both_axes`.",
-        usual=PIER["width_m"].usual),
+        usual=PIER["width_m"].usual, only=_NOT_ON_A_BED),
     **CONFIRM,
-}, many=True, required=True, homes=(YieldingBase, ElasticBase, RigidBase), also=names({
+}, many=True, required=True, homes=(YieldingBase, ElasticBase, RigidBase, FootingBase), also=names({
     "base": "foundation support supports type kind model", "stiffness_kN_m": "k kv kz springstiffness",
     "yield_kN": "fy strength capacity yieldforce yieldstrength bearingcapacity", "zeta": "damping dampingratio xi",
     ("restitution", "epsilon"): "cor e r coefficientofrestitution", "friction": "mu mus coefficientoffriction",
@@ -149,7 +156,7 @@ CASE = Section(("case",), (
     Clash(("mass_t",), "mass_t is for use with stiffness_kN_m or yield_kN; leave it out", lacking=("stiffness_kN_m", "yield_kN")),
 ))  # fmt: skip
 
-_ANY_PIER = Pier(alpha=1.0, p=1.0)
+_ANY_PIER = Pier(alpha=1.0, p=1.0, flexural_period_s=1.0)
 """Pier used if none can be read, so that everything independent of it is still checked."""
 
 
@@ -198,14 +205,20 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     any_pier = pier is _ANY_PIER
     if "mass_t" in values:
         pier = replace(pier, mass_t=values["mass_t"], confirm=(*pier.confirm, "mass_t"))
+    pivots = pier
+    if "width_m" in values:
+        pier = on_foot(pier, values["width_m"])
     made = (written.made(pier, chosen, judged=not any_pier) for written in case.devices)
     devices = tuple(device for device in made if device is not None)
+    devices = at_pivots(devices, pivots) if pier is not pivots else devices
     of_base = {name: values[name] for name in BASE_KEYS if name in values}
     of_base |= {"restraints": devices, "confirm": tuple(USUAL)}  # what is unusual is noted where it is read
     if "zeta" in of_base:
         for name in ("epsilon", "impact"):  # that they clash is noted already
             of_base.pop(name, None)
-    base, wrong = _base(case.base, of_base, pier)
+    base, wrong = (
+        footing_of(values, pier, devices) if case.base == FootingBase.name else _base(case.base, of_base, pier)
+    )
     wrong += problems(pier, base)
     of_devices = [problem for device in devices for problem in wrong_device(pier, device)]
     for problem in wrong:
@@ -214,7 +227,7 @@ def _expand(case: _Read, chosen: Chosen, pier: Pier, pier_values: Values) -> Cas
     if not wrong and pier.mass_t is not None:
         _complain_unless_usual(case.table, chosen, pier)
     applying = {key: value for key, value in asdict(base).items() if value is not None} | values
-    for name in ("restraints", "confirm", "flexural_impact"):  # their own keys say them
+    for name in ("restraints", "confirm", "flexural_impact", "vertical_over_formula"):  # their own keys say them
         applying.pop(name, None)
     if not base.has_epsilon:
         applying.pop("epsilon", None)
@@ -235,7 +248,7 @@ def _base(name: str, values: Mapping[str, Any], pier: Pier) -> tuple[Base, list[
     """
     arguments, wrong = dict(values), list[Problem]()
     stiffness, strength, _ = (arguments.pop(key, None) for key in ("stiffness_kN_m", "yield_kN", "mass_t"))
-    kind = _BASES[name]
+    kind = BASES[name]
     if stiffness and pier.mass_t:
         arguments["beta"] = beta_of(pier, stiffness)
     if strength and pier.mass_t:
@@ -273,7 +286,7 @@ def _case(table: Table) -> _Read:
         value = shown(table.data["mass_t"])
         table.complain(f"mass_t = {value}: [pier] states the pier's mass already; leave it out", "mass_t")
     for ratio, absolute in (("beta", "stiffness_kN_m"), ("eta", "yield_kN")):
-        if base not in BASE_KEYS[ratio].only["base"] or table.has(ratio):
+        if base not in BASE_KEYS[absolute].only["base"] or table.has(ratio):
             continue
         if not table.has(absolute):
             table.complain(

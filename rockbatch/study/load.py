@@ -19,7 +19,7 @@ from rockbatch.common.errors import InputError, Problem
 from rockbatch.common.showing import Shown, several, shown
 from rockbatch.common.units import MOST, Bounds, Usual
 from rockbatch.motions import MotionSet
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.sequences import SEQUENCE
 from rockbatch.pier import NO_SECTIONS, Pier, described, symmetric
 from rockbatch.pier.sections import section_heights
@@ -88,7 +88,7 @@ OUTPUT = Section(("output",), "What is kept beyond the table of peaks.", {
     "sa_periods_s": Key(positive, "[0.5, 1.0, 2.0]",
         "Periods of the spectral accelerations among the intensity measures.", many=True,
         only={"intensity": (True,)}),
-    "sa_pairs": Key(choice(*DIRECTIONS), '["rotd50", "rotd100"]',
+    "sa_pairs": Key(choice(*TWO_COMPONENT_RULES), '["rotd50", "rotd100"]',
         "Spectral accelerations of both components of a station, beside those of each: their geometric mean, and the median and "
         "the greatest over all directions.", many=True, only={"intensity": (True,)}),
     "half_cycles": Key(boolean, "true",
@@ -411,7 +411,7 @@ def _brings(key: str, cases: Sequence[Case]) -> bool:
 
 def _kinds(cases: Sequence[Case]) -> set[str]:
     """Return the kinds of devices in these cases, and "" of columns that need none."""
-    return {"", *(device.what for case in cases for device in case.base.restraints)}
+    return {"", *(kind for case in cases for device in case.base.restraints for kind in device.kinds)}
 
 
 def _complain_about_sections(file: TomlFile, piers: Iterable[Pier], output: Output, bends: bool) -> None:

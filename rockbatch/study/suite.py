@@ -8,9 +8,9 @@ from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.baseline import Offset
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.orientation import same_azimuth
-from rockbatch.motions.scaling import at_targets, scaled_as_listed
+from rockbatch.motions.scaling import scale_as_listed, scale_to_targets
 from rockbatch.motions.selection import Selection, selected
-from rockbatch.motions.sequences import with_sequences
+from rockbatch.motions.sequences import add_sequences
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.study.load import Study
 from rockbatch.study.spec import MotionSpec
@@ -45,14 +45,14 @@ def ground_motions(study: Study) -> MotionSet:
         if azimuths != spec.azimuths:
             records = _without_the_square(records, azimuths)
     pulses = [shape.motion(gravity) for shape in spec.pulses]
-    records, pulses = with_sequences(records, spec.sequences, pulses)
+    records, pulses = add_sequences(records, spec.sequences, pulses)
     station = {motion.name: motion.of_station for motion in records}
     records = selected(records, spec.select, gravity)
     if both:
         records, pulses = _with_pairs(records, pulses)
     if spec.scale_as_listed:
-        records = scaled_as_listed(records)
-    records = at_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
+        records = scale_as_listed(records)
+    records = scale_to_targets(records, spec.target, spec.vertical_target, spec.vertical_scale, gravity, spec.confirm)
     unusable = [replace(file, station=file.station or station.get(file.name, file.name)) for file in records.unusable]
     records = replace(records, unusable=unusable)
     reasons = [f"{file.source}: {file.reason}" for file in records.unusable]

@@ -21,7 +21,7 @@ from rockbatch.motions.design_spectra import (
     TableSpectrum,
     read_spectrum,
 )
-from rockbatch.motions.pairs import DIRECTIONS
+from rockbatch.motions.pairs import TWO_COMPONENT_RULES
 from rockbatch.motions.scaling import Target
 from rockbatch.motions.spectrum_target import FACTORS, PAIRS, SpectrumTarget
 from rockbatch.toml.kinds import Choice, KindError, Number, Other, choice, not_negative, positive, text
@@ -63,7 +63,7 @@ _MEASURE = {
     "damping": Key(Number("a fraction of critical damping, within 0..1", low=0.0, high=1.0, below=True), "0.05",
         "Damping of the oscillators, as a fraction of critical damping."),
 }  # fmt: skip
-_PAIRS_OF_SA = {"pairs": Key(choice("apart", *DIRECTIONS), '"rotd100"', "")}
+_PAIRS_OF_SA = {"pairs": Key(choice("apart", *TWO_COMPONENT_RULES), '"rotd100"', "")}
 _EUROCODE = {
     "type": Key(Choice((1, 2), "1 or 2, the type of spectrum"), "1", "Type of the spectrum of EN 1998-1."),
     "ground": Key(choice(*EUROCODE[1]), '"B"', "Ground type of EN 1998-1."),

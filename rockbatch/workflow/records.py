@@ -6,7 +6,7 @@ from pathlib import Path
 from rockbatch.common.files import write_output
 from rockbatch.motions.motion import LeftOut, Unusable
 from rockbatch.motions.motion_set import MotionSet
-from rockbatch.motions.ranking import RankedRecord, Use, ranked
+from rockbatch.motions.ranking import RankedRecord, Use, ranked_records
 from rockbatch.motions.small_figures import spectra, trace
 from rockbatch.reporting.markup import Markup, join, tag
 from rockbatch.reporting.svg import sketch
@@ -46,7 +46,7 @@ def write_records(path: Path, motions: MotionSet, title: str, about: str) -> Non
 
 def page(motions: MotionSet, title: str, about: str) -> str:
     """Return the page as HTML: ``about`` below the title, the records, then files that are not used, with reasons."""
-    records = ranked(motions)
+    records = ranked_records(motions)
     findings = [(motion.named, finding.text) for motion in motions for finding in motion.findings]
     remarks = [[tag("span", name, class_="named"), text] for name, text in findings]
     doubts = table([Head("record"), Head("why")], remarks, prose=True) if remarks else Markup("")
@@ -66,9 +66,9 @@ def scorecard(records: Sequence[RankedRecord]) -> Markup:
     drawn = dict(zip(map(id, read), spectra([record.motions[0] for record in read]), strict=True))
     rows = []
     for record in shown:
-        pictures = {"acceleration": trace(record.motions[0]), "sa": drawn[id(record)]} if record.motions else {}
-        cells: dict[str, object] = record.values | {name: sketch(picture) for name, picture in pictures.items()}
-        cells |= {"record": _name(record), "use": _use(record)}
+        cells: dict[str, object] = {**record.values, "record": _name(record), "use": _use(record)}
+        if record.motions:
+            cells |= {"acceleration": sketch(trace(record.motions[0])), "sa": sketch(drawn[id(record)])}
         rows.append([cells.get(name) for name in COLUMNS])
     legend = tag(
         "p",

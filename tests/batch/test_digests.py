@@ -60,7 +60,7 @@ def test_every_module_that_can_change_a_row_takes_part():
         "analyses/fragility/ida.py",
     ):
         assert TOP / known in takes_part  # the walk finds its way
-    missing = takes_part - set(digests.sources())
+    missing = takes_part - set(digests.sources()) - {TOP / "common" / "version.py"}  # names the program; no row has it
     assert not missing, (
         f"these can change a row: strike them from SHOW in rockbatch/batch/digests.py: {sorted(missing)}"
     )

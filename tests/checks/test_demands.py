@@ -42,7 +42,9 @@ DEVICES = {
 FLIGHTS = {"flights": 2, "flight_duration_s": 0.05, "flight_height_m": 0.002}
 ROW |= FORCES | DEVICES | FLIGHTS | {"flight_s": 1.2, "theta_rocking_over_alpha": 0.25}
 TIED = case(
-    base=replace(PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1), Stop(0.1, 20.0), DeckSpring(0.2)))
+    base=replace(
+        PADS, restraints=(Damper("viscous", nu=0.1), Tendon(psi=0.1, strength=0.5), Stop(0.1, 20.0), DeckSpring(0.2))
+    )
 )
 B, H = 7.3575 * math.sin(0.2), 7.3575 * math.cos(0.2)
 TILT_OVER_RESIDUAL = 1 - 9.81 * H / (50.0 * B) ** 2

@@ -78,7 +78,7 @@ def test_a_jump_of_the_velocity_unloads_a_spring_or_presses_it_along_its_law(law
 
 @pytest.mark.parametrize("n", [5.0, 3.0, 2.5])
 @pytest.mark.parametrize("law", LAWS)
-def test_first_loading_and_plastic_work_of_a_law_are_integrals_over_its_loss_of_stiffness(law, n):
+def test_first_loading_and_plastic_work_are_integrals_over_the_loss_of_stiffness(law, n):
     """δ = ∫ ds/(1 − loss), of a law that yields at first; what is dissipated ∫ x d(u − x) along the inelastic branch."""
     m = model(law, **({"n": n} if law in ("bouc-wen", "hardening") else {}))
     base = ElasticBase(50.0) if law == "elastic" else YieldingBase(50.0, eta=2.5, spring=law, n=n)

@@ -408,4 +408,4 @@ def test_station_xml_is_read_once_however_many_records_ask_for_it(tmp_path, monk
     ("name", "inside"), [("a/b.at2", "a/b.at2"), ("/etc/x", "etc/x"), ("../../x", "x"), ("..", "?"), ("/", "?")]
 )
 def test_no_name_in_an_archive_leads_out_of_it_and_none_is_empty(name, inside):
-    assert str(archives._within(name)) == inside
+    assert str(archives._member_path(name)) == inside

@@ -7,7 +7,7 @@ import pytest
 from motion_files import wiggle, write_at2
 
 from rockbatch.motions import read_motions
-from rockbatch.motions.azimuths import azimuths_every, resolved
+from rockbatch.motions.azimuths import along_azimuth, azimuths_every
 
 
 def write_pair(folder, north, east, *, second: str = "090", **more) -> None:
@@ -20,10 +20,10 @@ def test_a_motion_along_one_line_is_given_back_along_it_and_vanishes_across(firs
     """A motion along 20° has the components cos and sin of what is between, whichever lies to the right."""
     along = wiggle(100)
     a, b = (along * math.cos(math.radians(20.0 - azimuth)) for azimuth in (first, second))
-    np.testing.assert_allclose(resolved(a, first, b, second, 20.0), along, atol=1e-15)
-    np.testing.assert_allclose(resolved(a, first, b, second, 110.0), 0.0, atol=1e-15)
-    np.testing.assert_allclose(resolved(a, first, b, second, 200.0), -along, atol=1e-15)
-    np.testing.assert_allclose(resolved(a, first, b, second, first), a, atol=1e-15)
+    np.testing.assert_allclose(along_azimuth(a, first, b, second, 20.0), along, atol=1e-15)
+    np.testing.assert_allclose(along_azimuth(a, first, b, second, 110.0), 0.0, atol=1e-15)
+    np.testing.assert_allclose(along_azimuth(a, first, b, second, 200.0), -along, atol=1e-15)
+    np.testing.assert_allclose(along_azimuth(a, first, b, second, first), a, atol=1e-15)
 
 
 def test_every_angle_below_half_a_turn_comes_once():

@@ -10,7 +10,7 @@ from motion_files import at2_text, wiggle, write_at2
 from studies import RIGID, study_text, write_study
 
 import rockbatch as rb
-from rockbatch.batch import running
+from rockbatch.batch import preparing
 from rockbatch.common.errors import InputError
 from rockbatch.motions import archives, folder, read_motions
 from rockbatch.toml.reader import LARGEST, TomlFile
@@ -79,7 +79,7 @@ def test_runs_use_what_was_read_whatever_becomes_of_the_files(tmp_path, monkeypa
         "rockbatch.workflow.running.write_report", lambda *_, **__: tmp_path
     )  # takes longer than the runs
     before = rb.run(study)
-    plain = running.ground_motions
+    plain = preparing.ground_motions
 
     def read(*given):
         found = plain(*given)
@@ -88,7 +88,7 @@ def test_runs_use_what_was_read_whatever_becomes_of_the_files(tmp_path, monkeypa
         return found
 
     with monkeypatch.context() as patch:
-        patch.setattr(running, "ground_motions", read)
+        patch.setattr(preparing, "ground_motions", read)
         after = rb.run(study, tmp_path / "out")
     assert before["theta_max_over_alpha"].min() > 0
     assert after["theta_max_over_alpha"].to_numpy() == pytest.approx(

@@ -242,7 +242,7 @@ def test_where_the_displacement_runs_away_there_is_no_pgd_and_it_is_said(tmp_pat
     assert told["stays"]["findings"] == []
     assert told["runs"]["pgd_m"] is None
     assert [finding["what"] for finding in told["runs"]["findings"]] == ["no PGD"]
-    assert any(note.startswith("no PGD: from rest its displacement runs away, to ") for note in told["runs"]["notes"])
+    assert any(note.startswith("no PGD: integrated displacement drifts to ") for note in told["runs"]["notes"])
 
 
 # Against real records

@@ -410,8 +410,8 @@ def test_a_seed_volume_is_read_from_its_first_data_record_on_whose_place_its_hea
     trace("HNE", (1000 * wiggle(300)).astype(np.int32)).write(record, format="MSEED", reclen=512)
     header = f"000001V 0100094 2.4{exponent:02d}".encode().ljust(2**exponent)
     volume = header + b"000002A ".ljust(2**exponent) + record.getvalue()
-    assert with_obspy.mseed(volume) == volume
+    assert with_obspy.check_mseed(volume) == volume
     with pytest.raises(InputError, match="holds no whole data record"):
-        with_obspy.mseed(header + header)
+        with_obspy.check_mseed(header + header)
     with pytest.raises(InputError, match='records of 2\\^"31" bytes; expected 07 to 20'):
-        with_obspy.mseed(header.replace(b"2.4" + f"{exponent:02d}".encode(), b"2.431"))
+        with_obspy.check_mseed(header.replace(b"2.4" + f"{exponent:02d}".encode(), b"2.431"))

@@ -157,6 +157,7 @@ def test_sensors_side_by_side_that_differ_by_a_factor_are_held_back(tmp_path, fa
     assert len(found.unusable) == 2
     assert all("one of their gains is wrong" in one.reason for one in found.unusable)
     assert "10.mseed, of another sensor" in found.unusable[0].reason
+    assert "leave out the wrong one by use = false in motions.toml" in found.unusable[0].reason
     (tmp_path / "motions.toml").write_text('[[record]]\nfile = "10.mseed"\nuse = false\n')
     (motion,) = read_motions(tmp_path, options=stated).motions
     assert not motion.findings[1:]

@@ -295,7 +295,7 @@ def test_station_xml_is_read_up_to_a_stated_size_and_no_tree_is_built(tmp_path, 
     tracemalloc.start()
     try:
         beside = stationxml.Inventories([(tmp_path / "stations.xml", "stations.xml", "")])
-        assert len(beside.of("CI.LRL..HNN")) == 1
+        assert len(beside.epochs_of("CI.LRL..HNN")) == 1
         assert tracemalloc.get_traced_memory()[1] < 2**20  # of a file of 0.2 MB, whose tree would take 2.5
     finally:
         tracemalloc.stop()

@@ -18,7 +18,7 @@ from rockbatch.commands.cli import main
 from rockbatch.motions import Motion, MotionSet, ReadOptions, read_motions
 from rockbatch.motions.component import Sensor
 from rockbatch.motions.orientation import orientation_of, unknown
-from rockbatch.motions.origin import Origin, directed, origin_of
+from rockbatch.motions.origin import Origin, origin_of, with_direction
 
 ROOT = Path(__file__).parents[2]
 
@@ -68,8 +68,8 @@ def test_directions_are_three_digits_or_what_the_header_has():
     for label, called in labels.items():
         orientation = orientation_of(label)
         assert orientation is not None
-        assert directed(Origin("e"), orientation).direction == called
-    assert directed(Origin("e"), unknown()).direction == ""
+        assert with_direction(Origin("e"), orientation).direction == called
+    assert with_direction(Origin("e"), unknown()).direction == ""
 
 
 QUAKE, FARING = "MADE UP EARTHQUAKE JAN 17, 1994 -1230 GMT", "700 N, Faring Rd., Los Angeles, Ca"
@@ -193,8 +193,8 @@ def test_the_records_that_come_with_it_are_called_by_event_station_and_direction
 def test_a_label_keeps_year_place_and_direction_of_long_names(event, station, called):
     origin = Origin(event, station, "000")
     assert origin.label == called
-    assert origin.whole == ", ".join(filter(None, (event, station, "000")))
-    assert Origin().label == Origin().whole == ""
+    assert origin.full_label == ", ".join(filter(None, (event, station, "000")))
+    assert Origin().label == Origin().full_label == ""
 
 
 def test_motions_that_would_share_a_label_have_longer_ones():

@@ -15,8 +15,8 @@ from rockbatch.common.errors import Contradiction
 from rockbatch.motions import LeftOut, MotionSet, Unusable, measures, small_figures
 from rockbatch.motions.listed import Listed
 from rockbatch.motions.motion import Finding
-from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked
-from rockbatch.reporting import records as on_page
+from rockbatch.motions.ranking import COLUMNS, Use, pulse_period, ranked_records
+from rockbatch.workflow import records as on_page
 
 ODD = (Finding("no PGD", "its displacement runs away"),)
 
@@ -46,26 +46,26 @@ def found():
 
 
 def test_the_doubtful_stand_first_then_the_strongest_and_copies_last():
-    assert [(record.name, record.use) for record in ranked(found())] == [
+    assert [(record.name, record.use) for record in ranked_records(found())] == [
         ("tiny", Use.HELD_BACK), ("B1", Use.HELD_BACK), ("which", Use.HELD_BACK), ("cut", Use.NOT_READ), ("odder", Use.USED),
         ("odd", Use.USED), ("strong", Use.USED), ("A2", Use.USED), ("weak", Use.USED), ("twin", Use.COPY),
     ]  # fmt: skip
 
 
 def test_a_station_is_one_record_with_the_pga_of_each_component():
-    (pair,) = (record.values for record in ranked(found()) if record.name == "A2")
+    (pair,) = (record.values for record in ranked_records(found()) if record.name == "A2")
     assert [pair[name] for name in ("pga_h_g", "pga_h2_g", "pga_v_g")] == pytest.approx([0.6, 0.3, 0.2])
 
 
 def test_the_component_across_counts_as_the_second_horizontal():
-    (pair,) = ranked(MotionSet([motion("x", 0.4, across=np.full(400, 2.943))]))
+    (pair,) = ranked_records(MotionSet([motion("x", 0.4, across=np.full(400, 2.943))]))
     assert pair.values["pga_h2_g"] == pytest.approx(0.3)
 
 
 def test_what_is_held_back_says_its_doubt_in_a_word_and_keeps_its_measures():
-    doubts = {record.name: record.doubts for record in ranked(found()) if record.use is Use.HELD_BACK}
+    doubts = {record.name: record.doubts for record in ranked_records(found()) if record.use is Use.HELD_BACK}
     assert doubts == {"tiny": ["PGA"], "B1": ["no unit"], "which": ["contradiction"]}
-    assert ranked(found())[0].values["pga_h_g"] == pytest.approx(0.0004)
+    assert ranked_records(found())[0].values["pga_h_g"] == pytest.approx(0.0004)
 
 
 def test_a_record_too_weak_for_the_earth_is_read_and_held_back(tmp_path):
@@ -126,8 +126,8 @@ def test_the_scorecard_with_every_column_fits_into_80_letters(monkeypatch):
     listed = Listed(pulse_period_s=11.25, vs30_m_s=1428.14)
     parts = {"vertical": np.full(400, 9.8), "across": np.full(400, 4.9)}
     one = motion("R" * 60, 1.234, magnitude=7.62, distance_km=123.41, listed=listed, **parts)
-    for module in ("motions", "streams"):
-        monkeypatch.setattr(f"rockbatch.commands.{module}.width", lambda: 80)
+    for module in ("commands.motions", "terminal.streams"):
+        monkeypatch.setattr(f"rockbatch.{module}.width", lambda: 80)
     card = overview(MotionSet([one, motion("S", 0.4, findings=ODD)])).splitlines()[:10]
     assert max(map(len, card)) <= 80
     (line,) = (line for line in card if line.startswith("R"))

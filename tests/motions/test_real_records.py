@@ -9,7 +9,7 @@ import pytest
 from motion_files import RECORDS, needs_records, real_components, real_motions, state_of
 
 from rockbatch.motions import Motion, ReadOptions, fema_p695, read_motions
-from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.component import Component
 from rockbatch.motions.formats import RecordFile, read_record
 from rockbatch.motions.likeness import correlation
@@ -45,7 +45,7 @@ def components(path) -> list[Component]:
     inventories = Inventories([(xml, xml.name, "") for xml in path.parent.glob("*.xml")])
     readings = read_record(RecordFile(path, path.name, path.read_bytes(), options, G, inventories))
     assert all(isinstance(reading, Component) for reading in readings)
-    return [corrected(reading, Offset()) for reading in readings]
+    return [remove_offset(reading, Offset()) for reading in readings]
 
 
 @pytest.mark.parametrize(("path", "entry"), described())

@@ -175,10 +175,10 @@ def test_a_study_runs_a_sequence_in_the_place_of_its_records(tmp_path):
 
 def test_one_factor_is_for_all_shocks_and_so_is_one_polarity():
     parts = [record("a"), record("b", 2)]
-    whole = ShockSequence("s", ("a", "b"), factors=(0.5,), polarity=("-",)).joined(parts)
+    whole = ShockSequence("s", ("a", "b"), factors=(0.5,), polarity=("-",)).as_motion(parts)
     np.testing.assert_array_equal(whole.horizontal[:400], -0.5 * parts[0].horizontal)
     np.testing.assert_array_equal(whole.horizontal[-400:], -0.5 * parts[1].horizontal)
-    each = ShockSequence("s", ("a", "b"), factors=(1.0, 0.8), polarity=("-", "+")).joined(parts)
+    each = ShockSequence("s", ("a", "b"), factors=(1.0, 0.8), polarity=("-", "+")).as_motion(parts)
     np.testing.assert_array_equal(each.horizontal[:400], -parts[0].horizontal)
     np.testing.assert_array_equal(each.horizontal[-400:], 0.8 * parts[1].horizontal)
     assert each.notes[:2] == ("shock 1, a: times 1, reversed", "shock 2, b: times 0.8")

@@ -18,7 +18,7 @@ from rockbatch.motions.design_spectra import (
     TableSpectrum,
     read_spectrum,
 )
-from rockbatch.motions.scaling import MOST_FACTOR, at_target, at_targets
+from rockbatch.motions.scaling import MOST_FACTOR, at_target, scale_to_targets
 from rockbatch.motions.spectrum import PERIODS, periods_over, spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.study import load_study
@@ -125,7 +125,7 @@ def test_pairs_make_one_spectrum_by_the_root_of_the_sum_of_squares():
     of_pair, alone = np.hypot(found[0], found[1]), found[2]
     for one in (of_pair, alone):
         assert np.log(one / TABLE.at(target.periods)).mean() == pytest.approx(0.0, abs=1e-12)
-    told = target.described(scaled, 10.0)
+    told = target.run_json_entry(scaled, 10.0)
     np.testing.assert_allclose(told["mean_sa_g"], (of_pair + alone) / 2, rtol=1e-4)
     assert (told["pairs"], told["alone"], told["at_least"]) == ("srss", 1, 1.3)
     raised = at_target(MotionSet(pair), replace(target, factors="both"), 10.0).motions
@@ -157,7 +157,7 @@ def test_both_fits_each_and_raises_all_where_the_mean_is_too_low_but_never_lower
 def test_none_leaves_records_as_they_are_and_says_how_they_compare():
     target = SpectrumTarget(TABLE, (0.3, 3.0), "none")
     assert at_target(MotionSet(SUITE), target, 10.0).motions == SUITE
-    told = target.described(SUITE, 10.0)
+    told = target.run_json_entry(SUITE, 10.0)
     np.testing.assert_allclose(told["mean_sa_g"], spectra(SUITE, target).mean(axis=0), rtol=1e-4)
     np.testing.assert_allclose(told["sa_g"], TABLE.at(target.periods), rtol=1e-4)
     shown = description.spectra(SUITE, SUITE, 10.0, target)
@@ -186,14 +186,14 @@ def test_a_suite_is_fitted_again_without_those_that_need_too_large_a_factor(seed
     sizes = np.exp(np.random.default_rng(seed).uniform(-2.5, 1.0, 12))
     motions = MotionSet([shaking(20 * seed + i, size) for i, size in enumerate(sizes)])
     target = SpectrumTarget(TABLE, (0.3, 3.0), "both", at_least=1.1)
-    first, last = at_target(motions, target, 10.0), at_targets(motions, target, None, 1.0, 10.0)
+    first, last = at_target(motions, target, 10.0), scale_to_targets(motions, target, None, 1.0, 10.0)
     assert 0 < len(first.unusable) <= len(last.unusable) < 12
     assert {file.name for file in first.unusable} <= {file.name for file in last.unusable}
     assert len(last.motions) + len(last.unusable) == 12
     assert max(motion.factor for motion in last) <= MOST_FACTOR
     over = spectra(last.motions, target).mean(axis=0) / TABLE.at(target.periods)
     assert over.min() >= 1.1 * (1 - 1e-9)
-    confirmed = at_targets(motions, target, None, 1.0, 10.0, ["*"])
+    confirmed = scale_to_targets(motions, target, None, 1.0, 10.0, ["*"])
     assert [motion.factor for motion in confirmed] == pytest.approx(target.factors_of(motions.motions, 10.0))
 
 
@@ -201,7 +201,7 @@ def test_a_record_refused_for_its_vertical_component_is_in_no_fit_of_the_others(
     target, vertical = SpectrumTarget(TABLE, (0.3, 3.0), "suite"), SpectrumTarget(TABLE, (0.3, 3.0), "each")
     pairs = [replace(motion, vertical=motion.horizontal) for motion in SUITE]
     pairs[1] = replace(pairs[1], vertical=1e-3 * pairs[1].horizontal)
-    found = at_targets(MotionSet(pairs), target, vertical, 1.0, 10.0, ["m1", "m3"])
+    found = scale_to_targets(MotionSet(pairs), target, vertical, 1.0, 10.0, ["m1", "m3"])
     assert [motion.name for motion in found] == ["m1", "m3"]
     assert found.unusable[0].reason.startswith("its vertical component takes ")
     assert [motion.factor for motion in found] == pytest.approx(target.factors_of([SUITE[0], SUITE[2]], 10.0))

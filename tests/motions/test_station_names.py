@@ -118,8 +118,8 @@ def test_what_headers_and_names_say_decides(more, stations):
 @pytest.mark.parametrize("when", [lambda i: {"event": f"E{i}"}, lambda i: {"start": 1e9 + 86400.0 * i}, lambda i: {}])
 def test_records_of_one_station_in_many_earthquakes_are_not_all_compared_to_each_other(monkeypatch, when):
     compared = []
-    together = stations._together
-    monkeypatch.setattr(stations, "_together", lambda a, b: compared.append(1) or together(a, b))
+    together = stations._share_record
+    monkeypatch.setattr(stations, "_share_record", lambda a, b: compared.append(1) or together(a, b))
     records = [[component(f"c{i}", station="S", folder="/a", sensor=Sensor("7"), **when(i))] for i in range(200)]
     assert len(set(station_names(records))) == 200
     assert len(compared) < 1000

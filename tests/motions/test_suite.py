@@ -11,7 +11,7 @@ from studies import FOLDER_STUDY, write_study
 from rockbatch.commands.cli import main
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet, measures, read_motions
-from rockbatch.motions.baseline import Offset, corrected
+from rockbatch.motions.baseline import Offset, remove_offset
 from rockbatch.motions.component import Component
 from rockbatch.motions.scaling import Target, at_target
 from rockbatch.motions.selection import Selection, selected
@@ -37,18 +37,18 @@ def study_of(folder, keys: str = ""):
 
 
 def test_by_default_only_what_an_instrument_left_is_taken_off_and_it_is_said():
-    assert corrected(component([1, 2, 3]), Offset()).acceleration.tolist() == [1, 2, 3]
-    freed = corrected(component([1, 2, 3], raw=True), Offset())
+    assert remove_offset(component([1, 2, 3]), Offset()).acceleration.tolist() == [1, 2, 3]
+    freed = remove_offset(component([1, 2, 3], raw=True), Offset())
     assert freed.acceleration.tolist() == [-1, 0, 1]
     assert freed.notes == ("offset 2 m/s² removed (mean over the record)",)
 
 
 def test_an_offset_can_be_kept_or_taken_off_by_the_mean_of_all_or_before_the_event():
-    kept = corrected(component([1, 2, 3], raw=True), Offset("keep"))
+    kept = remove_offset(component([1, 2, 3], raw=True), Offset("keep"))
     assert kept.acceleration.tolist() == [1, 2, 3]
     assert kept.notes == ("offset 2 m/s² kept (mean over the record)",)
-    assert corrected(component([1, 2, 3]), Offset("mean")).acceleration.tolist() == [-1, 0, 1]
-    before = corrected(component([1, 2, 9, 9, 9]), Offset("pre-event", (0.0, 0.1)))
+    assert remove_offset(component([1, 2, 3]), Offset("mean")).acceleration.tolist() == [-1, 0, 1]
+    before = remove_offset(component([1, 2, 9, 9, 9]), Offset("pre-event", (0.0, 0.1)))
     assert before.acceleration.tolist() == [-0.5, 0.5, 7.5, 7.5, 7.5]
     assert before.notes == ("offset 1.5 m/s² removed (mean from 0 to 0.1 s, before the event)",)
 

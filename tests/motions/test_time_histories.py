@@ -6,7 +6,7 @@ from motion_files import wiggle, write_at2
 
 from rockbatch.motions import Motion, ReadOptions, read_motions
 from rockbatch.motions.component import Component
-from rockbatch.motions.plausible import FARTHEST_MEAN, Judged, no_zero_line
+from rockbatch.motions.plausible import FARTHEST_MEAN, Candidate, no_zero_line
 
 T = np.arange(80) * 0.05
 SPECTRUM = np.where(T < 0.1, 0.4 + 6 * T, np.where(T < 0.5, 1.0, 0.5 / np.maximum(T, 0.5)))  # a code's, in g
@@ -145,7 +145,7 @@ def test_an_instruments_offset_that_its_format_leaves_in_the_data_is_taken_off_b
 def test_few_samples_and_silence_tell_nothing():
     for samples in (np.array([0.1, 0.2, 0.3]), np.zeros(100)):
         motion, component = Motion("m", 0.01, samples), Component("m", 0.01, samples)
-        assert no_zero_line(Judged(motion, component, (), 9.81)) is None
+        assert no_zero_line(Candidate(motion, component, (), 9.81)) is None
 
 
 def test_motions_made_in_python_are_nobodys_business(tmp_path):

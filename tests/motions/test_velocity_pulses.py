@@ -11,11 +11,11 @@ from rockbatch.motions.measures import velocity
 from rockbatch.motions.velocity_pulses import (
     PULSE_LIKE,
     _daubechies,
-    _extracted,
     _filter,
     _indicator,
     _largest,
     _wavelet,
+    _wavelet_sum,
     period_of_pulse,
     pulse_period,
 )
@@ -35,7 +35,7 @@ PULSES = {
 def judged(v, dt):
     """The scale [samples] of the largest pulse in a velocity, the indicator with it, and the pulse."""
     scale, place = _largest(v, dt)
-    pulse = _extracted(v, scale, place)
+    pulse = _wavelet_sum(v, scale, place)
     return scale, _indicator(v, pulse), pulse
 
 

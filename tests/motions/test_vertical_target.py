@@ -11,7 +11,7 @@ import rockbatch as rb
 from rockbatch.common.errors import InputError
 from rockbatch.motions import Motion, MotionSet
 from rockbatch.motions.design_spectra import TableSpectrum
-from rockbatch.motions.scaling import Target, verticals, with_vertical
+from rockbatch.motions.scaling import Target, scale_verticals, verticals
 from rockbatch.motions.spectrum import spectral_acceleration
 from rockbatch.motions.spectrum_target import SpectrumTarget
 from rockbatch.study import load_study
@@ -37,7 +37,7 @@ def given(motions):
 
 def test_a_target_of_one_measure_is_met_by_every_vertical_whatever_the_horizontals_have():
     motions = MotionSet([motion.times(2.0) for motion in suite()])
-    found = with_vertical(motions, given(suite()), Target(pga_g=0.3), 1.0, G).motions
+    found = scale_verticals(motions, given(suite()), Target(pga_g=0.3), 1.0, G).motions
     for motion, before in zip(found[:3], motions, strict=False):
         assert motion.pga_vertical == pytest.approx(0.3 * G)
         np.testing.assert_array_equal(motion.horizontal, before.horizontal)
@@ -49,7 +49,7 @@ def test_a_target_of_one_measure_is_met_by_every_vertical_whatever_the_horizonta
 @pytest.mark.parametrize("factors", ["each", "suite", "both"])
 def test_a_spectrum_is_fitted_by_one_vertical_of_each_station(factors):
     target = SpectrumTarget(TABLE, (0.05, 1.0), factors)
-    found = with_vertical(MotionSet(suite()), given(suite()), target, 1.0, G, ["*"]).motions
+    found = scale_verticals(MotionSet(suite()), given(suite()), target, 1.0, G, ["*"]).motions
     of_stations = [found[0], found[2]]
     spectra = [spectral_acceleration(m.vertical, m.dt, target.periods) / G for m in of_stations]
     over = spectra / TABLE.at(target.periods)
@@ -57,34 +57,34 @@ def test_a_spectrum_is_fitted_by_one_vertical_of_each_station(factors):
         np.testing.assert_allclose(np.log(over).mean(axis=1), 0.0, atol=1e-12)
     else:
         assert over.mean(axis=0).min() == pytest.approx(0.9) or (factors == "both" and over.mean(axis=0).min() > 0.9)
-    described = target.described(verticals(found), G)
+    described = target.run_json_entry(verticals(found), G)
     np.testing.assert_allclose(described["mean_sa_g"], np.mean(spectra, axis=0), rtol=1e-4)
 
 
 def test_a_factor_alone_multiplies_what_the_horizontal_factor_gave():
     motions = MotionSet([replace(motion.times(2.0), factor=2.0) for motion in suite()])
-    found = with_vertical(motions, given(suite()), None, 0.5, G).motions
+    found = scale_verticals(motions, given(suite()), None, 0.5, G).motions
     np.testing.assert_allclose(found[0].vertical, suite()[0].vertical)
     assert (found[0].vertical_factor, found[0].notes[-1]) == (1.0, "vertical times 0.5")
-    both = with_vertical(motions, given(suite()), Target(pga_g=0.3), 0.5, G).motions
+    both = scale_verticals(motions, given(suite()), Target(pga_g=0.3), 0.5, G).motions
     assert both[0].pga_vertical == pytest.approx(0.15 * G)
-    assert with_vertical(motions, given(suite()), None, 1.0, G) is motions
+    assert scale_verticals(motions, given(suite()), None, 1.0, G) is motions
 
 
 def test_a_weak_vertical_is_not_made_strong_until_it_is_confirmed():
     weak = [replace(motion, vertical=None if motion.vertical is None else 0.02 * motion.vertical) for motion in suite()]
     target = SpectrumTarget(TABLE, (0.05, 1.0), "each")
-    found = with_vertical(MotionSet(weak), given(weak), target, 1.0, G)
+    found = scale_verticals(MotionSet(weak), given(weak), target, 1.0, G)
     assert [motion.name for motion in found.motions] == ["m4"]
     assert [each.name for each in found.unusable] == ["m1", "m2", "m3"]
     assert found.unusable[1].reason.startswith("its vertical component takes ")
     assert 'confirm = ["m2"]' in found.unusable[1].reason
-    assert len(with_vertical(MotionSet(weak), given(weak), target, 1.0, G, ["m*"]).motions) == 4
+    assert len(scale_verticals(MotionSet(weak), given(weak), target, 1.0, G, ["m*"]).motions) == 4
 
 
 def test_a_vertical_component_that_does_not_move_stays_as_it_is():
     still = [replace(suite()[0], vertical=np.zeros(1200))]
-    found = with_vertical(MotionSet(still), given(still), Target(pga_g=0.3), 1.0, G)
+    found = scale_verticals(MotionSet(still), given(still), Target(pga_g=0.3), 1.0, G)
     assert not found.motions[0].vertical.any()
 
 

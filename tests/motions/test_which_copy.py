@@ -178,7 +178,7 @@ def test_a_few_waves_are_no_copies_of_each_other_however_they_correlate(cycles, 
     waves = (np.hanning(400) * sum(np.sin(2 * np.pi * c * k * t) for c in cycles) for k in (1.0, stretched))
     first, second = (Component("r", 0.01, wave, north) for wave in waves)
     assert likeness.correlation(first.acceleration, second.acceleration) > 0.95
-    assert likeness._correlate(first, second) is one
+    assert likeness._are_one_recording(first, second) is one
 
 
 def test_a_copy_of_a_record_of_one_period_is_found_without_a_header(tmp_path):
@@ -357,7 +357,7 @@ def test_the_likeness_of_two_sets_is_the_greatest_of_all_shifts_rotations_and_re
         best = max(turning.max(), mirrored.max()) / np.sqrt((x * x).sum() * (y * y).sum())
         tried.append((best, shift, each))
     best, shift, each = max(tried, key=lambda one: one[0])
-    found = likeness._in_any_frame(*sets, 1)
+    found = likeness._greatest_likeness(*sets, 1)
     assert shift == 50
     assert found.correlation == pytest.approx(best, rel=2e-5)
     np.testing.assert_allclose(found.each, np.abs(each))
@@ -433,8 +433,8 @@ def test_a_turned_copy_at_another_station_of_the_network_is_another_recording(ot
 def test_other_recordings_are_hardly_compared_in_any_frame(monkeypatch):
     """Each comparison takes four Fourier transforms; their number may not grow with the square of that of the sets."""
     compared = []
-    plain = likeness._in_any_frame
-    monkeypatch.setattr(likeness, "_in_any_frame", lambda *sets: (compared.append(sets), plain(*sets))[1])
+    plain = likeness._greatest_likeness
+    monkeypatch.setattr(likeness, "_greatest_likeness", lambda *sets: (compared.append(sets), plain(*sets))[1])
     components = [
         Component(f"{n}.{k}", 0.01, values, Orientation("", azimuth=90.0 * k), source=f"{n}.{k}", station=str(n))
         for n in range(60) for k, values in enumerate(earthquake(n))
@@ -484,7 +484,7 @@ def test_spectra_rule_out_no_copy_that_the_samples_tell(change):
     }[change]
     north = Orientation("000", azimuth=0.0)
     one, two = Component("a", 0.01, a, north, source="a"), Component("b", dt, b, north, source="b")
-    assert list(likeness._Table([one, two]).alike()) == [(0, 1)]
+    assert list(likeness._Table([one, two]).similar_pairs()) == [(0, 1)]
 
 
 def test_copies_by_a_factor_under_other_names_are_all_used_and_say_so(tmp_path):
@@ -509,7 +509,7 @@ def test_steps_that_differ_by_half_a_per_cent_are_not_one_step():
         Component("a", 0.01, shaken(t), north, source="a"),
         Component("b", 0.01005, shaken(fine), north, source="b"),
     )
-    assert likeness._correlate(one, two)
+    assert likeness._are_one_recording(one, two)
 
 
 def test_series_that_never_move_have_no_independent_values():

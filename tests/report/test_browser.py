@@ -1,6 +1,7 @@
 """The report in a real browser: nothing leaves the page, no script error, and sorting, searching and reading values work."""
 
 import json
+import math
 import re
 from dataclasses import replace
 
@@ -225,6 +226,22 @@ def test_a_scorecard_of_many_cases_is_unfolded_on_request(tmp_path):
     """
     found = browse(write_report(tmp_path, []), act)
     assert (found["first"], found["all"]) == (6, 35)
+
+
+def test_a_scorecard_of_seven_open_checks_is_no_wider_than_the_page(tmp_path):
+    write_results(tmp_path)
+    numbers = {"value": 123_456.0, "limit": 60_000.0, "ratio": 2.0576, "unit": "kN m", "high": math.inf}
+    write_verdicts(
+        tmp_path, [verdict(f"c{i}", "not decided", check=f"check {k}", **numbers) for i in range(3) for k in range(7)]
+    )
+    act = """
+    const table = document.querySelector("#answer .card");
+    found.cells = table.querySelectorAll("thead th").length;
+    found.over = table.scrollWidth - table.parentElement.clientWidth;
+    """
+    found = browse(write_report(tmp_path, []), act)
+    assert found["cells"] == 8
+    assert found["over"] <= 8  # the margins that the spacing of the cells is drawn back by
 
 
 def test_a_touch_reads_values_off_the_curves_and_they_stay_until_the_next_touch(page):

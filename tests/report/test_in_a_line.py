@@ -12,6 +12,7 @@ from rockbatch.reporting.sections.studied import in_a_line
 LOST = {"name": "x", "source": "x.AT2", "reason": "cut", "station": "S9"}
 FELL = {("SYL360", "2"): {"status": "overturned"}, ("SYL360", "3"): {"status": "failed"}}
 SIZES = "width_m = 4.0\nheight_m = 20.0\nmass_t = 1_234.5\ndeck_mass_t = 300"
+PARTS = "width_m = 4.0\n[[pier.part]]\nmass_t = 500\nheight_m = 15"
 SHAFT = "α = 0.13, p = 0.38 rad/s"
 
 
@@ -28,6 +29,9 @@ TALL = [case_entry("1", {}, Pier(0.13, 0.3 + 0.01 * k), FOUNDATIONS[1][1]) for k
         ({"unusable": [LOST | {"station": ""}]}, "", (*ALL, "30 runs, all end standing")),
         (ONE, "", (SHAFT, "1 station", "one component", "5 runs, all end standing")),
         (ONE, SIZES, ("20 m high, 4 m wide, 1234.5 t, 300 t of deck", "1 station", "one component", "5 runs, all end standing")),
+        (ONE | {"cases": [TALL[0] | {"pier": TALL[0]["pier"] | {"highest_m": 31.25}}]}, PARTS,
+         ("31.25 m high, 4 m wide", "1 station", "one component", "one run, all end standing")),
+        (ONE | {"cases": TALL}, PARTS, ("4 m wide", "1 station", "one component", "4 runs, all end standing")),
         (ONE | {"cases": three_piers(), "varied": ("p",)}, "",
          ("α = 0.13, p = 0.38, 0.36, 0.35 rad/s", "1 station", "one component", "15 runs, all end standing")),
         (ONE | {"cases": TALL}, "", ("α = 0.13", "1 station", "one component", "4 runs, all end standing")),

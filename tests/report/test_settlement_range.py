@@ -26,7 +26,7 @@ def test_settlement_is_a_range_in_the_report_on_the_terminal_and_in_checks(tmp_p
     assert f"the worse of two spring laws counts: {high:.4g} by that of the case, {low:.4g} by the other" in page.text
 
 
-def test_without_a_check_or_a_wish_for_the_other_law_the_page_says_by_which_law_it_is(tmp_path):
+def test_the_page_says_by_which_law_a_settlement_is_if_the_other_was_not_asked_for(tmp_path):
     path, out = write_study(tmp_path, study_text(cases=(PADS | {"eta": 2.2, "epsilon": 0.1},))), tmp_path / "out"
     assert "settlement_other_law_m" not in rb.run(path, out)
     text = Page((out / "report.html").read_text(encoding="utf-8")).text

@@ -32,7 +32,7 @@ from rockbatch.quantities.catalogue import (
     names,
     report_columns,
 )
-from rockbatch.quantities.quantity import BENDING, Limit, Quantity
+from rockbatch.quantities.quantity import BENDING, FOOTING, Limit, Quantity
 from rockbatch.reporting import write_comparison, write_report
 from rockbatch.results.columns import columns, units
 from rockbatch.results.reading import read_saved
@@ -120,7 +120,7 @@ def test_a_name_ends_with_its_unit():
     """``theta_res_drift_per_s`` is 1/s, ``energy_input_J_kg`` is J/kg; pint reads them all."""
     endings = {"s": "s", "m": "m", "rad": "rad", "J/kg": "J_kg", "m/s": "m_s", "1/s": "per_s"}
     endings |= {"m/s^2": "m_s2", "kN": "kN", "kN*s": "kN_s", "standard_gravity": "g", "m^2/s^2": "m2_s2"}
-    endings |= {"kN*m": "kNm", "kJ": "kJ"}
+    endings |= {"kN*m": "kNm", "kJ": "kJ", "MPa": "MPa"}
     for column in COLUMNS.values():
         pint.Unit(column.unit)
         ended = [unit for unit, ending in endings.items() if column.name.endswith(f"_{ending}")]
@@ -143,7 +143,7 @@ def test_the_page_shows_a_column_in_the_unit_of_its_heading():
 
 def test_every_number_of_an_outcome_has_its_column():
     taken = {column.source for column in COLUMNS.values() if isinstance(column.source, str)}
-    of_functions = {"energies", "forces", "device_work"}  # each of theirs has a column of its own
+    of_functions = {"energies", "forces", "device_work", "bed"}  # each of theirs has a column of its own
     of_functions |= {"flight_duration", "flight_height"}  # empty where they are 0
     of_functions |= {"top_drift_max"}  # top_drift_m where the shaft bends
     of_functions |= {"failure"}  # as a plain text
@@ -207,7 +207,7 @@ def test_a_column_is_empty_where_the_table_says_that_it_does_not_apply(study, ta
 def test_the_table_of_a_study_has_the_staying_columns_first_and_those_that_it_asks_for_last(study, table):
     of_devices = (*(column for column in OPTIONAL if column.device), COLUMNS["devices_error"])  # it has no device
     unasked = (*of_devices, COLUMNS["landing_force_kN"], COLUMNS["slides"])
-    asked = [column for column in OPTIONAL if column not in unasked and column.bases != BENDING]
+    asked = [column for column in OPTIONAL if column not in unasked and column.bases not in (BENDING, FOOTING)]
     assert list(table) == [*names(FIXED), *study.varied, *names(TRAILING), *names(asked)]
 
 
@@ -237,6 +237,8 @@ UNSHOWN = {
     "flights", "flight_duration_s", "substeps", "t_end_s", "residual_s", "theta_res_error", "theta_res_drift_per_s",
     "settlement_drift_m_s", "settlement_error_m", "top_drift_error_m", "dissipated_left_J_kg", "dissipated_right_J_kg", "failure",
     *FACTS,
+    "foot_alpha_rad", "bed_force_s", "bed_pressure_s", "bed_pressure_at_m", "yielding_half_cycles", "bed_work_J_kg",
+    "settlement_left_m", "settlement_right_m", "strips_error",
 }  # fmt: skip
 """Columns that stand in peaks.csv alone: counts, times, details of the method, and what the remarks say in words."""
 

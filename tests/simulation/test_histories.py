@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 from studies import PADS, RIGID, SINE, study_text, write_study
 
@@ -191,8 +192,8 @@ def test_a_response_has_the_row_of_the_table_simulated_or_opened(finished, base)
     for row in (simulated.row, opened.row):
         assert list(row.index) == [name for name in table.index if name in row]
         for name, value in table.drop(nothing).items():
-            expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=0, nan_ok=True)
-            assert row[name] == expected, name
+            expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=0)
+            assert pd.isna(row[name]) if pd.isna(value) else row[name] == expected, name
     assert simulated.theta_max == pytest.approx(opened.theta_max, rel=1e-9)
     assert np.abs(simulated.theta).max() <= simulated.theta_max * (1 + 1e-12)
     assert simulated.theta_max == pytest.approx(np.abs(simulated.theta).max(), rel=1e-3)  # the peak is between samples

@@ -9,7 +9,7 @@ from rockbatch.simulation.restraints import _at_rest
 
 UNITS = {
     "half_width": (1, 0), "height": (1, 0), "inertia": (2, 0), "gravity": (1, -2), "yield_deflection": (1, 0),
-    "stiffness": (-1, 0), "yield_force": (1, -2), "damping": (0, -1), "rest": (1, -1),
+    "stiffness": (-1, 0), "yield_force": (1, -2), "damping": (0, -1), "level": (1, 0), "rest": (1, -1),
 }  # fmt: skip
 """Powers of length and time of the numbers that have a unit, per unit mass."""
 

@@ -30,7 +30,7 @@ def test_the_history_of_every_step_without_its_steps_is_that_at_samples_to_the_b
     assert every.at_samples.rows.tobytes() == samples.rows.tobytes() == samples.at_samples.rows.tobytes()
 
 
-def test_the_history_of_a_longer_quiet_time_until_a_run_ends_is_that_of_the_run_to_the_bit(run):
+def test_a_longer_quiet_time_leaves_the_history_of_a_run_the_same_to_the_bit(run):
     outcome = run_fixed(run.pier, run.base, run.motion, 8, 1.0)
     own, longer = (recorded(run, outcome, quiet_s, every_step=True) for quiet_s in (1.0, 30.0))
     assert longer.rows.t[-1] > own.rows.t[-1]

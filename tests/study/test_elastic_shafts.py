@@ -46,6 +46,12 @@ def test_what_cannot_be_is_refused_with_a_remedy(tmp_path, tables, message):
     assert message in messages(tmp_path, **tables)
 
 
+def test_a_pier_that_cannot_be_read_is_not_asked_for_the_period_that_it_has(tmp_path):
+    said = messages(tmp_path, pier=SHAFT | {"width_m": -8.0}, cases=[BENDS])
+    assert "width_m" in said
+    assert "flexural_period_s" not in said
+
+
 def test_keys_of_a_shaft_that_bends_are_columns_of_those_that_do(tmp_path):
     case = BENDS | {
         "shaft": ["rigid", "elastic"],

@@ -166,6 +166,28 @@ def test_springs_at_the_deck_act_in_all_sections_below_it(name):
         check_against_points(seed, BASES[name], vertical=0.3, k_deck=0.3)
 
 
+def test_devices_at_the_deck_push_by_their_laws_between_rows_too():
+    """In the middle of 16 steps within a sampling interval, by the two ends alone; linear in time it would be further away."""
+    rng = np.random.default_rng(45)
+    devices = (rb.Damper("viscous", nu=0.3, at="deck"), rb.Damper("viscous", nu=0.3, brace=0.2, at="deck"))
+    pier, base = random_pier(rng), rb.RigidBase(restraints=(*devices, rb.DeckSpring(lam=0.3)))
+    run, rows = recorded(pier, base, random_motion(rng, pier, 0.3))
+    whole = in_body(of_sections.recorded(run, rows), np.arange(len(rows)), np.ones(len(rows))).on_deck
+    off, off_linear = [], []
+    for i in range(8, len(rows) - 8, 5):
+        near = rows[i - 8 : i + 9]
+        if (near.kind != -2.0).any() or abs(near.t[-1] - near.t[0] - 16 * 0.01 / SUBSTEPS) > 1e-9:
+            continue
+        two = of_sections.recorded(run, rows[[i - 8, i + 8]].view(np.recarray))
+        half_way = in_body(two, np.array([1]), np.array([0.5])).on_deck
+        off.append([abs(push[0] - of_all[i]) for (_, push), (_, of_all) in zip(half_way, whole, strict=True)])
+        off_linear.append([abs(0.5 * (push[i - 8] + push[i + 8]) - push[i]) for _, push in whole])
+    worst, worst_linear = np.max(off, axis=0) / G, np.max(off_linear, axis=0) / G
+    assert (len(off) > 50, len(worst)) == (True, 3)
+    assert (worst < 0.02 * worst_linear).all()
+    assert (worst_linear > 5e-6).all()
+
+
 def test_a_spring_at_the_deck_pushes_horizontally_however_far_the_shaft_leans():
     """Its force in the axes of the shaft, and its moment about the middle of a section below it."""
     zero, lean, push = np.zeros(1), np.array([0.6]), np.array([2.0])

@@ -7,7 +7,6 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -40,7 +39,7 @@ HALVINGS = 10
 REFERENCES = 0.5
 """Share of the time by which the references are to be finished; the rest is for the settings."""
 
-Setting = dict[str, Any]
+Setting = dict[str, object]
 Simulate = Callable[[Sequence[StudyRun]], list[tuple[str, float]]]
 """From runs to their status and θ_max [rad]."""
 
@@ -66,7 +65,7 @@ class Reference:
 
 
 def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Reference | None:
-    """Halve the step until the outcome converges; None for a run that does not, or not in ``seconds``."""
+    """Return a run with its outcome, converged by step halving; None if it does not converge, or not in ``seconds``."""
     (simulation,) = simulations([run])
     pier, base, motion = simulation.pier, simulation.base, simulation.motion
     clock, took = Clock(seconds), 0.0
@@ -91,7 +90,7 @@ def reference(run: StudyRun, quiet_s: float, seconds: float = math.inf) -> Refer
 def references(
     study: Study, motions: MotionSet, most: int, listener: Listener, clock: Clock | None = None
 ) -> list[Reference]:
-    """Return references of at most ``most`` runs of the study, as many as there is time for, without those that do not converge.
+    """Return converged references of at most ``most`` runs of the study, as many as the clock allows.
 
     Raises ``InputError`` if there is none.
     """
@@ -149,7 +148,9 @@ def measure(
     return table
 
 
-def _of_steps(study: Study, references: Sequence[Reference], listener: Listener, clock: Clock) -> list[dict[str, Any]]:
+def _of_steps(
+    study: Study, references: Sequence[Reference], listener: Listener, clock: Clock
+) -> list[dict[str, object]]:
     """Return rows of the study's own setting, measured first, below those with fixed steps for which there is time."""
     numerics = study.numerics
 
@@ -161,13 +162,11 @@ def _of_steps(study: Study, references: Sequence[Reference], listener: Listener,
 
     of_study: Setting = {"method": "study", "substeps": numerics.substeps, "tolerance": numerics.tolerance}
     settings: list[tuple[Setting, Simulate]] = [(of_study, lambda runs: _ends(outcomes_of(runs, numerics)))]
-    settings += [
-        ({"method": method, "substeps": substeps, "tolerance": None}, fixed(substeps, locate))
-        for substeps in SUBSTEPS
-        for method, locate in (("located", True), ("not located", False))
-    ]
+    for substeps in SUBSTEPS:
+        for method, locate in (("located", True), ("not located", False)):
+            settings.append(({"method": method, "substeps": substeps, "tolerance": None}, fixed(substeps, locate)))
     listener.say(f"errors and times of {len(settings)} settings on {count(len(references), 'run')}")
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, object]] = []
     took = 0.0
     with listener.progress(len(settings) * len(references)) as advance:
         for place, (setting, simulate) in enumerate(settings):
@@ -187,7 +186,7 @@ def _ends(outcomes: Sequence[Outcome | None]) -> list[tuple[str, float]]:
     return [(outcome.status, outcome.theta_max) for outcome in outcomes if outcome is not None]  # none was stopped
 
 
-def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, Any]:
+def _measured(references: Sequence[Reference], simulate: Simulate, seconds: float) -> dict[str, object]:
     """Return errors and times of ``simulate`` over the references; once at least, repeated while ``seconds`` remain."""
     runs = [ref.run for ref in references]
     times: list[float] = []
@@ -198,11 +197,10 @@ def _measured(references: Sequence[Reference], simulate: Simulate, seconds: floa
         times.append(time.thread_time() - start)
     finished = sum(math.isfinite(theta_max) for _, theta_max in ends)  # a step that would blow up is not run
     same_status = [status == ref.outcome.status for ref, (status, _) in zip(references, ends, strict=True)]
-    errors = [
-        abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha
-        for ref, alike, (status, theta_max) in zip(references, same_status, ends, strict=True)
-        if alike and status != "overturned"
-    ]
+    errors = []
+    for ref, alike, (status, theta_max) in zip(references, same_status, ends, strict=True):
+        if alike and status != "overturned":
+            errors.append(abs(theta_max - ref.outcome.theta_max) / ref.run.case.pier.alpha)
     return {
         "runs": len(references),
         "error_median": float(np.median(errors)) if errors else None,

@@ -1,9 +1,9 @@
 """Quantities of accuracy.csv: heads, formats and meanings on the terminal and the page."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rockbatch.analyses.accuracy.levels import Level
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.table import Head
 
 QUANTITIES = (
@@ -16,13 +16,15 @@ QUANTITIES = (
     Head("largest", ".1e", value="error_max"),
     Head("time per run [ms]", ".3g", value="milliseconds"),
     Head(
-        "other outcome", ".0f", "runs that end otherwise than the reference: overturned, flight",
+        "other outcome",
+        ".0f",
+        "runs that end otherwise than the reference: overturned, flight",
         value=lambda level: level["status_differs"] or None,
     ),
-)  # fmt: skip
+)
 """Of :func:`rows`."""
 
 
-def rows(levels: Sequence[Level]) -> list[Mapping[str, Any]]:
+def rows(levels: Sequence[Level]) -> list[Entry]:
     """Return the fields of each level, with its time per run [ms]."""
     return [vars(level) | {"milliseconds": level.milliseconds} for level in levels]

@@ -13,19 +13,24 @@ from rockbatch.reporting.templates import render
 
 
 def section(contents: Contents) -> Markup:
-    """Show the measurement of this study; empty without one."""
+    """Return the report's section of error against time measured for this study; empty without a measurement."""
     levels = read(contents.directory / "accuracy.csv", contents.study["sha256"])
     if not levels:
         return Markup("")
     own, last_change = chosen(levels), max((level.reference_change or 0.0 for level in levels), default=0)
     return render(
-        "analyses/accuracy/section.html", levels=levels, own=own, picture=drawn(error_and_time(levels)), last_change=last_change,
-        remarks=list(_remarks(own, last_change)) if own else [], table=listed(QUANTITIES, rows(levels)),
-    )  # fmt: skip
+        "analyses/accuracy/section.html",
+        levels=levels,
+        own=own,
+        picture=drawn(error_and_time(levels)),
+        last_change=last_change,
+        remarks=list(_remarks(own, last_change)) if own else [],
+        table=listed(QUANTITIES, rows(levels)),
+    )
 
 
 def _remarks(own: Level, last_change: float) -> Iterator[str]:
-    """Yield what the error of the study's own setting does not say."""
+    """Yield remarks on the limits of the measured error of the study's own setting."""
     error, differing = own.error_max or 0.0, int(own.status_differs or 0)
     if own.tolerance and error > own.tolerance:
         yield "that is more than the tolerance"

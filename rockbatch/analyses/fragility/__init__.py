@@ -1,4 +1,4 @@
-"""Fragility: how probable overturning, and every limit of a check, is at a given intensity; annual rates from a hazard."""
+"""Fragility: the probability of overturning and of exceeding each limit of a check, by intensity; annual rates by a hazard."""
 
 from rockbatch.common.analyses import Door, ReportPart
 

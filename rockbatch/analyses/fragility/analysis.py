@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from rockbatch.analyses.fragility.cloud_tables import CLOUD, cloud_table
 from rockbatch.analyses.fragility.clusters import clusters
@@ -67,9 +67,14 @@ class Fragility(Analysis):
 
     NAME: ClassVar[str] = "fragility"
     TABLES: ClassVar[tuple[str, ...]] = (
-        "fragility_scales", "fragility", "fragility_cloud", "fragility_capacities", "fragility_risk", "fragility_deaggregation",
+        "fragility_scales",
+        "fragility",
+        "fragility_cloud",
+        "fragility_capacities",
+        "fragility_risk",
+        "fragility_deaggregation",
         "fragility_runs",
-    )  # fmt: skip
+    )
 
     fragility: "pd.DataFrame"
     fragility_capacities: "pd.DataFrame | None"
@@ -124,11 +129,16 @@ class Fragility(Analysis):
 
 @checked
 def fragility(
-    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
-    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: Motions = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = None,
     im: "Mapping[str, float] | pd.Series | str | os.PathLike[str] | None" = None,
-) -> Fragility:  # fmt: skip
-    """Compute how probable overturning, and every limit of a check, is at a given intensity: [fragility] of a study.
+) -> Fragility:
+    """Compute the probability of overturning, and of exceeding every limit of a check, by intensity: [fragility] of a study.
 
     Every horizontal component is a record here, whatever [suite] says: a probability is that of a motion along the pier. Those
     of one station are not independent: intervals count stations, or earthquakes where five or more are known.
@@ -178,11 +188,11 @@ def fragility(
 
 
 def _of_pier(spec: FragilitySpec) -> bool:
-    """Return whether both axes of a pier share a curve."""
+    """Return whether the two axes of a pier share a curve, as intensities over g tan α do."""
     return spec.of_pier
 
 
-def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, Any]:
+def _write_tables(results: AnalysisFolder, spec: FragilitySpec) -> dict[str, object]:
     study = results.study = replace(results.study, output=output(spec, results.study.output))
     listener, records = results.listener, results.read_motions(study).motions
     plans = level_plans(study, spec, records)

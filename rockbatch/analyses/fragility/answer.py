@@ -1,10 +1,10 @@
 """The answer of a fragility in sentences: the weakest case, for overturning and for the limit that is exceeded first."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from rockbatch.analyses.fragility.figures import label
 from rockbatch.analyses.fragility.quantities import FEW, Curve, bound_in_words, level_of, percent, power
+from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
 from rockbatch.reporting.finished_analysis import answered, sentence
 from rockbatch.reporting.labels import counted
@@ -18,12 +18,12 @@ APART = 0.1
 MOST_NAMES = 3
 """Most cases that a remark names."""
 
-Info = Mapping[str, Any]
+Info = Entry
 """Content of fragility.json."""
 
 
 def of_curves(info: Info) -> Markup:
-    """Return the weakest case for overturning and for the limit that is exceeded first, and what leaves them open."""
+    """Return sentences on the weakest case for overturning and for the limit exceeded first, and remarks on their uncertainty."""
     overturning, *others = grouped(info["curves"], lambda curve: curve["limit_state"]).values()
     sentences = [_of_limit(info, overturning, _capital(overturning[0]["limit_state"]))]
     weakest = min(others, key=_lowest, default=None)
@@ -38,7 +38,7 @@ def of_curves(info: Info) -> Markup:
 
 
 def of_rates(info: Info) -> Markup:
-    """Return how often the worst case overturns and exceeds the limit that is exceeded most often, and what leaves that open."""
+    """Return sentences on the highest annual rates of overturning and of any limit, and remarks on their uncertainty."""
     by_limit = grouped(info["curves"], lambda curve: curve["limit_state"])
     known = {name: [curve for curve in curves if curve["risk"]] for name, curves in by_limit.items()}
     overturning, *_ = known
@@ -97,7 +97,7 @@ def _never(curve: Curve) -> bool:
 
 
 def _left_open(info: Info, curve: Curve, curves: Sequence[Curve]) -> Iterator[str]:
-    """Yield what leaves the median of ``curve`` open, the lowest of ``curves``, beside its interval."""
+    """Yield doubts about ``curve``, the lowest of ``curves``: undecided runs, extrapolation, a case that may be weaker."""
     undecided = sum(curve["undecided"][kind] for kind in ("flight", "failed", "other"))
     runs = f"{undecided} of {counted(curve['undecided']['runs'], 'run')}"
     if curve["says_little"]:
@@ -132,7 +132,7 @@ def _of_all(info: Info) -> Iterator[str]:
 
 
 def _shared(info: Info) -> Iterator[str]:
-    """Yield what intervals rest on where records share a station or an earthquake."""
+    """Yield the basis of intervals if records share a station or an earthquake."""
     stations, events = info.get("stations", info["records"]), info.get("events", 0)
     if info.get("by") == "event":
         yield f"Intervals are by earthquake: the records are of {events}."
@@ -195,12 +195,12 @@ def _strength(curve: Curve) -> float:
     return min(half, default=float("inf"))
 
 
-def _decided(curve: Curve) -> list[Mapping[str, Any]]:
+def _decided(curve: Curve) -> list[Entry]:
     return [point for point in curve["points"] if point["records"] > point["undecided"]]
 
 
-def _withstood(points: Sequence[Mapping[str, Any]], curve: Curve) -> bool:
-    """Return whether no record is known to exceed the limit, at ``points`` or between the levels."""
+def _withstood(points: Sequence[Entry], curve: Curve) -> bool:
+    """Return whether no record exceeds the limit, at ``points`` or between the levels, as far as runs are decided."""
     return not any(point["exceeded"] for point in points) and all(high is None for _, high in curve["capacities"])
 
 
@@ -219,7 +219,7 @@ def _unknown(curve: Curve) -> bool:
 
 
 def _overlap(curve: Curve, other: Curve) -> bool:
-    """Return whether the median of another curve may be as low, by the intervals."""
+    """Return whether another curve's median may be as low, by the intervals of both; False without one of these."""
     if other["median_interval"] is None or curve["median_interval"] is None:
         return False
     low, high = (other["median_interval"][0] or 0.0), curve["median_interval"][1]
@@ -227,7 +227,7 @@ def _overlap(curve: Curve, other: Curve) -> bool:
 
 
 def _records(curve: Curve) -> str:
-    """Return how many records count, at every level where that differs."""
+    """Return the number of records in words, at each level if it differs between them."""
     numbers = [point["records"] for point in curve["points"]]
     least, most = (sum(numbers),) * 2 if "cloud" in curve else (min(numbers), max(numbers))
     return counted(most, "record") if least == most else f"{least} to {most} records a level"
@@ -245,7 +245,7 @@ def _intensity(info: Info, value: float) -> str:
 
 
 def _rate(curve: Curve) -> float:
-    """Return the rate of a curve, or the greatest bound that it has."""
+    """Return the annual rate of a curve, or its greatest bound; 0 without either."""
     risk = curve["risk"]
     rate = (risk["rate_least"] or risk["rate_most"]) if risk["bound"] else risk["rate_per_year"]
     return float(rate or 0.0)

@@ -1,4 +1,4 @@
-"""Cloud analysis: fragility from records as they are, by a line ln demand over ln intensity and a logistic share that overturns.
+"""Cloud analysis: fragility from unscaled records, by a line of ln demand over ln intensity and a logistic share of overturning.
 
 Of the records that stand, ln D = ln a + b ln x + ε, with ε normal of deviation σ; the share that overturns is logistic in ln x:
 
@@ -73,7 +73,7 @@ class Logistic:
 
 
 def _dispersion(x_16: Values, x_84: Values) -> Values:
-    """Return half of ln(x_84/x_16), shape (n,), infinite where a curve does not come from one to the other."""
+    """Return half of ln(x_84/x_16), shape (n,), infinite where a curve does not reach both."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where((x_16 > 0) & np.isfinite(x_84), 0.5 * np.log(x_84 / x_16), np.inf)
 
@@ -280,7 +280,7 @@ def _refused(station: Numbers) -> NoCurve | None:
 
 
 def _without_both(x: Values, happened: npt.NDArray[np.bool_]) -> NoCurve:
-    """Return the bound of the median where all records exceed the limit, or none."""
+    """Return the bound of the median if all records exceed the limit, or none does; no curve can be fitted then."""
     if happened.all():
         return NoCurve(
             f"every record exceeds the limit from {x.min():.4g} on: the median is below, weaker ones are needed",
@@ -307,7 +307,7 @@ def fit_event(
 
 
 def _share(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic | NoCurve | None:
-    """Return the share that overturns, None if no record did, or why there is none."""
+    """Return the logistic share that overturns; None if no record did, or the reason why there is none."""
     if not happened.any():
         return None
     if happened.all():
@@ -370,7 +370,7 @@ class _MeanSquares:
     shares: Values
 
     def drawn(self, rng: np.random.Generator) -> Values:
-        """Return what the variances may be, shape (DRAWS, 2): mean squares over χ² variables of their degrees of freedom."""
+        """Return draws of the two variances, shape (DRAWS, 2): mean squares over χ² variables of their degrees of freedom."""
         return self.values * self.free / rng.chisquare(self.free, (DRAWS, 2))
 
 
@@ -415,7 +415,7 @@ def _derivatives(point: Values, x: Values, log_d: Values, xc: Values, bounds: Va
 
 
 def _logistic(log_x: Values, happened: npt.NDArray[np.bool_], station: Numbers) -> Logistic:
-    """Return Firth's logistic regression, by Newton's method on its penalised score; draws are stretched by stations."""
+    """Return Firth's logistic regression, by Newton's method on its penalised score, with draws widened for shared stations."""
     centre, width = log_x.mean(), log_x.std()
     x = np.column_stack((np.ones(len(log_x)), (log_x - centre) / width))
     coefficients = np.zeros(2)

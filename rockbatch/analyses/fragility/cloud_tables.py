@@ -1,7 +1,6 @@
-"""Cloud analysis as output: what each run came to, and the line and the logistic part of each curve."""
+"""Output of a cloud analysis: the result of each run, and the line and the logistic part of each curve."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -25,19 +24,26 @@ def cloud_table(
     It ``counts`` in the "line", as "below" the share of the limit under which demands are censored, as "overturned" or by the
     event, as "undecided", or is "left out".
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, object]] = []
     for curve in curves:
         constants = {"measure": spec.label, "unit": spec.unit, "limit": threshold(curve.limit)}
         rows += [
-            {"record": names[run.motion]} | curve.identity(varied) | constants
-            | {"intensity": run.intensity, "demand": run.demand, "status": run.status, "counts": counts(run, curve, spec)}
+            {"record": names[run.motion]}
+            | curve.identity(varied)
+            | constants
+            | {
+                "intensity": run.intensity,
+                "demand": run.demand,
+                "status": run.status,
+                "counts": counts(run, curve, spec),
+            }
             for run in curve.cloud
-        ]  # fmt: skip
+        ]
     return pd.DataFrame(rows)
 
 
 def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
-    """Return how a run counts in a curve, in a word or two."""
+    """Return how a run counts: "line", "below", "overturned", "undecided", "left out"; for an event "exceeds" or "within"."""
     if run.state == LEFT_OUT:
         return "left out"
     if run.state == UNDECIDED and run.status != "ok":
@@ -49,8 +55,8 @@ def counts(run: CloudPoint, curve: Curve, spec: FragilitySpec) -> str:
     return "line" if run.demand > spec.censored_below * threshold(curve.limit) else "below"
 
 
-def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
-    """Return the cloud of a curve for fragility.json: its runs as they are drawn, its line and its logistic part."""
+def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
+    """Return the entry of a curve's cloud in fragility.json: its runs, its line and its logistic part."""
     fitted = curve.fitted
     line = fitted.line if isinstance(fitted, Cloud) else None
     share = fitted.overturning if isinstance(fitted, Cloud) else None
@@ -73,7 +79,7 @@ def described_cloud(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
 
 
 def note_on_cloud(curve: Curve, spec: FragilitySpec) -> list[str]:
-    """Return remarks on what a curve of a cloud rests on."""
+    """Return remarks on a curve of a cloud: few records beyond the limit, none overturning, some below the censoring."""
     notes = []
     beyond = sum(run.state == EXCEEDED for run in curve.cloud)
     if beyond < FEW:

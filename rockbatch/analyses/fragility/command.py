@@ -1,8 +1,6 @@
 """``rockbatch fragility``: the probability of overturning, and of exceeding every limit of a check, at a given intensity."""
 
 import argparse
-from collections.abc import Mapping
-from typing import Any
 
 from rockbatch.analyses.fragility.analysis import fragility
 from rockbatch.analyses.fragility.limit_states import words
@@ -10,6 +8,7 @@ from rockbatch.analyses.fragility.quantities import Curve, of_curves, of_rates
 from rockbatch.analyses.fragility.study import FragilitySpec
 from rockbatch.analyses.fragility.tables import RUNS
 from rockbatch.batch.listening import count
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.table import Head
 from rockbatch.study import Study
 from rockbatch.terminal.analysis import analysis_arguments, in_lines, print_files
@@ -32,7 +31,7 @@ def main(arguments: argparse.Namespace, study: Study) -> int:
     return 1 if result.unusable or failed else 0
 
 
-def table(info: Mapping[str, Any], spec: FragilitySpec) -> str:
+def table(info: Entry, spec: FragilitySpec) -> str:
     """Return medians and dispersions with their intervals, a line for each limit and case, with remarks.
 
     ``info`` is the content of fragility.json.
@@ -57,7 +56,7 @@ def table(info: Mapping[str, Any], spec: FragilitySpec) -> str:
 
 
 def added(spec: FragilitySpec) -> str:
-    """Return the dispersion that the study adds, in words, and what it does not contain; empty if it adds none."""
+    """Return the study's added dispersion in words, with the inputs that it does not contain; empty without any."""
     parts = ", ".join(f"{dispersion.name} {dispersion.value:g}" for dispersion in spec.dispersions)
     if not parts:
         return ""
@@ -65,7 +64,7 @@ def added(spec: FragilitySpec) -> str:
     return f"added to the dispersion of the records, for rates: {parts}; together {spec.added:.3g}{drawn}"
 
 
-def risk_lines(info: Mapping[str, Any]) -> str:
+def risk_lines(info: Entry) -> str:
     """Return annual rates and probabilities with their intervals, a line for each limit and case, with their basis."""
     curves = [curve for curve in info["curves"] if curve["risk"]]
     if not curves:

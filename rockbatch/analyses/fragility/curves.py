@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -55,7 +55,7 @@ class Stripe(NamedTuple):
 
 
 class Undecided(NamedTuple):
-    """Runs of a curve of which it is not known on which side of the limit they are: they flew, failed, or else.
+    """Runs of a curve that are on an unknown side of the limit, because they flew, failed, or for another reason.
 
     ``runs`` is the number of all runs of the curve; ``other`` are within their error of the limit, or overturned where the
     check counts that as unknown.
@@ -68,7 +68,7 @@ class Undecided(NamedTuple):
 
     @property
     def number(self) -> int:
-        """Return the number of all of them."""
+        """Return the total number of undecided runs."""
         return self.flight + self.failed + self.other
 
     @property
@@ -84,7 +84,7 @@ Fitted = Lognormal | cloud.Cloud
 
 
 class Readings(NamedTuple):
-    """The curves with all undecided runs counted as beyond the limit, and as within it, or why there is none."""
+    """Two curves with all undecided runs counted beyond the limit, and within it, or the reasons why there is none."""
 
     exceeded: Fitted | NoCurve
     withstood: Fitted | NoCurve
@@ -160,7 +160,7 @@ class Curve:
 
     @property
     def inconclusive(self) -> bool:
-        """Return whether undecided runs leave the median more open than the number of records does."""
+        """Return whether undecided runs open the median more than its confidence interval does."""
         if self.readings is None or isinstance(self.fitted, NoCurve):
             return False
         ratio, interval = _ratio(self.readings.medians), self.fitted.median_interval
@@ -180,8 +180,8 @@ class Curve:
         n, beyond, open_ = np.array([(each.records, each.exceeded, each.undecided) for each in counting], dtype=float).T
         return levels, beyond / n, (beyond + open_) / n
 
-    def identity(self, varied: Sequence[str]) -> dict[str, Any]:
-        """Return the columns that name it in tables: its case, the ``varied`` values of that, and its limit."""
+    def identity(self, varied: Sequence[str]) -> dict[str, object]:
+        """Return the columns that identify it in tables: its case with the ``varied`` values, and its limit."""
         columns = {name: self.case.columns.get(name) for name in varied}
         return {"case": self.case.name, **columns, "limit_state": self.limit.name}
 
@@ -246,7 +246,7 @@ class Member(NamedTuple):
 
 
 def _shared_by(case: Case, spec: FragilitySpec) -> Hashable:
-    """Return what cases that share a curve have in common: their name, and all values that are not the pier's."""
+    """Return a key shared by cases with one curve: their name and values that are not the pier's; else one of its own."""
     if not spec.of_pier:
         return id(case)
     return case.across_of or case.name, *((name, each) for name, each in case.columns.items() if name not in PIER_KEYS)
@@ -306,13 +306,13 @@ Interval = tuple[Point, float, float]
 
 
 def _one_sided(point: Point, state: int) -> Interval:
-    """Return the interval that the state of a run gives: any capacity if it is not decided."""
+    """Return the interval of capacities by the state of a run; 0 to infinity if it is undecided."""
     low, high = point.intensity if state == WITHSTOOD else 0.0, point.intensity if state == EXCEEDED else math.inf
     return point, low, high
 
 
 def _with_share(curve: Curve, runs: RecordRuns, intervals: Sequence[Interval], confidence: float) -> Curve:
-    """Return the curve with what drawn inputs contribute to its dispersion, by the intervals of capacities."""
+    """Return the curve with the contribution of drawn inputs to its dispersion, by the intervals of capacities."""
     informative = [interval for interval in intervals if interval[1] > 0 or math.isfinite(interval[2])]
     scores = [runs.drawn(point).scores for point, _, _ in informative]
     if not scores or not scores[0]:
@@ -362,7 +362,7 @@ def _of_cloud(runs: RecordRuns, spec: FragilitySpec, numbers: Sequence[int], rul
 
 
 def _is_doubtful(run: CloudPoint) -> bool:
-    """Return whether a run is undecided for another reason than the error of its demand, which a line does not mind."""
+    """Return whether a run is undecided for another reason than the error of its demand, which does not affect a line."""
     return run.state == UNDECIDED and run.status != "ok"
 
 

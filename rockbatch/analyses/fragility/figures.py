@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
+from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import (
     Area,
     Array,
@@ -30,7 +30,7 @@ STRIP = 0.03
 CASES_OF_A_PANEL = 4
 """Most curves of a panel, since more bands would hide each other."""
 
-Curve = Mapping[str, Any]
+Curve = Entry
 """One of ``curves`` of fragility.json."""
 
 
@@ -40,20 +40,20 @@ def label(entry: Curve) -> str:
 
 
 def in_brackets(unit: str) -> str:
-    """Return a unit as heads and axes have it; empty without one."""
+    """Return a unit in brackets, "[g]", for heads and axes; empty without one."""
     return f"[{unit}]" if unit else ""
 
 
-def _looks(info: Mapping[str, Any]) -> dict[str, Look]:
+def _looks(info: Entry) -> dict[str, Look]:
     """Return the marks of each case, the same in every figure."""
     return {name: marks_of(i) for i, name in enumerate(dict.fromkeys(map(label, info["curves"])))}
 
 
-def _intensity(info: Mapping[str, Any]) -> str:
+def _intensity(info: Entry) -> str:
     return f"{info['measure']} {in_brackets(info['unit'])}".strip()
 
 
-def curves(info: Mapping[str, Any]) -> Figure:
+def curves(info: Entry) -> Figure:
     """Return the share of the records that exceed each limit, the fitted curves and their bands."""
     looks, panels = _looks(info), []
     for name, of_limit in grouped(info["curves"], lambda entry: entry["limit_state"]).items():
@@ -126,9 +126,12 @@ def _of_shares(entry: Curve, look: Look) -> Iterator[Mark]:
     yield Points(levels, shares, None, titles, look=Look("", look.colour, shape=look.shape, open=True), label=name)
 
 
-def _said(entry: Curve, point: Mapping[str, Any]) -> str:
-    ends = [f"{point[name]} {words}" for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
-            if point[name]]  # fmt: skip
+def _said(entry: Curve, point: Entry) -> str:
+    ends = [
+        f"{point[name]} {words}"
+        for name, words in (("collapsed", "overturned"), ("flight", "flew"), ("failed", "failed"))
+        if point[name]
+    ]
     counts = f"{label(entry)}, {point['level']:g}: {point['exceeded']} of {point['records']} records exceed the limit"
     undecided = [f"{point['undecided']} undecided"] if point["undecided"] else []
     return "; ".join([counts, *undecided, *ends])
@@ -141,7 +144,7 @@ def _steps(capacities: Sequence[float | None], right: float) -> tuple[Array, Arr
     return np.concatenate(([0.0], np.repeat(finite, 2), [right])), np.repeat(shares, 2)
 
 
-def clouds(info: Mapping[str, Any]) -> Figure:
+def clouds(info: Entry) -> Figure:
     """Return the demand of every record over its intensity, the line through them and its standard deviation, and the limit."""
     looks = _looks(info)
     shown = [entry for entry in info["curves"] if _has_demands(entry)]
@@ -154,7 +157,7 @@ def _has_demands(entry: Curve) -> bool:
     return cloud["floor"] is not None and 0 < cloud["limit"] < math.inf
 
 
-def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
+def _cloud(info: Entry, entry: Curve, look: Look) -> Panel:
     """Return the cloud of a curve, with its limit; what overturned above all demands."""
     cloud, runs = entry["cloud"], entry["cloud"]["runs"]
     demands = [run["demand"] for run in runs if run["counts"] == "line"] + [cloud["limit"], cloud["floor"]]
@@ -173,9 +176,10 @@ def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
             up = np.exp(middle + shift)
             marks.append(_line(across, np.where((up >= y.low) & (up <= top), up, np.nan), look, dash))
     kinds = {  # which runs, where they are drawn, how
-        "line": (None, look, label(entry)), "below": (cloud["floor"], Look("", look.colour, shape="down", open=True), ""),
+        "line": (None, look, label(entry)),
+        "below": (cloud["floor"], Look("", look.colour, shape="down", open=True), ""),
         "overturned": (math.sqrt(top * y.high), sign_of("overturned"), ""),
-    }  # fmt: skip
+    }
     for counts, (height, own, name) in kinds.items():
         counted = [run for run in runs if run["counts"] == counts]
         up = np.array([run["demand"] if height is None else height for run in counted], dtype=float)
@@ -189,7 +193,7 @@ def _cloud(info: Mapping[str, Any], entry: Curve, look: Look) -> Panel:
     return Panel(x, y, marks, f"{entry['limit_state']}, {label(entry)}")
 
 
-def risk(info: Mapping[str, Any], shown: Sequence[Curve]) -> Figure:
+def risk(info: Entry, shown: Sequence[Curve]) -> Figure:
     """Return the hazard of the site, and from which intensities the rate of each limit comes."""
     hazard, looks = info["hazard"], _looks(info)
     across, rate = (np.array(hazard["drawn"][name]) for name in ("x", "rate"))
@@ -208,7 +212,7 @@ def risk(info: Mapping[str, Any], shown: Sequence[Curve]) -> Figure:
     return Figure(panels, "Annual rates")
 
 
-def _densities(info: Mapping[str, Any], shown: Sequence[Curve], looks: Mapping[str, Look], caption: str) -> Panel:
+def _densities(info: Entry, shown: Sequence[Curve], looks: Mapping[str, Look], caption: str) -> Panel:
     densities = [entry["risk"]["density"] for entry in shown]
     ends = [float(x) for density in densities for x in (density["x"][0], density["x"][-1])] or [0.1, 10.0]
     most = max((max(density["share"]) for density in densities), default=1.0)

@@ -49,48 +49,94 @@ IN_M_S = Usual(10.0, "m/s: the strongest earthquakes had some 3 m/s")
 """Usual levels of intensity, small ones too: slender blocks overturn at next to nothing."""
 
 _RATES = ("rate_per_year", "return_period_years")
-HAZARD = Section(("fragility", "hazard"), (
-    "The hazard of the site, which turns fragilities into annual rates and probabilities: how often each intensity is exceeded. "
-    "Points stand here or in a file; between them, and beyond, the curve is straight in logarithms."
-), {
-    "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True, usual=IN_G),
-    "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True, usual=IN_M_S),
-    "levels": Key(positive, "[0.5, 1.0, 2.0]", "Intensities of the points, of another measure in its unit.", many=True),
-    "rate_per_year": Key(positive, "[0.01, 0.0021, 0.0004]", "Mean annual rates at which they are exceeded.", many=True,
-        usual=Usual(2.0, "per year: hazard is given for 0.1 to 1e-6; return periods are return_period_years")),
-    "return_period_years": Key(positive, "[100, 475, 2475]", "Reciprocals of these rates, to be given instead.", many=True,
-        usual=Usual(math.inf, "years: hazard is given for 10 to 1e6 years; rates are rate_per_year", 0.5)),
-    "file": Key(text, '"hazard.csv"',
-        "A CSV file with the points, relative to the study: columns levels_g, levels_m_s or levels, and rate_per_year or "
-        "return_period_years."),
-    "slope": Key(positive, "3.0",
-        "k of a rate that falls as 1/x^k, through a single point; of ground accelerations it is of the order of 3."),
-    "shape": Key(choice("points", "quadratic"), '"quadratic"',
-        '"points": straight lines between the points in logarithms; "quadratic": one parabola through three points, or by least '
-        "squares through more.", default="points"),
-    "years": Key(positive, "[50, 100]", "Periods for which probabilities are given.", many=True, default=YEARS),
-    "source": Key(text, '"national model 2020, site class B"', "Source of the curve, for the report."),
-    **CONFIRM,
-}, clashes=(
-    Clash(("rate_per_year", "return_period_years"), "rate_per_year and return_period_years are given; keep one"),
-    Clash(("file", "levels_g"), "file and levels_g are given; keep one"),
-    Clash(("file", "levels_m_s"), "file and levels_m_s are given; keep one"),
-    Clash(("file", "levels"), "file and levels are given; keep one"),
-    Clash(("file", "rate_per_year"), "file and rate_per_year are given; write the rates into the file, or the levels here"),
-    Clash(("file", "return_period_years"),
-        "file and return_period_years are given; write the periods into the file, or the levels here"),
-))  # fmt: skip
-DISPERSION = Section(("fragility", "dispersion"), (
-    "Dispersion that the records do not show, such as that of the model or of the limit itself: added to theirs by the root of "
-    "the squares, as in FEMA P-695 and P-58. Write one for each source."
-), {
-    "name": Key(text, '"modelling"', "What it is, for table and report.", required=True),
-    "value": Key(Number("a number above 0 and at most 2", low=0.0, high=2.0, above=True), "0.3",
-        "Standard deviation of the logarithm of the intensity.", required=True),
-    "source": Key(text, '"judgement: good model, no tests"', "Source of the value, for the report."),
-    "without": Key(text, '["alpha", "restitution"]',
-        "The inputs of [fragility.uncertain], whose scatter this value must not contain: it is in the curve already.", many=True),
-}, many=True, homes=(Dispersion,))  # fmt: skip
+HAZARD = Section(
+    ("fragility", "hazard"),
+    (
+        "The hazard of the site, which turns fragilities into annual rates and probabilities: how often each intensity is "
+        "exceeded. Points stand here or in a file; between them, and beyond, the curve is straight in logarithms."
+    ),
+    {
+        "levels_g": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGA or Sa.", many=True, usual=IN_G),
+        "levels_m_s": Key(positive, "[0.1, 0.2, 0.4]", "Intensities of the points, of PGV.", many=True, usual=IN_M_S),
+        "levels": Key(
+            positive, "[0.5, 1.0, 2.0]", "Intensities of the points, of another measure in its unit.", many=True
+        ),
+        "rate_per_year": Key(
+            positive,
+            "[0.01, 0.0021, 0.0004]",
+            "Mean annual rates at which they are exceeded.",
+            many=True,
+            usual=Usual(2.0, "per year: hazard is given for 0.1 to 1e-6; return periods are return_period_years"),
+        ),
+        "return_period_years": Key(
+            positive,
+            "[100, 475, 2475]",
+            "Reciprocals of these rates, to be given instead.",
+            many=True,
+            usual=Usual(math.inf, "years: hazard is given for 10 to 1e6 years; rates are rate_per_year", 0.5),
+        ),
+        "file": Key(
+            text,
+            '"hazard.csv"',
+            "A CSV file with the points, relative to the study: columns levels_g, levels_m_s or levels, and rate_per_year or "
+            "return_period_years.",
+        ),
+        "slope": Key(
+            positive,
+            "3.0",
+            "k of a rate that falls as 1/x^k, through a single point; of ground accelerations it is of the order of 3.",
+        ),
+        "shape": Key(
+            choice("points", "quadratic"),
+            '"quadratic"',
+            '"points": straight lines between the points in logarithms; "quadratic": one parabola through three points, or by '
+            "least squares through more.",
+            default="points",
+        ),
+        "years": Key(positive, "[50, 100]", "Periods for which probabilities are given.", many=True, default=YEARS),
+        "source": Key(text, '"national model 2020, site class B"', "Source of the curve, for the report."),
+        **CONFIRM,
+    },
+    clashes=(
+        Clash(("rate_per_year", "return_period_years"), "rate_per_year and return_period_years are given; keep one"),
+        Clash(("file", "levels_g"), "file and levels_g are given; keep one"),
+        Clash(("file", "levels_m_s"), "file and levels_m_s are given; keep one"),
+        Clash(("file", "levels"), "file and levels are given; keep one"),
+        Clash(
+            ("file", "rate_per_year"),
+            "file and rate_per_year are given; write the rates into the file, or the levels here",
+        ),
+        Clash(
+            ("file", "return_period_years"),
+            "file and return_period_years are given; write the periods into the file, or the levels here",
+        ),
+    ),
+)
+DISPERSION = Section(
+    ("fragility", "dispersion"),
+    (
+        "Dispersion that the records do not show, such as that of the model or of the limit itself: added to theirs by the root "
+        "of the squares, as in FEMA P-695 and P-58. Write one for each source."
+    ),
+    {
+        "name": Key(text, '"modelling"', "What it is, for table and report.", required=True),
+        "value": Key(
+            Number("a number above 0 and at most 2", low=0.0, high=2.0, above=True),
+            "0.3",
+            "Standard deviation of the logarithm of the intensity.",
+            required=True,
+        ),
+        "source": Key(text, '"judgement: good model, no tests"', "Source of the value, for the report."),
+        "without": Key(
+            text,
+            '["alpha", "restitution"]',
+            "The inputs of [fragility.uncertain], whose scatter this value must not contain: it is in the curve already.",
+            many=True,
+        ),
+    },
+    many=True,
+    homes=(Dispersion,),
+)
 
 
 def read_hazard(file: TomlFile, levels: str) -> Hazard | None:
@@ -148,7 +194,7 @@ def _curve(table: Table, points: dict[str, Any], levels: str, read: dict[str, An
 
 
 def read_dispersions(file: TomlFile, drawn: Sequence[str] = ()) -> tuple[Dispersion, ...]:
-    """Return the dispersions that a study adds; mistakes are noted, such as one that may contain inputs that are ``drawn``."""
+    """Return a study's added dispersions; complain about mistakes, also about values that may contain ``drawn`` inputs."""
     added: list[Dispersion] = []
     for table in file.tables("fragility", "dispersion", title="name"):
         read = table.read(DISPERSION)

@@ -74,7 +74,7 @@ class Capacities:
     def of_same_records(
         cls, levels: Values, within: Values, beyond: Values, station: Numbers | None = None
     ) -> "Capacities":
-        """Return those of m records, each ``within`` or ``beyond`` the limit at each level, shape (m, n), or neither."""
+        """Return the capacities of m records, ``within`` or ``beyond`` the limit, or neither, at n levels, shape (m, n)."""
         of_record = np.hstack((beyond, within)).astype(np.float64)
         low = np.concatenate((np.zeros(len(levels)), levels))
         high = np.concatenate((levels, np.full(len(levels), np.inf)))
@@ -85,7 +85,7 @@ class Capacities:
 
     @classmethod
     def of_brackets(cls, low: Values, high: Values, station: Numbers | None = None) -> "Capacities":
-        """Return those of m records with one bracket each, shape (m,), leaving out those of which nothing is known."""
+        """Return the capacities of m records with one bracket each, shape (m,), leaving out those of unknown capacity."""
         known = (low > 0) | np.isfinite(high)
         station = np.arange(len(low)) if station is None else station
         return cls(low[known], high[known], np.ones(known.sum()), None, station[known])
@@ -107,7 +107,7 @@ class Capacities:
 
 @dataclass(frozen=True)
 class NoCurve:
-    """Why data have no curve, and what they say about its median: it is above ``above`` and below ``below``."""
+    """The reason why data have no curve, with bounds of the median: above ``above``, below ``below``."""
 
     reason: str
     above: float = 0.0
@@ -182,7 +182,7 @@ class Lognormal:
 
 
 def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve:
-    """Return the curve of the maximum likelihood, its β that of the sample, or why the data do not have one.
+    """Return the curve of maximum likelihood, with an unbiased β², or the reason why the data have none.
 
     The intervals are those of the profile likelihood: extremes over a region of (a, b). Unlike a bootstrap they need no luck:
     with a few records many resampled suites cannot be fitted. Unlike the delta method they keep to θ > 0, β > 0 and
@@ -214,7 +214,7 @@ def fit(capacities: Capacities, confidence: float = 0.95) -> Lognormal | NoCurve
 
 
 def too_few(stations: int) -> str:
-    """Return why so few stations have no curve."""
+    """Return the reason why so few ``stations`` give no curve, in words."""
     return f"records of {counted(stations, 'station')}: a curve takes {STATIONS_OF_CURVE}, and an interval {STATIONS_OF_INTERVAL}"
 
 
@@ -241,7 +241,7 @@ class Contribution:
 def contribution(
     capacities: Capacities, scores: Values, correlation: Values, confidence: float = 0.95
 ) -> Contribution | str:
-    """Return what k inputs contribute that were drawn with normal ``scores``, shape (n, k), or why that is not known, in words.
+    """Return the contribution of k inputs, drawn with normal ``scores`` of shape (n, k), or why it is unknown, in words.
 
     The likelihood is that of :func:`fit` with a factor for each of the scores, z = a + b ln x + Σ c_j s_j, so that an input
     changes ln x by −c_j/b. Of the square that the changes make with their ``correlation``, shape (k, k), the share that
@@ -281,7 +281,7 @@ def contribution(
 
 
 def _degenerate(capacities: Capacities) -> NoCurve | None:
-    """Return why the data give no dispersion, or nothing at all; None if they do."""
+    """Return ``NoCurve`` if the data do not determine a dispersion or a median; None if they do."""
     low, high = capacities.low, capacities.high
     if len(low) == 0:
         return NoCurve("no record counts")
@@ -305,7 +305,7 @@ def _degenerate(capacities: Capacities) -> NoCurve | None:
 
 
 def _outside(median: float, capacities: Capacities) -> NoCurve | None:
-    """Return the bound that an extrapolated median is: beyond the intensities that were run it is not known; else None."""
+    """Return ``NoCurve`` with a bound for a median beyond all intensities that were run; None for others."""
     ends = np.concatenate((capacities.low, capacities.high))
     ends = ends[(ends > 0) & np.isfinite(ends)]
     if median < ends.min():
@@ -408,13 +408,13 @@ class _Likelihood:
         return self.plain(np.array([a, b])).T
 
     def plain(self, ab: Values) -> Values:
-        """Return (a, b) over ln x from those over what was standardised."""
+        """Return (a, b) over ln x, converted from standardised ln x."""
         b = ab[1] / self.width
         return np.array([ab[0] - b * self.centre, b])
 
 
 class _Scatter:
-    """Scatter of the scores of stations over what the likelihood takes it for.
+    """Scatter of the scores of stations over that assumed by the likelihood.
 
     ``roots`` bring directions with an information of 1 to (a, b): the first changes the median, the second does not.
     ``stretch``, shape (2,), are factors on deviations along them; ``of_median`` is the standard error of ln θ by stations.
@@ -481,7 +481,7 @@ def _log_difference(z1: Values, z2: Values) -> Values:
 
 
 def _intervals(edge: Values) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the intervals of θ = exp(−a/b) and β = 1/b over the region; open where it reaches b ≤ 0."""
+    """Return the intervals of θ = exp(−a/b) and β = 1/b over a region's ``edge``; infinite if it reaches b ≤ 0."""
     a, b = edge.T
     rising = b > 0
     medians = np.exp(np.clip(-a[rising] / b[rising], -700.0, 700.0))

@@ -78,11 +78,8 @@ def own_measure(name: str, values: Iterable[tuple[str, float]], power: float) ->
         if not 0 < value < math.inf
     ]
     names = [record for record, _ in listed]
-    wrong += [
-        f"{record}: it has several values of {match['name']}"
-        for record in dict.fromkeys(names)
-        if names.count(record) > 1
-    ]
+    repeated = [record for record in dict.fromkeys(names) if names.count(record) > 1]
+    wrong += [f"{record}: it has several values of {match['name']}" for record in repeated]
     if wrong:
         raise InputError(*wrong)
     unit = match["unit"].strip()
@@ -105,7 +102,7 @@ def measure_of_file(path: Path, power: float) -> OwnMeasure:
 
 
 def given_measure(im: Any, power: float) -> OwnMeasure:
-    """Return the measure that a Python caller gives: values by record, as of a Series whose name has the unit, or a CSV file."""
+    """Return a measure given from Python: values by record, such as a Series whose name has the unit, or a CSV file."""
     if isinstance(im, str | Path):
         return measure_of_file(Path(im), power)
     name = getattr(im, "name", None)
@@ -114,7 +111,7 @@ def given_measure(im: Any, power: float) -> OwnMeasure:
 
 
 def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[float]:
-    """Return the measure of every motion as it comes, in g or m/s, or the unit of the engineer's own."""
+    """Return the measure of every unscaled motion, in g or m/s, or in the unit of the engineer's own measure."""
     if spec.own is not None:
         values = spec.own.of_records([motion.name for motion in motions])
         return [value * motion.factor**spec.own.power for value, motion in zip(values, motions, strict=True)]
@@ -122,14 +119,12 @@ def as_they_come(motions: Sequence[Motion], spec: Any, gravity: float) -> list[f
         return [float(motion.pga) / gravity for motion in motions]
     if "PGV" in spec.measure:
         return [float(pgv(motion.horizontal, motion.dt, motion.initial)) for motion in motions]
-    return [
-        float(spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping)[0]) / gravity
-        for motion in motions
-    ]
+    spectra = (spectral_acceleration(motion.horizontal, motion.dt, [spec.period_s], spec.damping) for motion in motions)
+    return [float(sa[0]) / gravity for sa in spectra]
 
 
 def over_uplift(measure: str, pier: Pier) -> float:
-    """Return what the measure of a motion in g or m/s is multiplied by on a pier: 1 unless it is over g tan α."""
+    """Return the factor of a motion's measure in g or m/s on a pier: 1, or 1/(g tan α) for relative measures."""
     if not MEASURES[measure].of_pier:
         return 1.0
     return (pier.p / pier.gravity if "PGV" in measure else 1.0) / math.tan(pier.alpha)

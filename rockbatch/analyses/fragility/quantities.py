@@ -1,53 +1,72 @@
 """Quantities of ``curves`` in fragility.json, as the terminal and the page show them: heads, formats and meanings."""
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 from rockbatch.analyses.fragility.figures import in_brackets
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.markup import Markup, interval
 from rockbatch.reporting.table import Head
 from rockbatch.results.labels import plain
 
-Curve = Mapping[str, Any]
+Curve = Entry
 """One of ``curves`` of fragility.json."""
 
 FEW = 3
 """Records beyond a limit, fewer of which leave the curve of a cloud an extrapolation."""
 
 
-def level_of(info: Mapping[str, Any]) -> str:
+def level_of(info: Entry) -> str:
     """Return the level of the intervals in words."""
     return f"{100 * info['confidence']:g} %"
 
 
-def of_curves(info: Mapping[str, Any]) -> list[Head]:
+def of_curves(info: Entry) -> list[Head]:
     """Return the quantities of a fitted curve."""
     level = level_of(info)
     return [
-        Head(f"median {in_brackets(info['unit'])}".strip(), ".3g",
-             f"θ: the {info['measure']} that half of the motions need; < and > are bounds, where all runs are on one side",
-             value=_median),
+        Head(
+            f"median {in_brackets(info['unit'])}".strip(),
+            ".3g",
+            f"θ: the {info['measure']} that half of the motions need; < and > are bounds, where all runs are on one side",
+            value=_median,
+        ),
         Head(level, note="interval of the median, by stations", value=_interval("median_interval")),
         Head(
-            "undecided", note="the median with all undecided runs beyond the limit, and with all within it",
+            "undecided",
+            note="the median with all undecided runs beyond the limit, and with all within it",
             value=_interval("median_undecided"),
         ),
-        Head("dispersion", ".2f", "β: standard deviation of the logarithm, of the sample: its square is unbiased, as with n − 1",
-             value="dispersion"),
+        Head(
+            "dispersion",
+            ".2f",
+            "β: standard deviation of the logarithm, of the sample: its square is unbiased, as with n − 1",
+            value="dispersion",
+        ),
         Head(level, note="interval of the dispersion, by stations", value=_interval("dispersion_interval")),
-        Head("of it drawn", ".2f", "what the drawn inputs contribute to β, as a root of squares",
-             value=lambda curve: _drawn(curve).get("dispersion")),
-        Head(level, note="interval of what the drawn inputs contribute, by the standard error of its square",
-             value=lambda curve: _interval("dispersion_interval")(_drawn(curve))),
-        Head("with added", ".2f", "β with the dispersions that the study adds, by the root of the squares",
-             value="dispersion_total"),
+        Head(
+            "of it drawn",
+            ".2f",
+            "what the drawn inputs contribute to β, as a root of squares",
+            value=lambda curve: _drawn(curve).get("dispersion"),
+        ),
+        Head(
+            level,
+            note="interval of what the drawn inputs contribute, by the standard error of its square",
+            value=lambda curve: _interval("dispersion_interval")(_drawn(curve)),
+        ),
+        Head(
+            "with added",
+            ".2f",
+            "β with the dispersions that the study adds, by the root of the squares",
+            value="dispersion_total",
+        ),
         Head("by shares", ".3g", info.get("by_shares"), value=lambda curve: curve.get("windows", {}).get("median")),
         Head("apart [%]", "+.1f", "by shares, above that of the first exceedances [%]", value=_apart),
-    ]  # fmt: skip
+    ]
 
 
-def bound_in_words(bound: Mapping[str, Any], measure: str, unit: str, every: str = "there") -> str:
+def bound_in_words(bound: Entry, measure: str, unit: str, every: str = "there") -> str:
     """Return the bound of a median: "below PGV 1.5 m/s: every record exceeds it there"; ``every`` is where records count."""
 
     def intensity(end: str) -> str:
@@ -73,7 +92,13 @@ def _median(curve: Curve) -> object:
     return f"{'>' if bound['is'] == 'above' else '<'} {bound[bound['is']]:.3g}"
 
 
-def of_rates(info: Mapping[str, Any], written: Callable[[float], str]) -> list[Head]:
+def _head_of_years(years: float, level: str) -> Head:
+    """Return the head of the probability of exceedance in some years, with its interval."""
+    note = f"probability of at least one exceedance, and its interval by the fit ({level})"
+    return Head(f"in {years:g} years", note=note, value=_probability(f"p_in_{years:g}_years"))
+
+
+def of_rates(info: Entry, written: Callable[[float], str]) -> list[Head]:
     """Return the quantities of the annual rate of a curve, whose ``risk`` has the columns of fragility_risk.csv.
 
     ``written`` formats a rate.
@@ -82,19 +107,24 @@ def of_rates(info: Mapping[str, Any], written: Callable[[float], str]) -> list[H
     return [
         Head("dispersion", ".2f", "β with what the study adds", value=lambda curve: curve["risk"]["dispersion_total"]),
         Head("rate [1/year]", note="mean annual rate of exceedance", value=_rate(written)),
-        Head(level, note="what the fit leaves of the rate", value=_rates("rate_low", "rate_high", written)),
-        Head("undecided", note="the rate with all undecided runs within the limit, and with all beyond it",
-             value=_rates("rate_if_withstood", "rate_if_exceeded", written)),
-        *(Head(f"in {years:g} years", note=f"probability of at least one exceedance, and what the fit leaves of it ({level})",
-               value=_probability(f"p_in_{years:g}_years")) for years in info["hazard"]["years"]),
-        Head(f"90 % come from {in_brackets(info['unit'])}".strip(), note="intensities that contribute, but for 5 % at either end",
-             value=_contributing),
-    ]  # fmt: skip
+        Head(level, note="interval of the rate by the fit", value=_rates("rate_low", "rate_high", written)),
+        Head(
+            "undecided",
+            note="the rate with all undecided runs within the limit, and with all beyond it",
+            value=_rates("rate_if_withstood", "rate_if_exceeded", written),
+        ),
+        *(_head_of_years(years, level) for years in info["hazard"]["years"]),
+        Head(
+            f"90 % come from {in_brackets(info['unit'])}".strip(),
+            note="intensities that contribute, but for 5 % at either end",
+            value=_contributing,
+        ),
+    ]
 
 
-def _drawn(curve: Curve) -> Mapping[str, Any]:
-    """Return what drawn inputs contribute to a curve; empty if nothing is drawn, or that is not known."""
-    contribution: Mapping[str, Any] = curve.get("drawn", {})
+def _drawn(curve: Curve) -> Entry:
+    """Return the contribution of drawn inputs to a curve; {} if nothing is drawn, or if it is unknown."""
+    contribution: Entry = curve.get("drawn", {})
     return contribution
 
 

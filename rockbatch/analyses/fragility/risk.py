@@ -5,10 +5,9 @@ probability in T years 1 − exp(−λT), as of a Poisson process.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -33,7 +32,7 @@ BINS_PER_DECADE, POINTS_PER_BIN = 10, 50
 
 @dataclass(frozen=True)
 class Risk:
-    """How often a case exceeds a limit.
+    """The mean annual rate at which a case exceeds a limit.
 
     Attributes
     ----------
@@ -72,7 +71,7 @@ class Risk:
 
 @dataclass(frozen=True)
 class RiskBound:
-    """Bounds of the rate of a case of which no more than bounds of the median are known.
+    """Bounds of the rate of a case whose median has bounds only.
 
     ``bounds`` are those of :func:`rate_bounds`, by the shares of the records at the levels; the greater may be infinite.
     """
@@ -82,13 +81,13 @@ class RiskBound:
 
     @property
     def kind(self) -> str:
-        """Return "at least", "at most" or "between", as far as the rate is bounded."""
+        """Return "at least", "at most" or "between", by which bounds of the rate are finite and above 0."""
         least, most = self.bounds
         return "at least" if math.isinf(most) else "between" if least > 0 else "at most"
 
 
 def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBound]:
-    """Return bounds of the rate of every curve that has a bound in place of its median; none without a hazard."""
+    """Return bounds of the annual rate of every curve with a bound instead of a median; [] without a hazard."""
     if spec.hazard is None:
         return []
     hazard = spec.hazard.curve
@@ -101,7 +100,7 @@ def rate_bounds_of(curves: Sequence[Curve], spec: FragilitySpec) -> list[RiskBou
 
 
 def risks(curves: Sequence[Curve], spec: FragilitySpec) -> list[Risk]:
-    """Return the risk of every curve that has a fit; none without a hazard."""
+    """Return the annual rate of every fitted curve, with its interval; [] without a hazard."""
     hazard = spec.hazard
     if hazard is None:
         return []
@@ -138,12 +137,15 @@ def _risk(curve: Curve, fitted: Fitted, spec: FragilitySpec, hazard: Hazard, x: 
 
 
 def _meaningful(hazard: HazardCurve) -> float:
-    """Return the greatest rate that says anything: that of the lowest point of a table, below which a hazard is not known."""
+    """Return the greatest meaningful rate: that of the lowest point, or 100 per year for a single point."""
     return hazard.rates[0] if len(hazard.rates) > 1 else MOST_RATE
 
 
 def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[float, float] | None:
-    """Return both rates, the lower first; 0 or that of all motions for a reading without a curve."""
+    """Return annual rates, lower first, with undecided runs within and beyond the limit.
+
+    0 or infinite for a reading without a curve; None if no run is undecided.
+    """
     if curve.readings is None:
         return None
     bounds = []
@@ -153,7 +155,7 @@ def _undecided(curve: Curve, added: float, x: Values, rates: Values) -> tuple[fl
 
 
 def note(risk: Risk, spec: FragilitySpec) -> str:
-    """Return what the number does not say by itself; empty if there is nothing."""
+    """Return remarks on a rate's validity; empty without any."""
     assert spec.hazard is not None
     notes, points = [], spec.hazard.curve.levels
     if risk.interval is not None and math.isinf(risk.interval[1]):
@@ -216,7 +218,7 @@ def _reason(curve: Curve) -> str:
 
 
 def _names(spec: FragilitySpec) -> list[str]:
-    """Return the columns of fragility_risk.csv behind those that name a curve."""
+    """Return the columns of fragility_risk.csv after those that identify a curve."""
     assert spec.hazard is not None
     periods = [f"p_in_{years:g}_years{end}" for years in spec.hazard.years for end in ("", "_low", "_high")]
     rates = ["rate_per_year", "bound", "rate_low", "rate_high", "rate_if_withstood", "rate_if_exceeded"]
@@ -232,10 +234,10 @@ def _names(spec: FragilitySpec) -> list[str]:
     return [*about, *rates, *parts, "contributing_from", "contributing_to", *periods, "note"]
 
 
-def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
+def _row_of_bound(risk: RiskBound, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, object]:
     assert spec.hazard is not None
     least, most = risk.bounds
-    row: dict[str, Any] = risk.curve.identity(varied) | {"measure": spec.label, "unit": spec.unit}
+    row: dict[str, object] = risk.curve.identity(varied) | {"measure": spec.label, "unit": spec.unit}
     row |= {"bound": risk.kind, "rate_least": least, "rate_most": finite_or_nan(most)}
     for years in spec.hazard.years:
         row |= {
@@ -249,7 +251,7 @@ def _probability(rate: float, years: float) -> float:
     return -math.expm1(-rate * years)
 
 
-def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, Any]:
+def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, object]:
     curve, hazard = risk.curve, spec.hazard
     assert hazard is not None
     assert not isinstance(curve.fitted, NoCurve)
@@ -275,7 +277,7 @@ def _row(risk: Risk, spec: FragilitySpec, varied: Sequence[str]) -> dict[str, An
 
 
 def finite_or_nan(bound: float) -> float:
-    """Return a bound as a CSV file has it: NaN, which is empty there, where it is open."""
+    """Return a bound for a CSV file, NaN (an empty cell) if it is infinite."""
     return bound if math.isfinite(bound) else math.nan
 
 
@@ -284,7 +286,7 @@ def deaggregation_table(risks: Sequence[Risk], spec: FragilitySpec, varied: Sequ
 
     ``hazard`` says whether they are between the points of the hazard, "within", or "below" or "above" them.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, object]] = []
     for risk in risks:
         identity = risk.curve.identity(varied)
         for low, high, position, part in deaggregated(risk, spec):
@@ -319,8 +321,8 @@ def deaggregated(risk: Risk, spec: FragilitySpec) -> list[tuple[float, float, st
     return list(zip(edges[:-1].tolist(), edges[1:].tolist(), positions, parts, strict=True))
 
 
-def described_hazard(spec: FragilitySpec) -> dict[str, Any] | None:
-    """Return the hazard for fragility.json: its points, and the curve through them as it is drawn."""
+def described_hazard(spec: FragilitySpec) -> dict[str, object] | None:
+    """Return the hazard's entry in fragility.json: its points, and the curve through them; None without a hazard."""
     if spec.hazard is None:
         return None
     curve = spec.hazard.curve
@@ -339,18 +341,21 @@ def described_hazard(spec: FragilitySpec) -> dict[str, Any] | None:
     }
 
 
-def described_bound(risk: RiskBound, spec: FragilitySpec) -> dict[str, Any]:
+def described_bound(risk: RiskBound, spec: FragilitySpec) -> dict[str, object]:
     """Return the bounds of a rate for fragility.json, under the names of a rate, None for what is not known."""
     return dict.fromkeys(_names(spec)) | _without_nan(_row_of_bound(risk, spec, ()))
 
 
-def _without_nan(row: dict[str, Any]) -> dict[str, Any]:
+def _without_nan(row: Mapping[str, object]) -> dict[str, object]:
+    """Return a row without its case and limit state, None for NaN and infinite numbers."""
     named = {name: value for name, value in row.items() if name not in ("case", "limit_state")}
-    return {name: value if isinstance(value, str) or math.isfinite(value) else None for name, value in named.items()}
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in named.items()
+    }
 
 
-def described(risk: Risk, spec: FragilitySpec) -> dict[str, Any]:
-    """Return the risk of a curve for fragility.json, with the share of the rate per unit of ln x as it is drawn."""
+def described(risk: Risk, spec: FragilitySpec) -> dict[str, object]:
+    """Return the entry of a curve's risk in fragility.json, with the share of the rate per unit of ln x for the figure."""
     content = _without_nan(_row(risk, spec, ()))
     if spec.hazard is not None and risk.rate > 0:
         curve, (low, high) = spec.hazard.curve, risk.contributing

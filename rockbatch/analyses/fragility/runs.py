@@ -72,11 +72,11 @@ class LevelPlan(NamedTuple):
     power: float = 1.0
 
     def scale(self, motion: int, intensity: float) -> float:
-        """Return the factor that brings a motion, as it comes, to an intensity."""
+        """Return the factor that scales an unscaled motion to an intensity."""
         return float((intensity / self.unscaled[motion]) ** (1.0 / self.power))
 
     def reached(self, motion: int, scale: float) -> float:
-        """Return the intensity of a motion, as it comes, times a factor."""
+        """Return the intensity of an unscaled motion times a factor."""
         return float(self.unscaled[motion] * scale**self.power)
 
     def factor(self, motion: int, level: float) -> float:
@@ -102,11 +102,12 @@ def level_plans(study: Study, spec: FragilitySpec, motions: Sequence[Motion]) ->
         return [_level_plan(study, spec, motions, unscaled, scales_by_level)] * len(study.cases)
     crosswise = any(case.across_of for case in study.cases)
     across = intensities([motion.exchanged for motion in motions], spec, gravity) if crosswise else []
-    relative = (
-        [x * over_uplift(spec.measure, case.pier) for x in (across if case.across_of else unscaled)]
-        for case in study.cases
-    )
-    return [_level_plan(study, spec, motions, of_case, scales_by_level) for of_case in relative]
+    plans = []
+    for case in study.cases:
+        over = over_uplift(spec.measure, case.pier)
+        relative = [x * over for x in (across if case.across_of else unscaled)]
+        plans.append(_level_plan(study, spec, motions, relative, scales_by_level))
+    return plans
 
 
 def _level_plan(
@@ -148,7 +149,7 @@ Simulate = Callable[[ScaledRuns], "pd.DataFrame"]
 
 
 def output(spec: FragilitySpec, of_study: Output) -> Output:
-    """Return the output that the limits need beyond peaks, by the settings ``of_study``."""
+    """Return the settings of [output] with only the outputs that the limits need; the other law only if ``of_study`` has it."""
     needs = {DEMANDS[rule.demand].needs for rule in spec.limits}
     return Output(
         histories="none",
@@ -164,12 +165,11 @@ def output(spec: FragilitySpec, of_study: Output) -> Output:
 def intensities(motions: Sequence[Motion], spec: FragilitySpec, gravity: float) -> list[float]:
     """Return the intensity measure of every motion as it is, in the unit of the levels; raises ``InputError`` if one has none."""
     measures = as_they_come([*motions], spec, gravity)
-    wrong = [
-        f"{motion.name}: its horizontal component has {spec.label} = 0, and no scale brings it to a level; "
-        "take it out of [motions]"
-        for motion, value in zip(motions, measures, strict=True)
-        if not value > 0
-    ]
+    still = [motion for motion, value in zip(motions, measures, strict=True) if not value > 0]
+    reason = (
+        f"its horizontal component has {spec.label} = 0, and no scale brings it to a level; take it out of [motions]"
+    )
+    wrong = [f"{motion.name}: {reason}" for motion in still]
     if wrong:
         raise InputError(*wrong)
     return measures
@@ -194,7 +194,7 @@ class RecordRuns:
         self._last: tuple[dict[Point, int], Rows]
 
     def execute(self, requested: Iterable[Point]) -> None:
-        """Carry out one wave of runs."""
+        """Execute one wave of runs, and keep their statuses and rows."""
         points = sorted({*requested})  # what shares a motion stands together
         polarity = self.study.motions.simulated
         runs = ScaledRuns(points, self.motions, self.plans, lambda point: self.drawn(point).case, polarity)

@@ -1,7 +1,6 @@
 """Factors on the records of a fragility: which one each record takes at each level, and which are beyond the study's limits."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -25,24 +24,24 @@ def scales(
     ``scale`` is the factor on the record as it was recorded, also what the study's target has done, ``unscaled`` its intensity
     then, and ``intensity`` what it comes to; ``used`` is False where the factor is beyond the limits of the study.
     """
-    of_cases: list[tuple[dict[str, Any], LevelPlan]] = [({}, plans[0])]
+    of_cases: list[tuple[dict[str, object], LevelPlan]] = [({}, plans[0])]
     if spec.of_pier:
-        names_of: list[dict[str, Any]] = [
+        names_of: list[dict[str, object]] = [
             {"case": case.name, **{name: case.columns.get(name) for name in varied}} for case in cases
         ]
         of_cases = [*zip(names_of, plans, strict=True)]
     unit = {"measure": spec.label, "unit": spec.unit}
-    rows = [
-        {"record": name, **identity, **unit, "unscaled": plan.reached(m, 1.0 / plan.earlier[m])}
-        | {"level": level, "intensity": intensity, "scale": plan.factor(m, level), "used": level in plan.used[m]}
-        for identity, plan in of_cases
-        for m, name in enumerate(names)
-        for level, intensity in sorted((plan.used[m] | plan.not_used[m]).items())
-    ]
+    rows = []
+    for identity, plan in of_cases:
+        for m, name in enumerate(names):
+            record = {"record": name, **identity, **unit, "unscaled": plan.reached(m, 1.0 / plan.earlier[m])}
+            for level, intensity in sorted((plan.used[m] | plan.not_used[m]).items()):
+                scale, used = plan.factor(m, level), level in plan.used[m]
+                rows.append(record | {"level": level, "intensity": intensity, "scale": scale, "used": used})
     return pd.DataFrame(rows)
 
 
-def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, Any]:
+def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Sequence[str]) -> dict[str, object]:
     """Return the factors for fragility.json: for each record those at all levels, None where it is not meant for one."""
     if spec.method == "cloud" or spec.of_pier:
         return {"records": [], "factors": [], "used": [], "limits": [None, None], "said": in_words(plans, spec)}
@@ -57,7 +56,7 @@ def described_scales(plans: Sequence[LevelPlan], spec: FragilitySpec, names: Seq
 
 
 def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
-    """Return in words how far records are scaled, and how many are left at each level."""
+    """Return the range of scale factors and the number of records left at each level, in words."""
     plan = plans[0]
     factors = [each.factor(m, x) for each in plans for m, used in enumerate(each.used) for x in used]
     if min(factors) == max(factors) == 1.0:
@@ -68,18 +67,17 @@ def in_words(plans: Sequence[LevelPlan], spec: FragilitySpec) -> str:
     beyond = {x: sum(x in used for used in plan.not_used) for x in spec.levels}
     if any(beyond.values()):
         limits = f"{spec.least_scale:g} to {spec.most_scale:g}" if spec.least_scale else f"up to {spec.most_scale:g}"
-        remaining = [
-            f"{sum(x in used for used in plan.used)} of {count(sum(x in used for used in plan.used) + n, 'record')} at {x:g}"
-            for x, n in beyond.items()
-            if n
-        ]
+        remaining = []
+        for x, n in beyond.items():
+            within = sum(x in used for used in plan.used)
+            if n:
+                remaining.append(f"{within} of {count(within + n, 'record')} at {x:g}")
         parts.append(f"factors {limits} are allowed, which leaves {', '.join(remaining)} {spec.unit}")
-    far = [
-        f"{min(values):.3g} to {max(values):.3g} at {x:g}"
-        for x in (() if spec.method == "cloud" else spec.levels)
-        if (values := [by_level[x] for by_level in plan.used if x in by_level])
-        and max(abs(y / x - 1.0) for y in values) > FAR
-    ]
+    far = []
+    for x in () if spec.method == "cloud" else spec.levels:
+        values = [by_level[x] for by_level in plan.used if x in by_level]
+        if values and max(abs(y / x - 1.0) for y in values) > FAR:
+            far.append(f"{min(values):.3g} to {max(values):.3g} at {x:g}")
     if far:
         parts.append(
             f"the given factors bring records to intensities away from their levels, {', '.join(far)} {spec.unit}: is "

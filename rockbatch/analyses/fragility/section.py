@@ -1,11 +1,11 @@
 """Results of ``rockbatch fragility``: for each limit points, curves and bands; annual rates and what contributes to them."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 from rockbatch.analyses.fragility import answer
 from rockbatch.analyses.fragility.figures import clouds, curves, in_brackets, label, risk
 from rockbatch.analyses.fragility.quantities import Curve, level_of, of_curves, of_rates, power
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, of_analysis
 from rockbatch.reporting.markup import Markup, tag
 from rockbatch.reporting.svg import drawn
@@ -17,22 +17,30 @@ CAPACITIES = ("record", "case", "limit_state", "at_most", "scale_at_most", "wide
 
 @of_analysis("fragility")
 def section(analysis: FinishedAnalysis) -> Markup:
-    """Draw the fragility curves; empty if there are none."""
+    """Return the report's section of fragility curves; empty without any."""
     if not analysis.info["curves"]:
         return Markup("")
     info = analysis.info
     entries, of_clouds = info["curves"], clouds(info)
     return render(
-        "analyses/fragility/section.html", info=info, answer=answer.of_curves(info), share=level_of(info),
-        panels=drawn(curves(info)), table=_table(info), notes=_notes(entries),
-        open=any("open" in entry for entry in entries), looked=any(entry.get("looked") for entry in entries),
-        clouds=drawn(of_clouds) if of_clouds.panels else "", factors=_factors(info),
+        "analyses/fragility/section.html",
+        info=info,
+        answer=answer.of_curves(info),
+        share=level_of(info),
+        panels=drawn(curves(info)),
+        table=_table(info),
+        notes=_notes(entries),
+        open=any("open" in entry for entry in entries),
+        looked=any(entry.get("looked") for entry in entries),
+        clouds=drawn(of_clouds) if of_clouds.panels else "",
+        factors=_factors(info),
         own=any(None in row for row in info.get("scales", {}).get("factors", ())),
-        capacities=_capacities(analysis), provenance=analysis.provenance(),
-    )  # fmt: skip
+        capacities=_capacities(analysis),
+        provenance=analysis.provenance(),
+    )
 
 
-def _table(info: Mapping[str, Any]) -> Markup:
+def _table(info: Entry) -> Markup:
     heads = [
         Head("limit", value="limit_state"),
         Head("case", value=label),
@@ -40,34 +48,31 @@ def _table(info: Mapping[str, Any]) -> Markup:
         Head("records", ".0f", "that count", value=_greatest("records")),
         Head("overturned", ".0f", "largest number of records that overturn at one level", value=_greatest("collapsed")),
         Head("no curve", value=lambda entry: entry["note"] if entry["median"] is None else None),
-    ]  # fmt: skip
+    ]
     return listed(heads, info["curves"], prose=True, name="Medians and dispersions")
 
 
 def _notes(entries: Iterable[Curve]) -> Markup:
-    """Return a folded list of what is to know about single curves; empty if there is nothing."""
+    """Return a folded list of notes on single curves; empty without any."""
     lines = [
         tag("li", f"{entry['limit_state']}, {label(entry)}: {entry['note']}.") for entry in entries if entry["note"]
     ]
     return tag("details", tag("summary", "Notes on the curves"), tag("ul", *lines)) if lines else Markup("")
 
 
-def _factors(info: Mapping[str, Any]) -> Markup:
+def _factors(info: Entry) -> Markup:
     """Return a folded table of the factors on every record at every level; those that are not used in brackets."""
     scales = info.get("scales")
     if not scales or not scales["records"]:
         return Markup("")
+    measure = f"{info['measure']} {in_brackets(info['unit'])}".strip()
     heads = [
         Head("record"),
-        *(
-            Head(f"{level:g}", group=f"{info['measure']} {in_brackets(info['unit'])}".strip())
-            for level in info["levels"]
-        ),
+        *(Head(f"{level:g}", group=measure) for level in info["levels"]),
     ]
-    rows = [
-        [name, *(_factor(factor, use) for factor, use in zip(factors, used, strict=True))]
-        for name, factors, used in zip(scales["records"], scales["factors"], scales["used"], strict=True)
-    ]
+    rows = []
+    for name, factors, used in zip(scales["records"], scales["factors"], scales["used"], strict=True):
+        rows.append([name, *map(_factor, factors, used)])
     words = "Factors on the records as they were recorded; in brackets: beyond the limits, not used"
     return tag("details", tag("summary", words), table(heads, rows, name="Factors on the records"))
 
@@ -79,7 +84,7 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         return Markup("")
     varied = {name for entry in analysis.info["curves"] for name in entry["columns"]}
 
-    def case(row: Mapping[str, Any]) -> str:
+    def case(row: Entry) -> str:
         return label(
             {**row, "columns": {name: value for name, value in row.items() if name in varied and value == value}}
         )
@@ -88,12 +93,20 @@ def _capacities(analysis: FinishedAnalysis) -> Markup:
         Head("record", value="record"),
         Head("limit", value="limit_state"),
         Head("case", value=case),
-        Head(f"exceeded from {in_brackets(analysis.info['unit'])}".strip(), ".4g",
-             "empty: not up to the highest level", value="at_most"),
+        Head(
+            f"exceeded from {in_brackets(analysis.info['unit'])}".strip(),
+            ".4g",
+            "empty: not up to the highest level",
+            value="at_most",
+        ),
         Head("as scale", ".4g", value="scale_at_most"),
-        Head("widest step below [%]", ".3g", "an island of exceedance that is narrower may lie below",
-             value=lambda row: 100.0 * float(row["widest_step"])),
-    ]  # fmt: skip
+        Head(
+            "widest step below [%]",
+            ".3g",
+            "an island of exceedance that is narrower may lie below",
+            value=lambda row: 100.0 * float(row["widest_step"]),
+        ),
+    ]
     rows = ({str(name): value for name, value in row.items()} for row in capacities.to_dict("records"))
     return tag("details", tag("summary", "Capacities of the records"), listed(heads, rows, name="Capacities"))
 
@@ -111,7 +124,7 @@ def _greatest(name: str) -> Callable[[Curve], object]:
 
 @of_analysis("fragility")
 def rates(analysis: FinishedAnalysis) -> Markup:
-    """Draw the hazard of the site and what the annual rates come from; empty if the study has no hazard."""
+    """Return the report's section of hazard and annual rates; empty without a hazard."""
     if not analysis.info.get("hazard"):
         return Markup("")
     info = analysis.info
@@ -120,13 +133,18 @@ def rates(analysis: FinishedAnalysis) -> Markup:
         return tag("p", "No curve could be fitted, so that there are no rates.")
     heads = [Head("limit", value="limit_state"), Head("case", value=label), *of_rates(info, power)]
     return render(
-        "analyses/fragility/risk_section.html", info=info, answer=answer.of_rates(info), hazard=info["hazard"],
-        share=level_of(info), panels=drawn(risk(info, curves)),
-        table=listed(heads, curves, prose=True, name="Annual rates and probabilities"), notes=_notes_on_rates(curves),
-    )  # fmt: skip
+        "analyses/fragility/risk_section.html",
+        info=info,
+        answer=answer.of_rates(info),
+        hazard=info["hazard"],
+        share=level_of(info),
+        panels=drawn(risk(info, curves)),
+        table=listed(heads, curves, prose=True, name="Annual rates and probabilities"),
+        notes=_notes_on_rates(curves),
+    )
 
 
 def _notes_on_rates(curves: Sequence[Curve]) -> Markup:
-    """Return what the numbers do not say by themselves, a line for each curve."""
+    """Return the remarks on annual rates, a line for each curve with any."""
     notes = [(f"{entry['limit_state']}, {label(entry)}", entry["risk"]["note"]) for entry in curves]
     return tag("ul", *(tag("li", f"{name}: {note}.") for name, note in notes if note))

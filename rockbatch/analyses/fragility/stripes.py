@@ -27,27 +27,44 @@ class StripeRecords:
     scales: tuple[float, ...] = ()
 
 
-STRIPE = Section(("fragility", "stripe"), (
-    "A level with its own records, as from a selection by conditional spectra. Write one for each level, "
-    "in rising order, in place of levels_g or levels_m_s."
-), {
-    "level_g": Key(positive, "0.4", "Level of PGA or Sa.", usual=IN_G),
-    "level_m_s": Key(positive, "0.5", "Level of PGV.", usual=IN_M_S),
-    "level": Key(positive, "1.5", "Level of another measure, in its unit."),
-    "records": Key(text, '["RSN821*", "RSN1063_RRS228"]',
-        "Names of the records as results have them, or patterns of names with * and ?.", many=True),
-    "scales": Key(positive, "[1.7, 0.9]",
-        "Factor on each of the records, as it was recorded; if it is not given, each is scaled to the level.", many=True,
-        distinct=False),
-    "file": Key(text, '"selection_475.csv"',
-        "A CSV file with the records, relative to the study: a column record, and scale if the selection gives factors."),
-    **CONFIRM,
-}, many=True, clashes=(
-    Clash(("level_g", "level_m_s"), "level_g and level_m_s are given; keep the one of the measure"),
-    Clash(("file", "records"), "file and records are given; keep one"),
-    Clash(("file", "scales"), "file and scales are given; write the factors into the file, as its column scale"),
-    Clash(("scales",), "scales: write records, too, in the same order", lacking=("records",)),
-))  # fmt: skip
+STRIPE = Section(
+    ("fragility", "stripe"),
+    (
+        "A level with its own records, as from a selection by conditional spectra. Write one for each level, "
+        "in rising order, in place of levels_g or levels_m_s."
+    ),
+    {
+        "level_g": Key(positive, "0.4", "Level of PGA or Sa.", usual=IN_G),
+        "level_m_s": Key(positive, "0.5", "Level of PGV.", usual=IN_M_S),
+        "level": Key(positive, "1.5", "Level of another measure, in its unit."),
+        "records": Key(
+            text,
+            '["RSN821*", "RSN1063_RRS228"]',
+            "Names of the records as results have them, or patterns of names with * and ?.",
+            many=True,
+        ),
+        "scales": Key(
+            positive,
+            "[1.7, 0.9]",
+            "Factor on each of the records, as it was recorded; if it is not given, each is scaled to the level.",
+            many=True,
+            distinct=False,
+        ),
+        "file": Key(
+            text,
+            '"selection_475.csv"',
+            "A CSV file with the records, relative to the study: a column record, and scale if the selection gives factors.",
+        ),
+        **CONFIRM,
+    },
+    many=True,
+    clashes=(
+        Clash(("level_g", "level_m_s"), "level_g and level_m_s are given; keep the one of the measure"),
+        Clash(("file", "records"), "file and records are given; keep one"),
+        Clash(("file", "scales"), "file and scales are given; write the factors into the file, as its column scale"),
+        Clash(("scales",), "scales: write records, too, in the same order", lacking=("records",)),
+    ),
+)
 
 
 def read_stripes(file: TomlFile, levels: str) -> tuple[StripeRecords, ...]:
@@ -95,7 +112,7 @@ def _from_file(table: Table, name: str) -> tuple[tuple[str, ...], tuple[float, .
 
 
 def members(file: TomlFile, stripes: Sequence[StripeRecords], names: Sequence[str]) -> list[dict[int, float | None]]:
-    """Return for each stripe the numbers of its records among all ``names``, and the factor on each, None where it is open.
+    """Return for each stripe the factors on its records by index in ``names``; None for a factor that scales to the level.
 
     Raises ``InputError`` with the line of every name that is no record's, and of patterns with a factor that fit several.
     """

@@ -126,61 +126,130 @@ class FragilitySpec:
 _BELOW_ONE = Number("a number, 0 or above and below 1", low=0.0, high=1.0, below=True)
 _SA, _IDA, _CLOUD = {"measure": ("Sa",)}, {"method": ("ida",)}, {"method": ("cloud",)}
 _SCALED = {"method": ("stripes", "ida")}
-FRAGILITY = Section(("fragility",), (
-    "Fragility curves, by `rockbatch fragility`: how probable it is at a given intensity that a limit is exceeded."
-), {
-    "method": Key(choice("stripes", "ida", "cloud"), '"ida"',
-        '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit; '
-        '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and intensity.',
-        default="stripes"),
-    "measure": Key(choice(*MEASURES), '"PGV"',
-        "Intensity measure of the horizontal component. Of the two over g tan alpha, which are relative to a pier, all piers of "
-        "a case share one curve, and both axes of a pier."),
-    "measure_file": Key(text, '"avgsa.csv"',
-        "A CSV file with an intensity measure of your own in place of measure, relative to the study: a column record, and one "
-        "of values of the records as they were recorded, with the unit in its heading, such as AvgSa [g]."),
-    "measure_power": Key(positive, "2.0",
-        "Power by which the measure of measure_file grows with the scale of a motion: 2 for an Arias intensity, 1 for a spectral "
-        "acceleration.", default=1.0),
-    "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA, usual=PERIOD),
-    "damping": Key(_BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA),
-    "levels_g": Key(positive, "[0.2, 0.4, 0.6, 0.8]",
-        "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.", many=True,
-        only={"measure": ("PGA", "Sa")} | _SCALED, usual=IN_G),
-    "levels_m_s": Key(positive, "[0.25, 0.5, 1.0, 1.5]",
-        "Levels of PGV; each [[fragility.stripe]] has its own instead.", many=True, only={"measure": ("PGV",)} | _SCALED,
-        usual=IN_M_S),
-    "levels": Key(positive, "[0.5, 1.0, 1.5, 2.0]",
-        "Levels of a measure over g tan alpha, or of measure_file in its unit.", many=True, only=_SCALED),
-    "least_scale": Key(positive, "0.25",
-        "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
-        only=_SCALED),
-    "most_scale": Key(positive, "4.0",
-        "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used.",
-        only=_SCALED),
-    "tolerance": Key(Number("a number from 1e-6 to 1", low=1e-6, high=1.0), "0.01",
-        "Relative width to which the least intensity is narrowed down.", only=_IDA),
-    "hunt_step": Key(Number("a number from 0.001 to 1", low=1e-3, high=1.0), "0.02",
-        "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, 0.0025 "
-        "on rigid ground and the levels alone elsewhere.", only=_IDA),
-    "window": Key(Number("a number from 0.001 to 0.2", low=1e-3, high=0.2), "0.05",
-        "Relative half-width of a window about each level, of which the share of the scales that exceed a limit gives a second "
-        "curve, on every base; if it is not given, 0.02 on rigid ground and none elsewhere.", only=_IDA),
-    "censored_below": Key(share, "0.05",
-        "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have logarithms "
-        "that say nothing about the limit.", only=_CLOUD),
-    "checks": Key(text, '["no overturning", "uplift*"]',
-        "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
-        "given.", many=True),
-    "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
-    **CONFIRM,
-}, homes=(FragilitySpec,), clashes=(
-    Clash(("measure", "measure_file"), "measure and measure_file are given; keep one"),
-    Clash(("measure_power",), "measure_power is of measure_file; write that, or leave it out", lacking=("measure_file",)),
-), also=names({
-    "measure": "im intensity intensitymeasure", "checks": "limits limitstates",
-    "method": "type analysis",
-}))  # fmt: skip
+FRAGILITY = Section(
+    ("fragility",),
+    ("Fragility curves, by `rockbatch fragility`: how probable it is at a given intensity that a limit is exceeded."),
+    {
+        "method": Key(
+            choice("stripes", "ida", "cloud"),
+            '"ida"',
+            '"stripes": every record at every level; "ida": also, for each record, the least intensity that exceeds a limit; '
+            '"cloud": every record as it is, in the scales of [motions], and a line through the logarithms of demand and '
+            "intensity.",
+            default="stripes",
+        ),
+        "measure": Key(
+            choice(*MEASURES),
+            '"PGV"',
+            "Intensity measure of the horizontal component. Of the two over g tan alpha, which are relative to a pier, all "
+            "piers of a case share one curve, and both axes of a pier.",
+        ),
+        "measure_file": Key(
+            text,
+            '"avgsa.csv"',
+            "A CSV file with an intensity measure of your own in place of measure, relative to the study: a column record, and "
+            "one of values of the records as they were recorded, with the unit in its heading, such as AvgSa [g].",
+        ),
+        "measure_power": Key(
+            positive,
+            "2.0",
+            "Power by which the measure of measure_file grows with the scale of a motion: 2 for an Arias intensity, 1 for a "
+            "spectral acceleration.",
+            default=1.0,
+        ),
+        "period_s": Key(positive, "1.0", "Period of the oscillator of Sa.", required=True, only=_SA, usual=PERIOD),
+        "damping": Key(
+            _BELOW_ONE, "0.05", "Damping of the oscillator of Sa, as a fraction of critical damping.", only=_SA
+        ),
+        "levels_g": Key(
+            positive,
+            "[0.2, 0.4, 0.6, 0.8]",
+            "Levels of PGA or Sa; each [[fragility.stripe]] has its own instead.",
+            many=True,
+            only={"measure": ("PGA", "Sa")} | _SCALED,
+            usual=IN_G,
+        ),
+        "levels_m_s": Key(
+            positive,
+            "[0.25, 0.5, 1.0, 1.5]",
+            "Levels of PGV; each [[fragility.stripe]] has its own instead.",
+            many=True,
+            only={"measure": ("PGV",)} | _SCALED,
+            usual=IN_M_S,
+        ),
+        "levels": Key(
+            positive,
+            "[0.5, 1.0, 1.5, 2.0]",
+            "Levels of a measure over g tan alpha, or of measure_file in its unit.",
+            many=True,
+            only=_SCALED,
+        ),
+        "least_scale": Key(
+            positive,
+            "0.25",
+            "Least factor on a record, as it was recorded: at levels that take a smaller one it is not used.",
+            only=_SCALED,
+        ),
+        "most_scale": Key(
+            positive,
+            "4.0",
+            "Greatest factor on a record, as it was recorded: at levels that take a larger one it is not used.",
+            only=_SCALED,
+        ),
+        "tolerance": Key(
+            Number("a number from 1e-6 to 1", low=1e-6, high=1.0),
+            "0.01",
+            "Relative width to which the least intensity is narrowed down.",
+            only=_IDA,
+        ),
+        "hunt_step": Key(
+            Number("a number from 0.001 to 1", low=1e-3, high=1.0),
+            "0.02",
+            "Relative steps in which the first exceedance is hunted between the levels, on every base; if it is not given, "
+            "0.0025 on rigid ground and the levels alone elsewhere.",
+            only=_IDA,
+        ),
+        "window": Key(
+            Number("a number from 0.001 to 0.2", low=1e-3, high=0.2),
+            "0.05",
+            "Relative half-width of a window about each level, of which the share of the scales that exceed a limit gives a "
+            "second curve, on every base; if it is not given, 0.02 on rigid ground and none elsewhere.",
+            only=_IDA,
+        ),
+        "censored_below": Key(
+            share,
+            "0.05",
+            "Share of a limit below which a demand counts as small, without its value: piers that hardly lift off have "
+            "logarithms that say nothing about the limit.",
+            only=_CLOUD,
+        ),
+        "checks": Key(
+            text,
+            '["no overturning", "uplift*"]',
+            "Which of the checks are limits, by name or pattern, beside overturning; all that are about records if it is not "
+            "given.",
+            many=True,
+        ),
+        "confidence": Key(_BELOW_ONE, "0.95", "Level of the confidence bands."),
+        **CONFIRM,
+    },
+    homes=(FragilitySpec,),
+    clashes=(
+        Clash(("measure", "measure_file"), "measure and measure_file are given; keep one"),
+        Clash(
+            ("measure_power",),
+            "measure_power is of measure_file; write that, or leave it out",
+            lacking=("measure_file",),
+        ),
+    ),
+    also=names(
+        {
+            "measure": "im intensity intensitymeasure",
+            "checks": "limits limitstates",
+            "method": "type analysis",
+        }
+    ),
+)
 
 SECTIONS = (FRAGILITY, HAZARD, DISPERSION, STRIPE, *OF_UNCERTAIN)
 """Its tables in a study file."""
@@ -207,7 +276,7 @@ def read_fragility(study: Study, im: Any = None) -> FragilitySpec:
 
 
 def _measure(table: Table, read: dict[str, Any], im: Any) -> str | None:
-    """Put the engineer's own measure into ``read``, and return the key of the levels; None without a measure, which is noted."""
+    """Return the key of the levels of the measure, putting an own measure into ``read``; None, with a complaint, without one."""
     power, name = read.pop("measure_power", 1.0), read.pop("measure_file", None)
     if im is not None or name is not None:
         with table.noting("measure_file"):

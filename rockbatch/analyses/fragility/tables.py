@@ -43,7 +43,7 @@ def points(curves: Sequence[Curve], spec: FragilitySpec, varied: Sequence[str]) 
     ``window_share`` is the share of the scales about the level that exceed the limit, the mean of ``window_n`` records, in which
     ``window_undecided`` runs are not; ``window_p`` is the curve through these shares.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, object]] = []
     for curve in curves:
         units = {"measure": spec.label, "unit": spec.unit}
         x = np.array([stripe.level for stripe in curve.stripes])  # of a cloud, several runs may have the same
@@ -95,7 +95,7 @@ def capacities(
     exceedance that is narrower may have been missed.
     ``names`` are those of the motions; ``plans`` have the intensities of the ``cases``, of which each record has its own.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, object]] = []
     for curve in curves:
         for (number, motion), cap in curve.capacities:
             of_pier = {"case": cases[number].name} | {name: cases[number].columns.get(name) for name in varied}
@@ -123,8 +123,8 @@ def _state(cap: Capacity) -> str:
 
 def described(
     curves: Sequence[Curve], spec: FragilitySpec, study: Study, records: int, risks: Sequence[Risk] = ()
-) -> dict[str, Any]:
-    """Return the content of fragility.json: what was asked, and every curve; an open bound of an interval is null."""
+) -> dict[str, object]:
+    """Return the content of fragility.json: the settings and every curve; an infinite bound of an interval is null."""
     of_curves = {id(risk.curve): described_risk(risk, spec) for risk in risks}
     of_curves |= {id(risk.curve): described_bound(risk, spec) for risk in rate_bounds_of(curves, spec)}
     return {
@@ -146,7 +146,7 @@ def described(
 
 
 def drawn(spec: FragilitySpec) -> str:
-    """Return which inputs are drawn, and how often, in words; empty if none are."""
+    """Return the drawn inputs and the number of draws in words; empty without any."""
     often = {"ida": "once for each record", "cloud": "once for each run"}.get(
         spec.method, "once for each record and level"
     )
@@ -182,9 +182,9 @@ def _looked(curve: Curve, spec: FragilitySpec) -> list[tuple[float, float]]:
     return [(spec.levels[0], min(spec.levels[-1], max((cap.decided.high for _, cap in curve.capacities), default=0.0)))]
 
 
-def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
+def _described(curve: Curve, spec: FragilitySpec) -> dict[str, object]:
     fitted, readings = curve.fitted, curve.readings
-    content: dict[str, Any] = {
+    content: dict[str, object] = {
         "case": curve.case.name,
         "columns": curve.case.columns,
         "limit_state": curve.limit.name,
@@ -240,10 +240,10 @@ def _described(curve: Curve, spec: FragilitySpec) -> dict[str, Any]:
     return content
 
 
-def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, Any]:
+def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, object]:
     """Return the shares of the windows and the curve through them, also how far its median is above that of the ``first``."""
     shares = [_or_none(share) for share in windows.shares]
-    content: dict[str, Any] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
+    content: dict[str, object] = {"width": windows.width, "shares": shares, "records": windows.records, "median": None}
     if not isinstance(fitted := windows.fitted, NoCurve):
         content |= {
             "median": _or_none(fitted.median),
@@ -256,7 +256,7 @@ def _described_windows(windows: Windows, first: object, x: Values) -> dict[str, 
 
 
 def by_shares(curves: Sequence[Curve]) -> str:
-    """Return what the median by shares is, in words; empty without windows."""
+    """Return an explanation of the median by shares; empty without windows."""
     widths = [f"{100 * curve.windows.width:g} %" for curve in curves if curve.windows]
     if not widths:
         return ""
@@ -274,8 +274,8 @@ def _or_none(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _bound(curve: Curve) -> dict[str, Any] | None:
-    """Return the bound of a median that is not known: "below", "above" or "between", with its intensities; None without one.
+def _bound(curve: Curve) -> dict[str, object] | None:
+    """Return the bound of an unknown median, "below", "above" or "between", with its intensities; None without one.
 
     ``exceeded`` of ``records`` are beyond the limit at the bound; of a cloud, of all runs.
     """
@@ -332,7 +332,7 @@ def note(curve: Curve, spec: FragilitySpec) -> str:
 
 
 def _about_undecided(curve: Curve) -> str:
-    """Return how many runs are undecided, and what the curve would be with them."""
+    """Return the number of undecided runs and the medians with them within and beyond the limit; empty without any."""
     remark = curve.undecided.words
     if not remark:
         return ""
@@ -347,7 +347,7 @@ def _about_undecided(curve: Curve) -> str:
 
 
 def _about_drawn(curve: Curve) -> str:
-    """Return what each drawn input changes about the capacity, or why that is not known; empty if nothing is drawn."""
+    """Return the effect of each drawn input on the capacity, or why it is unknown; empty if nothing is drawn."""
     share = curve.drawn_share
     reason = curve.fitted.reason if isinstance(curve.fitted, NoCurve) else ""
     if share is None or share == reason:  # there is no curve, for the same reason

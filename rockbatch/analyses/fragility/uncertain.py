@@ -5,7 +5,7 @@ depends on the seed, the numbers of record and level, and the input alone: resum
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -17,6 +17,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats.qmc import LatinHypercube
 
 from rockbatch.analyses.fragility.lognormal import Values
+from rockbatch.common.analyses import Entry
 from rockbatch.results.run_json import describe_case
 from rockbatch.study import Case, Study
 from rockbatch.study.inputs import impossible, outside, ranges, values_of, varied, why_no_case
@@ -94,7 +95,7 @@ class Uncertain:
 
     @property
     def words(self) -> str:
-        """Return what is drawn, in words; empty if nothing is."""
+        """Return the drawn inputs in words; empty without any."""
         inputs = ", ".join(parameter.words for parameter in self.inputs)
         together = "; correlated: " + ", ".join(each.words for each in self.correlations)
         return f"{inputs}{together if self.correlations else ''} (seed {self.seed})" if self.inputs else ""
@@ -130,27 +131,44 @@ class Uncertain:
 
 
 _SPREADS = {
-    "lognormal": Section(("fragility", "uncertain", "lognormal"),
-        "Lognormal inputs: standard deviation of the logarithm, about the value of each case as median.", {
+    "lognormal": Section(
+        ("fragility", "uncertain", "lognormal"),
+        "Lognormal inputs: standard deviation of the logarithm, about the value of each case as median.",
+        {
             name: Key(Number("a number above 0 and at most 2", low=0.0, high=2.0, above=True), "0.1", key.words)
-            for name, key in ranges().items() if name in NAMES
-        }),
-    "uniform": Section(("fragility", "uncertain", "uniform"),
+            for name, key in ranges().items()
+            if name in NAMES
+        },
+    ),
+    "uniform": Section(
+        ("fragility", "uncertain", "uniform"),
         "Uniform inputs: the smallest and the largest value.",
-        {name: key for name, key in ranges().items() if name in NAMES}),
-}  # fmt: skip
-UNCERTAIN = Section(("fragility", "uncertain"), (
-    "Inputs that are not known: each is drawn once for every record and level (with \"ida\" once for every record), so that its "
-    "scatter is in the curve. Leave it out of [[fragility.dispersion]]."
-), {
-    "seed": Key(count, "1", "Seed of the draws."),
-}, homes=(Uncertain,))  # fmt: skip
-CORRELATION = Section(("fragility", "uncertain", "correlation"), (
-    "Correlation of two inputs: that of their logarithms if both are lognormal. Write one for each pair; others are independent."
-), {
-    "between": Key(choice(*NAMES), '["stiffness_kN_m", "yield_kN"]', "The two inputs.", many=True, required=True),
-    "value": Key(Number("a number from -1 to 1", low=-1.0, high=1.0), "0.7", "Their correlation.", required=True),
-}, many=True)  # fmt: skip
+        {name: key for name, key in ranges().items() if name in NAMES},
+    ),
+}
+UNCERTAIN = Section(
+    ("fragility", "uncertain"),
+    (
+        'Inputs that are not known: each is drawn once for every record and level (with "ida" once for every record), so that '
+        "its scatter is in the curve. Leave it out of [[fragility.dispersion]]."
+    ),
+    {
+        "seed": Key(count, "1", "Seed of the draws."),
+    },
+    homes=(Uncertain,),
+)
+CORRELATION = Section(
+    ("fragility", "uncertain", "correlation"),
+    (
+        "Correlation of two inputs: that of their logarithms if both are lognormal. Write one for each pair; others are "
+        "independent."
+    ),
+    {
+        "between": Key(choice(*NAMES), '["stiffness_kN_m", "yield_kN"]', "The two inputs.", many=True, required=True),
+        "value": Key(Number("a number from -1 to 1", low=-1.0, high=1.0), "0.7", "Their correlation.", required=True),
+    },
+    many=True,
+)
 
 SECTIONS = (UNCERTAIN, *_SPREADS.values(), CORRELATION)
 """Its tables in a study file."""
@@ -163,12 +181,10 @@ def read_uncertain(file: TomlFile, study: Study) -> Uncertain:
         return Uncertain()
     before = len(file.problems)
     read = table.read(UNCERTAIN, other=(*_SPREADS, "correlation"))
-    inputs = [
-        Input(name, spread, size)
-        for spread, keys in _SPREADS.items()
-        if (inner := file.table("fragility", "uncertain", spread))
-        for name, size in inner.read(keys).items()
-    ]
+    inputs = []
+    for spread, keys in _SPREADS.items():
+        if inner := file.table("fragility", "uncertain", spread):
+            inputs += [Input(name, spread, size) for name, size in inner.read(keys).items()]
     inputs.sort(key=lambda parameter: NAMES.index(parameter.name))
     if not inputs and file.is_sound_since(before):
         table.complain("nothing is drawn; write [fragility.uncertain.lognormal] and under it alpha = 0.1")
@@ -206,7 +222,7 @@ def _correlations(file: TomlFile, inputs: Sequence[Input]) -> tuple[Correlation,
 
 
 def _check(table: Table, uncertain: Uncertain, study: Study) -> None:
-    """Check that some case has every input, and that a case can be with nearly all that is drawn."""
+    """Complain about inputs that no case has, unfit distributions, and cases that are impossible with many draws."""
     used: set[str] = set()
     for case in study.cases:
         own = _own_values(case)
@@ -225,7 +241,7 @@ def _check(table: Table, uncertain: Uncertain, study: Study) -> None:
 
 
 def _unfit(parameter: Input, own: float, case: Case) -> str:
-    """Return why the distribution of an input does not go with the value of a case; empty if it does."""
+    """Return why the distribution of an input does not fit the value of a case; empty if it does."""
     if parameter.spread == "uniform":
         return outside(parameter.name, parameter.size, own, case)
     zero = f'{parameter.name} = 0 in case "{case.name}", about which nothing is lognormal; write it under uniform'
@@ -233,7 +249,7 @@ def _unfit(parameter: Input, own: float, case: Case) -> str:
 
 
 def _check_draws(table: Table, uncertain: Uncertain, case: Case) -> None:
-    """Check the share of draws with which a case cannot be, and name the input and the limit that most of them pass."""
+    """Complain if too many draws of a case are impossible, naming the input and the limit that most of them exceed."""
     own = _own_values(case)
     trials = (values_at(uncertain, own, scores) for scores in uncertain.scores(TRIALS, 0))
     wrong = [problems[0] for values in trials if (problems := impossible(case, values))]
@@ -256,13 +272,16 @@ def _own_values(case: Case) -> dict[str, Any]:
     return own | ({"restitution": case.pier.restitution} if own.get("restitution", 0.0) is None else {})
 
 
-def values_at(uncertain: Uncertain, own: Mapping[str, Any], scores: Values) -> dict[str, float]:
-    """Return the values of the inputs that a case has at normal ``scores``, shape (inputs,); ``own`` are those of the case."""
-    return {
-        parameter.name: parameter.value(float(score), own[parameter.name])
-        for parameter, score in zip(uncertain.inputs, scores, strict=True)
-        if parameter.name in own
-    }
+def values_at(uncertain: Uncertain, own: Entry, scores: Values) -> dict[str, float]:
+    """Return uncertain inputs at standard normal ``scores``, shape (inputs,): about the case's ``own`` values, or uniform.
+
+    Inputs not in ``own`` are left out.
+    """
+    values = {}
+    for parameter, score in zip(uncertain.inputs, scores, strict=True):
+        if parameter.name in own:
+            values[parameter.name] = parameter.value(float(score), own[parameter.name])
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,7 +289,7 @@ class Drawn:
     """A case with drawn inputs, as run.json has it, too, and their normal scores by name."""
 
     case: Case
-    described: dict[str, Any]
+    described: dict[str, object]
     scores: dict[str, float]
 
 
@@ -291,7 +310,7 @@ class Draws:
         return self._made[key]
 
     def _draw(self, number: int, record: int, level: int) -> Drawn:
-        """Return a draw, made again as long as no pier can be so, by a sequence of its own."""
+        """Return a draw, repeated from its own random sequence until the pier is possible."""
         case, own, uncertain = self.cases[number], self._own[number], self.uncertain
         if own.keys().isdisjoint(uncertain.names):
             return Drawn(case, describe_case(case), {})

@@ -31,7 +31,7 @@ class Windows(NamedTuple):
     fitted: Lognormal | NoCurve
 
     def above(self, other: object) -> float | None:
-        """Return how far the median lies above that of the ``other`` curve, relative to it; None without both."""
+        """Return the relative difference of the median from that of the ``other`` curve; None without both."""
         if isinstance(self.fitted, Lognormal) and isinstance(other, Lognormal):
             return self.fitted.median / other.median - 1.0
         return None

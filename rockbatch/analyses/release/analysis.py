@@ -134,7 +134,7 @@ def release(
     return run_analysis(Release, read_release, _write_tables, study, out, motions, jobs, fresh, progress)
 
 
-def _write_tables(results: AnalysisFolder, spec: ReleaseSpec) -> dict[str, Any]:
+def _write_tables(results: AnalysisFolder, spec: ReleaseSpec) -> dict[str, object]:
     """Fit each case, and write the tables."""
     made_folder(results.directory)
     study, measured = results.study, Passages(np.array(spec.impact_s), np.array(spec.amplitude_rad))
@@ -179,7 +179,7 @@ class _Test:
         return replace(self.case.base, **changes)
 
     def _model(self, value: float) -> Passages:
-        """Return the impacts that the pier has with this value; one that it does not come to has no amplitude, at the end."""
+        """Return the impacts of the pier with this value; those that it lacks are at the end of the run, with amplitude 0."""
         run = Run(self.case.pier, self.base(value), self.still)
         substeps = 2 * first_substeps(run.pier, run.base, run.motion.dt)
         outcome = run_fixed(run.pier, run.base, run.motion, substeps, 0.0, wait=False)
@@ -218,14 +218,19 @@ class _Test:
     def _shifted(self) -> bool:
         return self.spec.clock == "first impact"
 
-    def row(self, fit: Fit, table: "pd.DataFrame") -> dict[str, Any]:
+    def row(self, fit: Fit, table: "pd.DataFrame") -> dict[str, object]:
         """Return the row of the fit."""
         e = self.case.pier.restitution if self.parameter == "restitution" else math.nan
         apart = {"by_times": self._alone(0), "by_amplitudes": self._alone(1)}
         row = {
-            "parameter": self.parameter, "value": fit.value, "low": fit.low, "high": fit.high,
-            "confidence": self.spec.confidence, "scatter": fit.scatter, "impacts": len(table),
-        }  # fmt: skip
+            "parameter": self.parameter,
+            "value": fit.value,
+            "low": fit.low,
+            "high": fit.high,
+            "confidence": self.spec.confidence,
+            "scatter": fit.scatter,
+            "impacts": len(table),
+        }
         for name, value in (("", fit.value), ("_low", fit.low), ("_high", fit.high)):
             row[f"over_housner{name}"] = value / e if e > 0.0 else math.nan
         for name, best in apart.items():
@@ -236,24 +241,22 @@ class _Test:
         return row | {"remark": self._remark(fit, apart)}
 
     def _alone(self, kind: int) -> Fit | None:
-        """Return the fit to times (0) or to amplitudes (1) alone, where both were measured often enough."""
+        """Return the fit to times (0) or amplitudes (1) alone; None unless both were measured three times or more."""
         if any(np.count_nonzero(~np.isnan(values)) < 3 for values in self.measured):
             return None
         nothing = np.full(len(self.measured.t), math.nan)
         return self.fit(Passages(self.measured.t, nothing) if kind == 0 else Passages(nothing, self.measured.amplitude))
 
     def _remark(self, fit: Fit, apart: Mapping[str, Fit | None]) -> str:
-        """Return how well the model describes the test, in a sentence."""
+        """Return a remark on the fit: its differences from the test, and a probable cause if it is poor."""
         pier = self.case.pier
         first, start = float(self.model(fit.value).t.max()) / len(self.measured.t), abs(pier.initial_rotation_rad)
-        differences = [
-            f"{name} by {value * 1000.0:.3g} {unit} ({value / scale:.2g} of {reference})"
-            for name, value, unit, scale, reference in (
-                ("times", fit.t_rms, "ms", first, "a mean half cycle"),
-                ("amplitudes", fit.amplitude_rms, "mrad", start, "the initial rotation"),
-            )
-            if value == value
-        ]
+        differences = []
+        if not math.isnan(fit.t_rms):
+            differences.append(f"times by {fit.t_rms * 1000.0:.3g} ms ({fit.t_rms / first:.2g} of a mean half cycle)")
+        if not math.isnan(fit.amplitude_rms):
+            relative = f"{fit.amplitude_rms / start:.2g} of the initial rotation"
+            differences.append(f"amplitudes by {fit.amplitude_rms * 1000.0:.3g} mrad ({relative})")
         words = f"measured values differ from computed ones by root mean square: {', '.join(differences)}"
         poor = fit.t_rms > POOR_TIMES * first or fit.amplitude_rms > POOR_AMPLITUDES * start
         if fit.at_end:

@@ -16,10 +16,10 @@ def rotations(impacts: "pd.DataFrame", history: "pd.DataFrame", varied: Sequence
     keys = ["case", *varied]
     computed = {names: part for names, part in history.groupby(keys, sort=False, dropna=False)}
     groups = impacts.groupby(keys, sort=False, dropna=False)
-    panels = [
-        _panel(measured, computed[names], named(dict(zip(keys, names, strict=True)), keys))
-        for names, measured in groups
-    ]
+    panels = []
+    for names, measured in groups:
+        caption = named(dict(zip(keys, names, strict=True)), keys)
+        panels.append(_panel(measured, computed[names], caption))
     return Figure(panels, "Rotation after the release, computed and measured")
 
 
@@ -35,11 +35,22 @@ def _panel(impacts: "pd.DataFrame", history: "pd.DataFrame", caption: str) -> Pa
     )
     marks = [
         Polyline(t, theta, look=line_of(0), label="computed"),
-        Points(t_impact, np.zeros(len(t_impact)), None, of_impacts, look=Look("", 2, shape="diamond"), label="measured impact"),
         Points(
-            t_amplitude, np.copysign(amplitude, np.interp(t_amplitude, t, theta)), None, of_amplitudes, look=MEASURED,
+            t_impact,
+            np.zeros(len(t_impact)),
+            None,
+            of_impacts,
+            look=Look("", 2, shape="diamond"),
+            label="measured impact",
+        ),
+        Points(
+            t_amplitude,
+            np.copysign(amplitude, np.interp(t_amplitude, t, theta)),
+            None,
+            of_amplitudes,
+            look=MEASURED,
             label="measured amplitude",
         ),
-    ]  # fmt: skip
+    ]
     axes = Axis("t [s]", float(t[0]), float(t[-1]), about=8), Axis("θ [rad]", -most, most, about=6)
     return Panel(*axes, marks, caption, width=420.0, height=172.0)

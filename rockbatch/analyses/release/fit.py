@@ -87,18 +87,20 @@ def fitted(measured: Passages, model: Model, grid: Samples, confidence: float, s
         if abs(value - centre) <= 1e-9:
             break
     low, high = (centre + posterior.quantile(0.5 + side * confidence) for side in (-0.5, 0.5))
-    t_rms, amplitude_rms = (
-        math.sqrt(float(np.nanmean((data - modelled) ** 2))) if not np.isnan(data).all() else math.nan
-        for data, modelled in zip(measured, model(value), strict=True)
-    )
+    t_rms, amplitude_rms = map(_rms, measured, model(value))
     low, high = (min(max(end, bounds[0]), bounds[1]) for end in (low, high))
     scatter = float(posterior.weights @ posterior.spread)
     stretch = _stretch(linear, np.concatenate([model(value).t, 0.0 * measured.t]), measured, confidence)
     return Fit(value, low, high, scatter, t_rms, amplitude_rms, value in bounds, *stretch)
 
 
+def _rms(data: Samples, modelled: Samples) -> float:
+    """Return the root mean square of differences where ``data`` are not NaN; NaN without any."""
+    return math.nan if np.isnan(data).all() else math.sqrt(float(np.nanmean((data - modelled) ** 2)))
+
+
 def _stretch(linear: _Linear, t: Samples, measured: Passages, confidence: float) -> tuple[float, float]:
-    """Return the factor on all computed times, ``t``, 0 for amplitudes, that measured ones ask for, and its error."""
+    """Return the factor on computed times ``t`` that fits measured ones best, and its error; NaN for fewer times than needed."""
     known = ~np.isnan(np.concatenate(measured))
     if np.count_nonzero(linear.kinds == 0) < LEAST_TIMES:
         return math.nan, math.nan
@@ -123,7 +125,7 @@ def _least_squares(measured: Passages, model: Model, grid: Samples) -> float:
 
 
 def _linear(measured: Passages, model: Model, value: float, bounds: tuple[float, float]) -> _Linear:
-    """Return how the differences change with the parameter.
+    """Return differences and slopes of the model linearised at a value of the parameter.
 
     Each impact before it has the same part in the energy of a half cycle, hence in its amplitude and its duration.
     """

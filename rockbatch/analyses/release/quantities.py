@@ -1,18 +1,16 @@
 """Quantities of a release test, as the terminal and the page show them: heads, formats and meanings."""
 
-from collections.abc import Mapping
-from typing import Any
-
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.markup import number
 from rockbatch.reporting.table import Head
 
 
-def interval(fit: Mapping[str, Any]) -> str:
+def interval(fit: Entry) -> str:
     """Return the interval of a fitted value with its confidence."""
     return f"{number(fit['low'], '.4g')} to {number(fit['high'], '.4g')} ({float(fit['confidence']):.0%})"
 
 
-def in_words(fit: Mapping[str, Any]) -> str:
+def in_words(fit: Entry) -> str:
     """Return what was fitted: "restitution = 0.9122 (95 %: 0.9061 to 0.918), Housner's is 0.9118"."""
     value, low, high = (number(fit[name], ".4g") for name in ("value", "low", "high"))
     text = f"{fit['parameter']} = {value} ({100.0 * fit['confidence']:g} %: {low} to {high})"

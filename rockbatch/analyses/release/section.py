@@ -1,10 +1,10 @@
 """A release test in the report: what was fitted, and the measured impacts and amplitudes on the computed rotation."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rockbatch.analyses.release import quantities
 from rockbatch.analyses.release.figures import rotations
+from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import FinishedAnalysis, answered, named, of_analysis, sentence
 from rockbatch.reporting.markup import Markup, figure, join, tag
@@ -37,7 +37,7 @@ def section(
     )
 
 
-def _answer(fit: Mapping[str, Any], keys: Sequence[str]) -> Markup:
+def _answer(fit: Entry, keys: Sequence[str]) -> Markup:
     """Return what was fitted in a case, in a sentence, with what puts it in doubt."""
     doubt = fit["remark"].rpartition("; ")[0]
     return answered(sentence(f"{named(fit, keys)}: {quantities.in_words(fit)}", [doubt] if doubt else ()))

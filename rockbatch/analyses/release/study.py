@@ -1,11 +1,10 @@
 """A release test, what was measured of it and what is fitted: [release] of a study file."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from pathlib import Path
-from typing import Any
 
 from rockbatch.common.errors import InputError
 from rockbatch.study.load import Study
@@ -18,9 +17,12 @@ from rockbatch.toml.section import Clash, Key, Section
 FITS = ("restitution", "epsilon", "zeta")
 
 UNITS = {
-    "impact_s": ("impact_s", 1.0), "impact_ms": ("impact_s", 1e-3), "amplitude_rad": ("amplitude_rad", 1.0),
-    "amplitude_mrad": ("amplitude_rad", 1e-3), "amplitude_deg": ("amplitude_rad", math.pi / 180.0),
-}  # fmt: skip
+    "impact_s": ("impact_s", 1.0),
+    "impact_ms": ("impact_s", 1e-3),
+    "amplitude_rad": ("amplitude_rad", 1.0),
+    "amplitude_mrad": ("amplitude_rad", 1e-3),
+    "amplitude_deg": ("amplitude_rad", math.pi / 180.0),
+}
 """Columns of a file of measured values: the key that each stands for, and the factor on its numbers."""
 
 FEWEST, MOST = 3, 500
@@ -50,27 +52,51 @@ class ReleaseSpec:
         return "epsilon" if getattr(case.base, "zeta", None) is None else "zeta"
 
 
-RELEASE = Section(("release",), (
-    "A release test, by `rb.release`: what was measured as the pier was let go from `initial_rotation_rad`, to which the "
-    "restitution of rigid ground, or the losses of springs, are fitted."
-), {
-    "impact_s": Key(positive, "[0.32, 0.86, 1.31]",
-        "Times of the impacts [s], from the first one on; on springs of the passages through upright.", many=True,
-        distinct=False),
-    "amplitude_rad": Key(positive, "[0.082, 0.068, 0.057]",
-        "Greatest rotation [rad], without its sign, after each of these impacts.", many=True, distinct=False),
-    "measured": Key(text, '"test.csv"',
-        "Instead: a CSV with a row for each impact, and the columns impact_s or impact_ms, and amplitude_rad, amplitude_mrad or "
-        "amplitude_deg; empty where nothing was measured. Relative to the study file."),
-    "clock": Key(choice("release", "first impact"), '"first impact"',
-        'Where times count from: the "release", or the "first impact", whose own time may be any then.'),
-    "fit": Key(choice(*FITS), '"restitution"',
-        "What is fitted; by default restitution on a rigid base, and of springs zeta, if the case has one, or epsilon."),
-    "confidence": Key(share, "0.95", "Level of the intervals."),
-}, homes=(ReleaseSpec,), clashes=(
-    Clash(("measured", "impact_s"), "measured and impact_s are given; keep one"),
-    Clash(("measured", "amplitude_rad"), "measured and amplitude_rad are given; keep one"),
-))  # fmt: skip
+RELEASE = Section(
+    ("release",),
+    (
+        "A release test, by `rb.release`: what was measured as the pier was let go from `initial_rotation_rad`, to which the "
+        "restitution of rigid ground, or the losses of springs, are fitted."
+    ),
+    {
+        "impact_s": Key(
+            positive,
+            "[0.32, 0.86, 1.31]",
+            "Times of the impacts [s], from the first one on; on springs of the passages through upright.",
+            many=True,
+            distinct=False,
+        ),
+        "amplitude_rad": Key(
+            positive,
+            "[0.082, 0.068, 0.057]",
+            "Greatest rotation [rad], without its sign, after each of these impacts.",
+            many=True,
+            distinct=False,
+        ),
+        "measured": Key(
+            text,
+            '"test.csv"',
+            "Instead: a CSV with a row for each impact, and the columns impact_s or impact_ms, and amplitude_rad, "
+            "amplitude_mrad or amplitude_deg; empty where nothing was measured. Relative to the study file.",
+        ),
+        "clock": Key(
+            choice("release", "first impact"),
+            '"first impact"',
+            'Where times count from: the "release", or the "first impact", whose own time may be any then.',
+        ),
+        "fit": Key(
+            choice(*FITS),
+            '"restitution"',
+            "What is fitted; by default restitution on a rigid base, and of springs zeta, if the case has one, or epsilon.",
+        ),
+        "confidence": Key(share, "0.95", "Level of the intervals."),
+    },
+    homes=(ReleaseSpec,),
+    clashes=(
+        Clash(("measured", "impact_s"), "measured and impact_s are given; keep one"),
+        Clash(("measured", "amplitude_rad"), "measured and amplitude_rad are given; keep one"),
+    ),
+)
 
 SECTIONS = (RELEASE,)
 """Its tables in a study file."""
@@ -85,24 +111,25 @@ def read_release(study: Study) -> ReleaseSpec:
     table = file.table("release", required="[release] with impact_s = [0.32, 0.86, 1.31], measured times of impacts")
     spec = ReleaseSpec()
     if table is not None:
-        read: dict[str, Any] = table.read(RELEASE)
+        read = table.read(RELEASE)
         if "measured" in read:
             read |= _of_file(table, read["measured"])
-        spec = ReleaseSpec(**_padded(read))
+        read |= _padded(read.get("impact_s", ()), read.get("amplitude_rad", ()), read.get("clock"))
+        spec = ReleaseSpec(**read)
         if not file.problems:
             _check(table, spec, study)
     file.finish()
     return spec
 
 
-def _padded(read: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings with as many times as amplitudes."""
-    rows = list(zip_longest(read.get("impact_s", ()), read.get("amplitude_rad", ()), fillvalue=math.nan))
-    if read.get("clock") == "first impact" and rows:
+def _padded(times: Sequence[float], amplitudes: Sequence[float], clock: str | None) -> dict[str, tuple[float, ...]]:
+    """Return times [s] and amplitudes [rad] of equal number, padded by NaN; times from the first impact if ``clock`` says so."""
+    rows = list(zip_longest(times, amplitudes, fillvalue=math.nan))
+    if clock == "first impact" and rows:
         first = rows[0][0] if rows[0][0] == rows[0][0] else 0.0
         rows = [(t - first, amplitude) for t, amplitude in rows]
-        rows[0] = (math.nan, rows[0][1])  # 0 by definition, which says nothing
-    return read | {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(value for _, value in rows)}
+        rows[0] = (math.nan, rows[0][1])  # 0 by definition, and so no measurement
+    return {"impact_s": tuple(t for t, _ in rows), "amplitude_rad": tuple(value for _, value in rows)}
 
 
 def _of_file(table: Table, name: str) -> dict[str, tuple[float, ...]]:

@@ -10,7 +10,7 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -68,10 +68,15 @@ class Sensitivity(Analysis):
 
 @checked
 def sensitivity(
-    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
-    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
-) -> Sensitivity:  # fmt: skip
-    """Compute what the peak rotation depends on, one at a time and by Sobol's indices: [sensitivity] of a study.
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: Motions = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = None,
+) -> Sensitivity:
+    """Compute the sensitivity of the peak rotation to inputs one at a time, and Sobol's indices: [sensitivity] of a study.
 
     Parameters
     ----------
@@ -105,7 +110,7 @@ def sensitivity(
     return run_analysis(Sensitivity, read_sensitivity, _write_tables, study, out, motions, jobs, fresh, progress)
 
 
-def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, Any]:
+def _write_tables(results: AnalysisFolder, spec: SensitivitySpec) -> dict[str, object]:
     """Write the runs at all points, unless they exist already, and the tables."""
     study = with_vertical = results.study
     if any(parameter.name == "vertical" for parameter in spec.inputs):  # read it, whatever the study does with it
@@ -168,7 +173,7 @@ def answers(values: Values, statistic: str) -> Values:
     return np.array([statistic_of(at_point) for at_point in values.T])
 
 
-def tornado(inputs: Sequence[Input], points: Sequence[Point], results: Values) -> list[dict[str, Any]]:
+def tornado(inputs: Sequence[Input], points: Sequence[Point], results: Values) -> list[dict[str, object]]:
     """Return the rows of sensitivity.csv of a case, the greatest swing first: the answers at both ends of every input.
 
     ``points`` and ``results``, shape (1 + 2 inputs,), are those of :func:`low_base_high` and the answers there.
@@ -202,7 +207,7 @@ def tables(
 ) -> tuple["pd.DataFrame", "pd.DataFrame"]:
     """Return the tables sensitivity.csv and sobol.csv of ``values``, shape (members of the suite, points)."""
     results = answers(values, spec.statistic)
-    swings: list[dict[str, Any]] = []
+    swings: list[dict[str, object]] = []
     shares: list[pd.DataFrame] = []
     for case, inputs, (ends, many) in zip(study.cases, points.inputs, points.parts, strict=True):
         identity = {"case": case.name, **case.columns}

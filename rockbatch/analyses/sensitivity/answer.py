@@ -1,9 +1,9 @@
-"""The answer of a sensitivity study in sentences: the inputs that matter most, and what one of them does alone."""
+"""The answer of a sensitivity study in sentences: the inputs that matter most, and the effect of one alone."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from rockbatch.analyses.sensitivity.figures import symbol, written
+from rockbatch.common.analyses import Entry
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.statistics import STATISTICS
@@ -20,14 +20,14 @@ MOST_CASES = 3
 MOST_INPUTS = 4
 """Most inputs of a case that are named with their indices."""
 
-Info = Mapping[str, Any]
+Info = Entry
 """Content of sensitivity.json."""
-Rows = Sequence[Mapping[str, Any]]
+Rows = Sequence[Entry]
 """Inputs of a case: rows of sensitivity.csv with their indices of sobol.csv, the greatest total index first."""
 
 
 def answer(info: Info, swings: "pd.DataFrame", sobol: "pd.DataFrame") -> Markup:
-    """Return which inputs matter most in each case, and what puts that in doubt."""
+    """Return sentences on the most important inputs of each case, and doubts about their order."""
     keys = ["case", *info["varied"]]
     merged = swings.merge(sobol, on=[*keys, "parameter"]).groupby(keys, sort=False, dropna=False)
     parts = (as_dicts(part.sort_values("total", ascending=False, kind="stable")) for _, part in merged)
@@ -64,12 +64,12 @@ def _of_case(rows: Rows) -> Markup:
     return join(sentence(said, _doubt(first, shown)), moved if greatest["swing"] > 0 else "")
 
 
-def _index(row: Mapping[str, Any]) -> str:
+def _index(row: Entry) -> str:
     return f"{row['total']:.2f}\u00a0±\u00a0{row['total_error']:.2f}"
 
 
-def _doubt(first: Mapping[str, Any], shown: Rows) -> Iterator[str]:
-    """Yield what would tell the order of the inputs, if it is not known."""
+def _doubt(first: Entry, shown: Rows) -> Iterator[str]:
+    """Yield advice to take more samples if the errors leave the order of the inputs open, or the first index itself."""
     least = first["total"] - first["total_error"]
     alike = [symbol(row["parameter"]) for row in shown if row["total"] + row["total_error"] >= least]
     if alike:
@@ -92,7 +92,7 @@ def _in_most(cases: Sequence[Rows]) -> Markup:
 
 
 def _of_runs(info: Info) -> Iterator[str]:
-    """Yield how many runs have no peak of their own."""
+    """Yield remarks on the numbers of runs that overturned, flew or failed."""
     number, runs = info["statuses"], counted(sum(info["statuses"].values()), "run")
     if ended := number.get("overturned", 0) + number.get("flight", 0):
         yield f"{ended} of {runs} overturned or were ended by flight, and count as {info['overturned']:g} here."

@@ -1,11 +1,11 @@
 """Figures of sensitivity: the effect of each input alone, and Sobol's indices."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
+from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import Area, Axis, Figure, Look, Mark, Panel, Polyline, Rule, Words, spanning
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import named
@@ -65,7 +65,7 @@ def _indices(rows: "pd.DataFrame", caption: str) -> Panel:
     return _panel(ordered, x, [*marks, Rule("x", np.zeros(1), look=Look("edge"))], caption)
 
 
-def _of_input(row: Mapping[str, Any], count: int, place: int) -> Iterator[Mark]:
+def _of_input(row: Entry, count: int, place: int) -> Iterator[Mark]:
     for way, (name, words) in enumerate(INDICES.items()):
         value, error, y = row[name], row[f"{name}_error"], _height(count, place, way)
         if not np.isnan(value):

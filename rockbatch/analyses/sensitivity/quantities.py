@@ -1,16 +1,16 @@
 """Quantities of a sensitivity study: columns of its files, and heads and formats on the terminal and the page."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 from rockbatch.analyses.sensitivity.figures import written
+from rockbatch.common.analyses import Entry
 from rockbatch.reporting.table import Head
 
 _ENDS = {"low": "low", "base": "study", "high": "high"}
 _INDICES = {"first": "first-order", "total": "total"}
 
 
-def _value(end: str) -> Callable[[Mapping[str, Any]], str]:
+def _value(end: str) -> Callable[[Entry], str]:
     return lambda row: written(row[end])
 
 

@@ -7,7 +7,6 @@ Comput. Phys. Commun. 181, 259–270).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -38,9 +37,9 @@ class Point:
 
 
 def low_base_high(inputs: Sequence[Input], study: Study, case: Case) -> list[dict[str, Value]]:
-    """Return the study's own values; then, for each input, its low end and its high one with all others as they are.
+    """Return the study's own values, then those with each input in turn at its low and at its high end.
 
-    A restitution that is an input and that the study does not give is Housner's of its own pier.
+    A restitution that the study does not give is Housner's for its own pier.
     """
     values_of_study = own_values(study, case)
     if values_of_study.get("restitution", 0.0) is None:
@@ -102,8 +101,8 @@ class Design:
         return tuple(map(self.case, self.points.all[:: 1 + len(self.points) // 64]))
 
 
-def row_of(run: StudyRun) -> dict[str, Any]:
-    """Return a row of the table of runs: how the run ended, and its peak."""
+def row_of(run: StudyRun) -> dict[str, object]:
+    """Return the row of a finished run in the table of runs: status, peak θ_max/α and reason."""
     outcome = run.outcome
     assert outcome is not None
     return {
@@ -116,8 +115,8 @@ def row_of(run: StudyRun) -> dict[str, Any]:
     }
 
 
-def problem(inputs: Sequence[Input]) -> dict[str, Any]:
-    """Return the inputs as SALib takes them; a choice is a coin."""
+def problem(inputs: Sequence[Input]) -> dict[str, object]:
+    """Return SALib's problem of the inputs, in which a choice is uniform from 0 to 1."""
     distributions = {"uniform": "unif", "log_uniform": "logunif", "choice": "unif"}
     return {
         "num_vars": len(inputs),
@@ -132,13 +131,13 @@ def design(inputs: Sequence[Input], samples: int, seed: int) -> list[dict[str, V
     from SALib.sample import sobol
 
     drawn = sobol.sample(problem(inputs), samples, calc_second_order=False, seed=seed)
-    return [
-        {
-            parameter.name: parameter.levels[int(x >= 0.5)] if parameter.spread == "choice" else float(x)
-            for parameter, x in zip(inputs, point, strict=True)
-        }
-        for point in drawn
-    ]
+    names = [parameter.name for parameter in inputs]
+    return [dict(zip(names, map(_sampled_value, inputs, point), strict=True)) for point in drawn]
+
+
+def _sampled_value(parameter: Input, x: float) -> Value:
+    """Return an input at a coordinate of SALib's design, for a choice the second value from 0.5 on."""
+    return parameter.levels[int(x >= 0.5)] if parameter.spread == "choice" else float(x)
 
 
 def indices(inputs: Sequence[Input], answers: npt.NDArray[np.float64], confidence: float, seed: int) -> "pd.DataFrame":

@@ -16,17 +16,20 @@ from rockbatch.results.labelled import as_dicts
 
 @of_analysis("sensitivity", sensitivity=("case", *TORNADO), sobol=("case", *SOBOL))
 def section(analysis: FinishedAnalysis, swings: "pd.DataFrame", shares: "pd.DataFrame") -> Markup:
-    """Report the inputs one at a time, and all at once."""
+    """Return the report's section of sensitivity: inputs one at a time, and Sobol's indices."""
     info = analysis.info
     keys, cases = ["case", *info["varied"]], swings.groupby(["case", *info["varied"]], dropna=False).ngroups
     heads = [Head("input", value=lambda row: symbol(row["parameter"])), *QUANTITIES]
     heads = [Head("case", value=lambda row: named(row, keys)), *heads] if cases > 1 else heads
     rows, inputs = as_dicts(swings.merge(shares, on=[*keys, "parameter"])), [entry["name"] for entry in info["inputs"]]
     return render(
-        "analyses/sensitivity/section.html", info=info, statistic=STATISTICS[info["statistic"]].words,
-        answer=answer(info, swings, shares), picture=drawn(bars(swings, shares, info["varied"])),
+        "analyses/sensitivity/section.html",
+        info=info,
+        statistic=STATISTICS[info["statistic"]].words,
+        answer=answer(info, swings, shares),
+        picture=drawn(bars(swings, shares, info["varied"])),
         table=listed(heads, rows, name="Sensitivity in numbers"),
         runs=[f"{count} {status}" for status, count in sorted(info["statuses"].items())],
         idle="vertical" in inputs and not any(motion["vertical"] for motion in info["under"]),
         provenance=analysis.provenance(),
-    )  # fmt: skip
+    )

@@ -58,17 +58,24 @@ class SensitivitySpec:
     seed: int = 1
 
 
-SENSITIVITY = Section(("sensitivity",), (
-    "Which inputs matter, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."
-), {
-    "statistic": Key(choice("max", "mean", "median", "p84"), '"median"',
-        "Statistic over the records."),
-    "overturned": Key(positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."),
-    "samples": Key(Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"), "64",
-        "Size N of the design: N (d + 2) points for d inputs, each under every record."),
-    "confidence": Key(share, "0.95", "Level of the intervals of the indices."),
-    "seed": Key(count, "1", "Seed of the design and of the intervals."),
-}, homes=(SensitivitySpec,))  # fmt: skip
+SENSITIVITY = Section(
+    ("sensitivity",),
+    ("Which inputs matter, by `rockbatch sensitivity`: one input at a time, and Sobol indices of all together."),
+    {
+        "statistic": Key(choice("max", "mean", "median", "p84"), '"median"', "Statistic over the records."),
+        "overturned": Key(
+            positive, "1.0", "The θ_max/α as which a run counts that overturned; larger ones count so too."
+        ),
+        "samples": Key(
+            Choice(tuple(2**k for k in range(2, 31)), "a power of two from 4"),
+            "64",
+            "Size N of the design: N (d + 2) points for d inputs, each under every record.",
+        ),
+        "confidence": Key(share, "0.95", "Level of the intervals of the indices."),
+        "seed": Key(count, "1", "Seed of the design and of the intervals."),
+    },
+    homes=(SensitivitySpec,),
+)
 
 
 def _choice(keys: Mapping[str, Key], name: str, example: str) -> dict[str, Key]:
@@ -76,34 +83,42 @@ def _choice(keys: Mapping[str, Key], name: str, example: str) -> dict[str, Key]:
 
 
 SPREADS = {
-    "uniform": Section(("sensitivity", "uniform"),
-        "Uniform inputs: the smallest and the largest value.", ranges()),
-    "log_uniform": Section(("sensitivity", "log_uniform"),
-        "Log-uniform inputs: the smallest and the largest value.", ranges(kind=positive)),
-    "choice": Section(("sensitivity", "choice"), "Inputs with two equally likely values.", {
-        **_choice(CASE, "kinematics", '["first-order", "finite"]'),
-        **_choice(CASE, "spring", '["bouc-wen", "epp"]'),
-        "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),
-        **_choice(MOTIONS, "polarity", '["+", "-"]'),
-    }),
-}  # fmt: skip
+    "uniform": Section(("sensitivity", "uniform"), "Uniform inputs: the smallest and the largest value.", ranges()),
+    "log_uniform": Section(
+        ("sensitivity", "log_uniform"), "Log-uniform inputs: the smallest and the largest value.", ranges(kind=positive)
+    ),
+    "choice": Section(
+        ("sensitivity", "choice"),
+        "Inputs with two equally likely values.",
+        {
+            **_choice(CASE, "kinematics", '["first-order", "finite"]'),
+            **_choice(CASE, "spring", '["bouc-wen", "epp"]'),
+            "vertical": Key(boolean, "[true, false]", "With the records' vertical components, or without.", many=True),
+            **_choice(MOTIONS, "polarity", '["+", "-"]'),
+        },
+    ),
+}
 WITHIN: dict[str, dict[str, dict[str, Key]]] = {
     "uniform": {what: ranges(what) for what in RESTRAINTS},
     "log_uniform": {what: ranges(what, positive) for what in RESTRAINTS},
     "choice": {},
 }
 """Keys of tables within, such as [sensitivity.uniform.damper], or damper.f = … in [sensitivity.uniform]."""
-SECTIONS = (SENSITIVITY, *SPREADS.values(), *(
-    Section(
-        ("sensitivity", spread, what),
-        f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{first} = {keys[first].example} "
-        f"above. Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next.",
-        keys,
-        numbered=True,
-    )
-    for spread, within in WITHIN.items()
-    for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm", "gap_mm"), strict=False)
-))  # fmt: skip
+SECTIONS = (
+    SENSITIVITY,
+    *SPREADS.values(),
+    *(
+        Section(
+            ("sensitivity", spread, what),
+            f"Inputs of the {what} of a case, the least and the largest value; or write {what}.{first} = {keys[first].example} "
+            f"above. Where several {what}s of a case have the key, {what}_1 is the first that the case has, {what}_2 the next.",
+            keys,
+            numbered=True,
+        )
+        for spread, within in WITHIN.items()
+        for (what, keys), first in zip(within.items(), ("f", "psi", "gap_mm", "gap_mm"), strict=False)
+    ),
+)
 
 
 def applying(inputs: Iterable[Input], case: Case) -> tuple[Input, ...]:
@@ -121,10 +136,9 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
     """Return what the study file asks for in [sensitivity]; ``InputError`` with every mistake, or if there is no such table."""
     file = study.file()
     table = file.table("sensitivity", required="[sensitivity] and [sensitivity.uniform] with alpha = [0.12, 0.16]")
-    read: dict[str, Any] = {}
     inputs: list[Input] = []
+    read = {} if table is None else table.read(SENSITIVITY, other=SPREADS)
     if table is not None:
-        read = table.read(SENSITIVITY, other=SPREADS)
         for spread, keys in SPREADS.items():
             inputs += _inputs(file, spread, keys)
         spreads: dict[str, list[str]] = {}
@@ -145,14 +159,13 @@ def read_sensitivity(study: Study) -> SensitivitySpec:
 
 
 def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]:
+    """Return the inputs under [sensitivity.SPREAD], also of restraints in tables within."""
     table = file.table("sensitivity", spread)
     if table is None:
         return []
-    unfit = {
-        name: f"belongs under [sensitivity.{spread_of_other}]"
-        for spread_of_other, names in SPREADS.items()
-        for name in names.keys() - keys.keys()
-    }
+    unfit: dict[str, str] = {}
+    for other, names in SPREADS.items():
+        unfit |= dict.fromkeys(names.keys() - keys.keys(), f"belongs under [sensitivity.{other}]")
     tables = [name for name in table.data if TABLE.fullmatch(name)]
     if not WITHIN[spread]:
         unfit |= dict.fromkeys(tables, "belongs under [sensitivity.uniform]")
@@ -165,9 +178,16 @@ def _inputs(file: TomlFile, spread: str, keys: Mapping[str, Key]) -> list[Input]
     return inputs
 
 
-def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> list[Input]:
+def _read(
+    table: Table,
+    spread: str,
+    keys: Mapping[str, Key],
+    unfit: Mapping[str, str] | None = None,
+    other: Sequence[str] = (),
+) -> list[Input]:
+    """Return the inputs in a table, a pair of values each; complain about others."""
     inputs = []
-    for name, levels in table.read(keys, **more).items():
+    for name, levels in table.read(keys, unfit=unfit, other=other).items():
         if len(levels) == 2:
             inputs.append(Input(name, spread, levels))
         else:
@@ -176,7 +196,7 @@ def _read(table: Table, spread: str, keys: Mapping[str, Key], **more: Any) -> li
 
 
 def _check(table: Table, inputs: Sequence[Input], study: Study) -> None:
-    """Check that every input belongs to some case, that its range holds the study's value, and that every corner is possible."""
+    """Complain about inputs that no case has, ranges without the study's value, and impossible corners of all ranges."""
     used: set[str] = set()
     places = {parameter.name: parameter.at for parameter in inputs}
     for case in study.cases:

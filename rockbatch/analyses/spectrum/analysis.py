@@ -79,9 +79,14 @@ class Spectrum(Analysis):
 
 @checked
 def spectrum(
-    study: str | os.PathLike[str] | Study, out: str | os.PathLike[str] | None = None, *, motions: Motions = None,
-    jobs: int | Engine | None = None, fresh: bool = False, progress: Progress = None,
-) -> Spectrum:  # fmt: skip
+    study: str | os.PathLike[str] | Study,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    motions: Motions = None,
+    jobs: int | Engine | None = None,
+    fresh: bool = False,
+    progress: Progress = None,
+) -> Spectrum:
     """Compute rocking spectra over the size of the pier, and maps of the pulses that overturn it: [spectrum] of a study.
 
     Parameters
@@ -117,7 +122,7 @@ def spectrum(
     return run_analysis(Spectrum, read_spectrum, _write_tables, study, out, motions, jobs, fresh, progress)
 
 
-def _write_tables(results: AnalysisFolder, spec: tuple[SpectrumSpec | None, tuple[MapSpec, ...]]) -> dict[str, Any]:
+def _write_tables(results: AnalysisFolder, spec: tuple[SpectrumSpec | None, tuple[MapSpec, ...]]) -> dict[str, object]:
     spectra, maps = spec
     if spectra is not None:
         _write_spectra(results, spectra)

@@ -1,13 +1,13 @@
-"""The answer of rocking spectra and overturning maps in sentences: what overturns, and the greatest rotation of what stands."""
+"""The answer of rocking spectra and maps in sentences: the largest piers that overturn, and the greatest rotation of others."""
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from rockbatch.analyses.spectrum.figures import ACROSS
+from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import answered, named
 from rockbatch.reporting.labels import counted, symbol
@@ -21,7 +21,7 @@ MOST_SLENDERNESSES = 4
 MOST_MAPS = 3
 """Most maps that have a sentence; of more the worst has one."""
 
-Info = Mapping[str, Any]
+Info = Entry
 """Content of spectrum.json."""
 
 
@@ -131,7 +131,7 @@ def _peak(value: float) -> str:
 
 
 def of_maps(info: Info, regions: "pd.DataFrame") -> tuple[list[str], list[str]]:
-    """Return a sentence on the least amplitude of each map that overturns, of many maps on the least of all; and remarks."""
+    """Return sentences on the least amplitude that overturns in each map, or in the worst of many maps, and remarks."""
     maps = [of_map for _, of_map in regions.groupby("map", sort=False)]
     of = ""
     if len(maps) > MOST_MAPS:
@@ -167,7 +167,7 @@ def _least_of(regions: "pd.DataFrame", keys: list[str], of: str) -> str:
 
 
 def _left_open(regions: "pd.DataFrame") -> Iterator[str]:
-    """Yield what may overturn the pier below the least amplitude that does."""
+    """Yield remarks on lower amplitudes that may overturn, too: by flight, undecided, or beyond the ends of the map."""
     least, worst, frequencies = _least(regions), _worst(regions)["omega_p_over_p"], regions["omega_p_over_p"]
     for outcome, words in (("flight", "the run ends by flight"), ("undecided", "it is undecided what the pier does")):
         rows = regions[(regions["outcome"] == outcome) & (regions["low"] < least)]

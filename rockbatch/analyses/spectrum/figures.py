@@ -1,12 +1,12 @@
 """Figures of rocking spectra, as curves, and of overturning maps, as regions."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from rockbatch.analyses.spectrum.map_regions import Outline, areas, between, inside, strips
+from rockbatch.common.analyses import Entry
 from rockbatch.common.figures.description import COLOURS, Area, Axis, Figure, Look, Mark, Panel, Points, Polyline, Span
 from rockbatch.common.lazy import pd
 from rockbatch.reporting.finished_analysis import named
@@ -18,8 +18,10 @@ ROW = 0.06
 MOST_RECORDS = 60
 """Most curves of single records in a panel."""
 ACROSS = {
-    "two_pi_over_p_s": "2π/p [s]", "size_m": "R_0 [m]", "omega_g_over_p": "ω_g/p,  ω_g = PGA/PGV",
-}  # fmt: skip
+    "two_pi_over_p_s": "2π/p [s]",
+    "size_m": "R_0 [m]",
+    "omega_g_over_p": "ω_g/p,  ω_g = PGA/PGV",
+}
 QUANTILES = {"median": 0, "p16": 2, "p84": 1}
 """Dashes of the statistics of the suite."""
 FELL = "overturned or ended by flight"
@@ -32,9 +34,7 @@ REGIONS = {
 """Colour and words of each region of a map; none where the pier stands."""
 
 
-def spectra(
-    suite: "pd.DataFrame", records: "pd.DataFrame | None", info: Mapping[str, Any], axis: str | None = None
-) -> Figure:
+def spectra(suite: "pd.DataFrame", records: "pd.DataFrame | None", info: Entry, axis: str | None = None) -> Figure:
     """Return the largest rotation over the size of the pier, from spectrum_suite.csv and the curves of ``records`` in
     spectrum.csv; ``info`` is spectrum.json, ``axis`` a column in place of its own."""
     keys = ("case", *(() if info["axis"] == "omega_g_over_p" else ("scale",)), *info["varied"])
@@ -94,7 +94,7 @@ def _of_records(records: "pd.DataFrame", axis: str, top: float) -> Iterator[Poly
         )
 
 
-def maps(regions: "pd.DataFrame", info: Mapping[str, Any]) -> Figure:
+def maps(regions: "pd.DataFrame", info: Entry) -> Figure:
     """Return the regions of amplitude over frequency of each map of overturning_map.csv with their boundaries, as they were
     computed; ``info`` is spectrum.json."""
     apart = ["map", "case", *info["varied_map"]]

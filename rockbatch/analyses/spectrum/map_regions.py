@@ -37,14 +37,10 @@ class Strip:
 
 def strips(regions: "pd.DataFrame") -> list[Strip]:
     """Return the strips of one map, rows of overturning_map.csv, by frequency, without gaps or overlaps."""
-    columns = [
-        Strip(
-            tuple(column["outcome"]),
-            np.array([float(str(frequency))]),
-            np.append(column["low"].to_numpy(float), float(column["high"].iloc[-1]))[None],
-        )
-        for frequency, column in regions.groupby("omega_p_over_p")
-    ]
+    columns: list[Strip] = []
+    for frequency, rows in regions.groupby("omega_p_over_p"):
+        edges = np.append(rows["low"].to_numpy(float), float(rows["high"].iloc[-1]))
+        columns.append(Strip(tuple(rows["outcome"]), np.array([float(str(frequency))]), edges[None]))
     joined = columns[:1]
     for column in columns[1:]:
         previous = joined.pop()

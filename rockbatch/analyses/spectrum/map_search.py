@@ -1,4 +1,4 @@
-"""Search behind an overturning map: at which frequencies and amplitudes to run, and the regions that follow.
+"""Search of an overturning map: choice of frequencies and amplitudes to run, and the resulting regions.
 
 A map is a row of columns, one at each frequency. Along a column every change of the outcome is bisected. Between two columns the
 regions can be joined only where both have the same outcomes in the same order, and where straight lines between
@@ -60,10 +60,10 @@ def _regions(points: Sequence[tuple[float, End]], whole: Sequence[tuple[float, E
     inner = [(0.5 * (low[-1] + high[0]), 0.5 * (high[0] - low[-1])) for (_, low), (_, high) in pairwise(runs)]
     nan = float("nan")
     ends = [(whole[0][0], nan), *inner, (whole[-1][0], nan)]
-    return [
-        Region(outcome, low, high, low_error, high_error)
-        for (outcome, _), ((low, low_error), (high, high_error)) in zip(runs, pairwise(ends), strict=True)
-    ]
+    found = []
+    for (outcome, _), ((low, low_error), (high, high_error)) in zip(runs, pairwise(ends), strict=True):
+        found.append(Region(outcome, low, high, low_error, high_error))
+    return found
 
 
 class Search:
@@ -99,12 +99,11 @@ class Search:
         while points:
             for (number, frequency, amplitude), end in zip(points, self.ends(points), strict=True):
                 self._ends.setdefault((number, frequency), {})[amplitude] = end
-            points = [
-                (*column, 0.5 * (low + high))
-                for column in columns
-                for (low, below), (high, above) in pairwise(sorted(self._ends[column].items()))
-                if below != above and high - low > self.tolerance
-            ]
+            points = []
+            for column in columns:
+                for (low, below), (high, above) in pairwise(sorted(self._ends[column].items())):
+                    if below != above and high - low > self.tolerance:
+                        points.append((*column, 0.5 * (low + high)))
         for column in columns:
             self._regions[column] = regions(sorted(self._ends[column].items()), self.tolerance)
 
@@ -122,11 +121,11 @@ class Search:
     def _middles(self, number: int, frequencies: Sequence[float]) -> list[float]:
         """Return the frequencies between neighbours at which another column is needed."""
         columns = [self._regions[number, frequency] for frequency in frequencies]
-        return [
-            0.5 * (left + right)
-            for i, (left, right) in enumerate(pairwise(frequencies))
-            if right - left > self.width and not self._joined(frequencies, columns, i)
-        ]
+        middles = []
+        for i, (left, right) in enumerate(pairwise(frequencies)):
+            if right - left > self.width and not self._joined(frequencies, columns, i):
+                middles.append(0.5 * (left + right))
+        return middles
 
     def _joined(self, frequencies: Sequence[float], columns: Sequence[list[Region]], i: int) -> bool:
         """Return whether straight lines join the boundaries of columns ``i`` and ``i + 1``, as their neighbours have it."""

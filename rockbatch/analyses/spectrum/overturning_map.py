@@ -7,11 +7,11 @@ frequency in number and order: :mod:`rockbatch.analyses.spectrum.map_search` fin
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
 
 from rockbatch.analyses.spectrum.map_search import End, Point, Points, Region, Search, regions
 from rockbatch.analyses.spectrum.study import MapSpec
 from rockbatch.batch.plan import Made
+from rockbatch.common.analyses import Entry
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion
 from rockbatch.motions.pulses import pulse, pulse_length
@@ -64,7 +64,7 @@ class Maps:
         return Made(len(points), make)
 
     def find(self, execute: "Callable[[Made], pd.DataFrame]") -> list[dict[float, Points]]:
-        """Return the columns of each case; ``execute`` gives the rows of peaks.csv of the runs of a wave, in their order."""
+        """Return the columns of each case's map; ``execute`` returns the rows of peaks.csv for the runs of a wave, in order."""
 
         def ends(points: Sequence[Point]) -> list[End]:
             table = execute(self.runs(points))
@@ -93,7 +93,7 @@ class Maps:
             )
         return self._units[number, frequency]
 
-    def rows(self, by_case: Sequence[Mapping[float, Points]]) -> Iterator[Mapping[str, Any]]:
+    def rows(self, by_case: Sequence[Mapping[float, Points]]) -> Iterator[Entry]:
         """Yield the rows of overturning_map.csv, a region each, from the columns of each case."""
         for case, columns in zip(self.cases, by_case, strict=True):
             for frequency, points in columns.items():

@@ -10,12 +10,12 @@ self-similar spectrum has these for axes, with a_g = PGA and ω_g = PGA/PGV of e
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
-from typing import Any
 
 from rockbatch.analyses.spectrum.study import INTENSITY, SELF_SIMILAR, SpectrumSpec
 from rockbatch.batch.plan import Made, Plan, Runs
+from rockbatch.common.analyses import Entry
 from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import pd
 from rockbatch.motions import Motion, MotionSet, measures
@@ -91,7 +91,7 @@ def groups(varied: Sequence[str]) -> list[str]:
     return [name for name in (*GROUP, *varied) if name != "scale" or SELF_SIMILAR not in varied]
 
 
-def row_of(run: StudyRun) -> dict[str, Any]:
+def row_of(run: StudyRun) -> dict[str, object]:
     """Return the row of spectrum.csv of a run that is finished."""
     pier = run.case.pier
     size = {"p": pier.p, "two_pi_over_p_s": 2 * math.pi / pier.p, "size_m": pier.size}
@@ -107,7 +107,7 @@ def of_suite(table: "pd.DataFrame", varied: Sequence[str]) -> "pd.DataFrame":
     least and the greatest.
     """
     keys = groups(varied)
-    rows: list[Mapping[str, Any]] = []
+    rows: list[Entry] = []
     for names, runs in table.groupby(keys, sort=False, dropna=False):
         statistics = asdict(suite(runs["theta_max_over_alpha"].to_numpy(float), runs["status"].tolist()))
         statistics["p16"], statistics["p84"] = statistics.pop("low"), statistics.pop("high")

@@ -14,7 +14,7 @@ COUNTS = ("overturned", "flight", "failed")
 
 @of_analysis("spectrum")
 def section(analysis: FinishedAnalysis) -> Markup:
-    """Say what overturns, and draw rocking spectra and overturning maps; empty if there are none."""
+    """Return the report's section of rocking spectra and overturning maps, with its answer; empty without them."""
     answers: list[tuple[list[str], list[str]]] = []
     figures: list[Markup] = []
     methods: list[str] = []
@@ -47,7 +47,7 @@ def _spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
 
 
 def _of_spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
-    """Return how spectra were computed; of self-similar ones also their axes, and which piers and scales are behind them."""
+    """Return the remark on the spectra's method; for self-similar ones also their axes, and the ranges of sizes and scales."""
     words = "Overturning and flight count as larger than any rotation; every component counts by itself."
     if analysis.info["axis"] != "omega_g_over_p":
         return heading(words)
@@ -60,13 +60,15 @@ def _of_spectra(analysis: FinishedAnalysis, suite: "pd.DataFrame") -> Markup:
         f"is scaled to the PGA/(g tan α) of the picture, by {scale}, and acts on piers of its own sizes, R0 from {size} m. "
         "Slender piers on rigid ground with one restitution and without vertical motion share one curve: what parts the curves "
         f"of several slendernesses is restitution, vertical motion, large rotations, and springs. {words}"
-    )  # fmt: skip
+    )
 
 
 def _of_maps(analysis: FinishedAnalysis) -> list[str]:
-    """Return how maps were computed, once for those with the same settings."""
-    return list(dict.fromkeys(
-        f"Boundaries of maps are located within {spec['tolerance']:g} along the ordinate, and where regions begin, end or change "
-        f"their order within {spec['width']:g} along the abscissa, where the picture has a step. Islands may be missed that are "
-        "narrower than a step of the grid both ways." for spec in analysis.info["maps"]
-    ))  # fmt: skip
+    """Return a remark on the accuracy of the maps, one for each different setting."""
+    remarks = (
+        f"Boundaries of maps are located within {spec['tolerance']:g} along the ordinate, and beginnings, ends and "
+        f"changes of order of regions within {spec['width']:g} along the abscissa, where the picture has a "
+        "step. Islands narrower than one grid step may be missed."
+        for spec in analysis.info["maps"]
+    )
+    return list(dict.fromkeys(remarks))

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -83,43 +82,84 @@ class MapSpec:
 
 _POINTS = Whole(2, "a whole number, 2 or above: the ends of the range are among them")
 _WIDTH = Number(f"a number, {LEAST_TOLERANCE:g} or above", low=LEAST_TOLERANCE)
-SPECTRUM = Section(("spectrum",), (
-    "Rocking spectra, by `rockbatch spectrum`: the greatest rotation over the size of the pier. "
-    "One of the four ranges is given."
-), {
-    "alpha": Key(positive, "[0.10, 0.15, 0.20]", "Slendernesses [rad], a curve for each.", many=True),
-    "two_pi_over_p_s": Key(positive, "[2, 16]", "Range of 2π/p.", pair=True),
-    "p": Key(positive, "[0.4, 3]", "Range of p [rad/s].", pair=True),
-    "size_m": Key(positive, "[1, 60]", "Range of the size R0.", pair=True),
-    SELF_SIMILAR: Key(positive, "[1, 8]",
-        "Range of ω_g/p, with ω_g = PGA/PGV of each record: under each record the pier has sizes of its own.", pair=True),
-    INTENSITY: Key(positive, "[2, 4]",
-        "PGA/(g tan α) to which every motion is scaled, with `omega_g_over_p`: a spectrum for each. 1 just lifts the pier.",
-        many=True),
-    "points": Key(_POINTS, "41", "Number of values along the range.", default=41),
-    "spacing": Key(choice("linear", "log"), '"log"', "How the values are spaced.", default="linear"),
-}, clashes=(
-    Clash((SELF_SIMILAR,), f"{INTENSITY} is missing beside {SELF_SIMILAR}; write for example {INTENSITY} = [2, 4]",
-        lacking=(INTENSITY,)),
-    Clash((INTENSITY,), f"goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
-        lacking=(SELF_SIMILAR,), shown=True),
-))  # fmt: skip
-MAP = Section(("spectrum", "map"), "A map of the pulses that overturn the pier, for every case. Write one for each.", {
-    "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
-    "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
-    "gamma": Key(Number("a number above 1", low=1.0, above=True), "1.5",
-        "Number of oscillations of a Mavroeidis–Papageorgiou pulse.", required=True,
-        only=PULSE["gamma"].only),
-    "nu": Key(number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True, only=PULSE["nu"].only),
-    "frequency": Key(positive, "[1.0, 8.0]",
-        "Range of ω_p/p, the circular frequency of the pulse over the pier's frequency parameter.", required=True, pair=True),
-    "frequencies": Key(_POINTS, "29", "Number of frequencies in the grid."),
-    "amplitude": Key(positive, "[1.0, 12.0]",
-        "Range of a_p/(g tan α); 1 just lifts the pier off rigid ground.", required=True, pair=True),
-    "amplitudes": Key(_POINTS, "45", "Number of amplitudes in the grid."),
-    "tolerance": Key(_WIDTH, "1e-3", "Width of a_p/(g tan α) within which every boundary is found."),
-    "width": Key(_WIDTH, "0.02", "Width of ω_p/p within which it is found where regions begin or end."),
-}, many=True, homes=(MapSpec,))  # fmt: skip
+SPECTRUM = Section(
+    ("spectrum",),
+    (
+        "Rocking spectra, by `rockbatch spectrum`: the greatest rotation over the size of the pier. "
+        "One of the four ranges is given."
+    ),
+    {
+        "alpha": Key(positive, "[0.10, 0.15, 0.20]", "Slendernesses [rad], a curve for each.", many=True),
+        "two_pi_over_p_s": Key(positive, "[2, 16]", "Range of 2π/p.", pair=True),
+        "p": Key(positive, "[0.4, 3]", "Range of p [rad/s].", pair=True),
+        "size_m": Key(positive, "[1, 60]", "Range of the size R0.", pair=True),
+        SELF_SIMILAR: Key(
+            positive,
+            "[1, 8]",
+            "Range of ω_g/p, with ω_g = PGA/PGV of each record: under each record the pier has sizes of its own.",
+            pair=True,
+        ),
+        INTENSITY: Key(
+            positive,
+            "[2, 4]",
+            "PGA/(g tan α) to which every motion is scaled, with `omega_g_over_p`: a spectrum for each. 1 just lifts the pier.",
+            many=True,
+        ),
+        "points": Key(_POINTS, "41", "Number of values along the range.", default=41),
+        "spacing": Key(choice("linear", "log"), '"log"', "How the values are spaced.", default="linear"),
+    },
+    clashes=(
+        Clash(
+            (SELF_SIMILAR,),
+            f"{INTENSITY} is missing beside {SELF_SIMILAR}; write for example {INTENSITY} = [2, 4]",
+            lacking=(INTENSITY,),
+        ),
+        Clash(
+            (INTENSITY,),
+            f"goes with {SELF_SIMILAR} = [1, 8]; write that as the range, or leave it out",
+            lacking=(SELF_SIMILAR,),
+            shown=True,
+        ),
+    ),
+)
+MAP = Section(
+    ("spectrum", "map"),
+    "A map of the pulses that overturn the pier, for every case. Write one for each.",
+    {
+        "name": Key(text, '"one-sine"', "Its name in the report.", required=True),
+        "shape": Key(choice(*SHAPES), '"sine"', "Formula of the pulse.", required=True),
+        "gamma": Key(
+            Number("a number above 1", low=1.0, above=True),
+            "1.5",
+            "Number of oscillations of a Mavroeidis–Papageorgiou pulse.",
+            required=True,
+            only=PULSE["gamma"].only,
+        ),
+        "nu": Key(
+            number, "0.0", "Phase of a Mavroeidis–Papageorgiou pulse [rad].", required=True, only=PULSE["nu"].only
+        ),
+        "frequency": Key(
+            positive,
+            "[1.0, 8.0]",
+            "Range of ω_p/p, the circular frequency of the pulse over the pier's frequency parameter.",
+            required=True,
+            pair=True,
+        ),
+        "frequencies": Key(_POINTS, "29", "Number of frequencies in the grid."),
+        "amplitude": Key(
+            positive,
+            "[1.0, 12.0]",
+            "Range of a_p/(g tan α); 1 just lifts the pier off rigid ground.",
+            required=True,
+            pair=True,
+        ),
+        "amplitudes": Key(_POINTS, "45", "Number of amplitudes in the grid."),
+        "tolerance": Key(_WIDTH, "1e-3", "Width of a_p/(g tan α) within which every boundary is found."),
+        "width": Key(_WIDTH, "0.02", "Width of ω_p/p within which it is found where regions begin or end."),
+    },
+    many=True,
+    homes=(MapSpec,),
+)
 
 SECTIONS = (SPECTRUM, MAP)
 """Its tables in a study file."""
@@ -185,7 +225,7 @@ def _spectrum(table: Table, study: Study) -> SpectrumSpec | None:
 
 
 def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
-    """Note what is impossible in a self-similar spectrum: cases ``names`` whose base depends on the pier's size, and scales."""
+    """Complain about cases ``names`` whose base depends on the pier's size, and about scales, in a self-similar spectrum."""
     if not table.has(SELF_SIMILAR):
         return
     for name in dict.fromkeys(names):
@@ -203,7 +243,7 @@ def _without_size(table: Table, study: Study, names: Sequence[str]) -> None:
 
 def _piers(
     table: Table, alphas: Sequence[float], axis: str, values: list[float], study: Study
-) -> list[tuple[Pier, dict[str, Any]]]:
+) -> list[tuple[Pier, dict[str, float | str]]]:
     """Return piers of every slenderness and size, with all else of the study's, and their values by key.
 
     A mass that only a case says is no pier's: the case brings it itself.
@@ -221,14 +261,14 @@ def _piers(
         )
         for case in study.cases
     )
-    piers = []
+    piers: list[tuple[Pier, dict[str, float | str]]] = []
     for n, alpha in enumerate(alphas):
         for template in templates:
             mass = {} if template.mass_t is None else {"mass_t": template.mass_t}
             with table.noting("alpha", n):
                 for value in values:
                     p = _p(axis, alpha, value, template)
-                    values_of_pier = {"alpha": alpha, "mu": template.mu, axis: value} | mass
+                    values_of_pier: dict[str, float | str] = {"alpha": alpha, "mu": template.mu, axis: value, **mass}
                     piers.append((replace(template, alpha=alpha, p=p, confirm=("p", "mass_t")), values_of_pier))
     return piers
 

@@ -18,8 +18,10 @@ COLOURS = 7
 DASHES = 4
 SHAPES = ("disc", "square", "up", "diamond", "down", "cross", "star", "left", "right", "hexagon")
 ENDED = {
-    "overturned": "overturned", "flight": "flight: both pivots off the ground", "failed": "no result: the run failed",
-}  # fmt: skip
+    "overturned": "overturned",
+    "flight": "flight: both pivots off the ground",
+    "failed": "no result: the run failed",
+}
 """Statuses of runs without a largest rotation, in words; each has its own shape, "failed" a question mark."""
 
 

@@ -55,25 +55,61 @@ PROPORTION, NARROWEST, LOWEST = 1.2, 20.0, 9.0
 LEAST_SIZE = 0.5
 """Height of panels that share their axes, over that on the page."""
 
-_DASHES: tuple[Any, ...] = ("-", (0, (6, 3)), (0, (2, 2)), (0, (8, 2, 2, 2)))
+Style = dict[str, Any]
+"""Keyword arguments of matplotlib's functions."""
+_DASHES: tuple[object, ...] = ("-", (0, (6, 3)), (0, (2, 2)), (0, (8, 2, 2, 2)))
 _MARKERS = {
-    "disc": "o", "square": "s", "up": "^", "diamond": "D", "down": "v", "cross": "P", "star": "*", "left": "<", "right": ">",
-    "hexagon": "h", "dot": ".", "overturned": "X", "flight": r"$\uparrow$", "failed": "$?$",
-}  # fmt: skip
-_KINDS: dict[str, dict[str, Any]] = {
-    "alarm": {"color": ALARM}, "none": {"color": "#8a5a00"}, "limit": {"color": ALARM, "linewidth": 1.2},
-    "curve": {"linewidth": 0.7}, "behind": {"linewidth": 0.5}, "right": {"linewidth": 0.7, "alpha": 0.5},
-    "faint": {"color": MUTED, "linewidth": 0.5, "alpha": 0.6}, "target": {"linewidth": 2.0}, "bar": {"linewidth": 0.8},
-    "edge": {"color": MUTED, "linewidth": 0.6}, "event": {"color": MUTED, "linewidth": 0.6},
-    "flown": {"color": MUTED, "linewidth": 0.6, "linestyle": "--"}, "band": {"color": PALE}, "filled": {"alpha": 0.45},
-    "area": {"alpha": 0.15}, "unsure": {"alpha": 0.07}, "deck": {"color": MUTED},
-}  # fmt: skip
+    "disc": "o",
+    "square": "s",
+    "up": "^",
+    "diamond": "D",
+    "down": "v",
+    "cross": "P",
+    "star": "*",
+    "left": "<",
+    "right": ">",
+    "hexagon": "h",
+    "dot": ".",
+    "overturned": "X",
+    "flight": r"$\uparrow$",
+    "failed": "$?$",
+}
+_KINDS: dict[str, Style] = {
+    "alarm": {"color": ALARM},
+    "none": {"color": "#8a5a00"},
+    "limit": {"color": ALARM, "linewidth": 1.2},
+    "curve": {"linewidth": 0.7},
+    "behind": {"linewidth": 0.5},
+    "right": {"linewidth": 0.7, "alpha": 0.5},
+    "faint": {"color": MUTED, "linewidth": 0.5, "alpha": 0.6},
+    "target": {"linewidth": 2.0},
+    "bar": {"linewidth": 0.8},
+    "edge": {"color": MUTED, "linewidth": 0.6},
+    "event": {"color": MUTED, "linewidth": 0.6},
+    "flown": {"color": MUTED, "linewidth": 0.6, "linestyle": "--"},
+    "band": {"color": PALE},
+    "filled": {"alpha": 0.45},
+    "area": {"alpha": 0.15},
+    "unsure": {"alpha": 0.07},
+    "deck": {"color": MUTED},
+}
 """Differences from a line or an area in the colour of its series, by the role of a mark."""
 _STYLE: Any = {
-    "font.size": 8.0, "axes.titlesize": 7.0, "axes.labelsize": 8.0, "figure.titlesize": 9.0, "figure.labelsize": 8.0,
-    "legend.fontsize": 7.0, "xtick.labelsize": 7.0, "ytick.labelsize": 7.0, "legend.frameon": False,
-    "axes.grid": True, "axes.axisbelow": True, "grid.alpha": 0.3, "lines.linewidth": 1.0, "lines.markersize": 4.0,
-}  # fmt: skip
+    "font.size": 8.0,
+    "axes.titlesize": 7.0,
+    "axes.labelsize": 8.0,
+    "figure.titlesize": 9.0,
+    "figure.labelsize": 8.0,
+    "legend.fontsize": 7.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.frameon": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.alpha": 0.3,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 4.0,
+}
 
 
 Entries = dict[str, dict[type[Mark], Artist]]
@@ -152,7 +188,7 @@ def _drawn_in(place: FigureBase, figure: Figure, width_mm: float, tallest: float
     return height
 
 
-def _legend_of(entries: Entries) -> dict[str, Any]:
+def _legend_of(entries: Entries) -> Style:
     return {"handles": [tuple(artists.values()) for artists in entries.values()], "labels": list(map(_text, entries))}
 
 
@@ -203,16 +239,14 @@ def _grid(panels: Sequence[Panel], columns: int, width_mm: float, least: float, 
 
 def _inner(panels: Sequence[Panel], columns: int) -> list[Panel]:
     """Return panels that share their axes: numbers at the left and at the foot, the upper label above the first row."""
-    return [
-        replace(
-            panel,
-            x=replace(panel.x, numbered=panel.x.numbered and foot, label=panel.x.label * foot),
-            y=replace(panel.y, numbered=panel.y.numbered and left, label=label),
-        )
-        for at, panel in enumerate(panels)
-        for left, foot in [(at % columns == 0, at + columns >= len(panels))]
-        for label in [panel.y.label if at == 0 else " " * (at < columns)]
-    ]
+    inner = []
+    for place, panel in enumerate(panels):
+        left, foot = place % columns == 0, place + columns >= len(panels)
+        label = panel.y.label if place == 0 else " " * (place < columns)  # a blank keeps the height of the first row
+        x = replace(panel.x, numbered=panel.x.numbered and foot, label=panel.x.label * foot)
+        y = replace(panel.y, numbered=panel.y.numbered and left, label=label)
+        inner.append(replace(panel, x=x, y=y))
+    return inner
 
 
 def _height(panel: Panel, width_mm: float, size: float = 1.0, across: float = 0.0) -> float:
@@ -267,19 +301,19 @@ def _text(words: str) -> str:
     return (" " * words.startswith("_") + words).replace("$", r"\$").replace("θ̇", r"$\dot{\theta}$")
 
 
-def _style(look: Look) -> dict[str, Any]:
+def _style(look: Look) -> Style:
     reverse = {"alpha": 0.6, "linestyle": (0, (3, 2))} if look.open and look.kind == "rigid" else {}
     return {"color": PALETTE[look.colour], "linestyle": _DASHES[look.dash]} | _KINDS.get(look.kind, {}) | reverse
 
 
-def _area(look: Look) -> dict[str, Any]:
+def _area(look: Look) -> Style:
     return {"linewidth": 0.0, "facecolor": PALETTE[look.colour]} | {
         {"color": "facecolor"}.get(key, key): value for key, value in _KINDS.get(look.kind, {}).items()
     }
 
 
 @singledispatch
-def _draw(mark: Any, axes: Axes) -> Artist:
+def _draw(mark: Mark, axes: Axes) -> Artist:
     """Draw a mark; return what stands for it in the legend."""
     raise TypeError(f"{type(mark).__name__}: no mark of a figure")
 
@@ -322,7 +356,7 @@ def _(mark: Points, axes: Axes) -> Artist:
 
 @_draw.register
 def _(mark: Rule, axes: Axes) -> Artist:
-    across: Callable[..., Any] = axes.axvline if mark.axis == "x" else axes.axhline
+    across: Callable[..., Artist] = axes.axvline if mark.axis == "x" else axes.axhline
     return (
         [across(at, mark.low, mark.high, **_style(mark.look)) for at in mark.at]
         or axes.plot([], [], **_style(mark.look))
@@ -331,14 +365,21 @@ def _(mark: Rule, axes: Axes) -> Artist:
 
 @_draw.register
 def _(mark: Span, axes: Axes) -> Artist:
-    across: Callable[..., Any] = axes.axvspan if mark.axis == "x" else axes.axhspan
+    across: Callable[..., Artist] = axes.axvspan if mark.axis == "x" else axes.axhspan
     return across(mark.low, mark.high, zorder=0.5, **_area(mark.look))
 
 
 @_draw.register
 def _(mark: Words, axes: Axes) -> Artist:
     return axes.annotate(
-        _text(mark.text), (mark.x, mark.y), (4.0 * mark.side, 0.7 * mark.lift), textcoords="offset points", fontsize=6.0,
-        color=_style(mark.look)["color"], va="center", path_effects=[withStroke(linewidth=1.5, foreground="w")], zorder=4.0,
+        _text(mark.text),
+        (mark.x, mark.y),
+        (4.0 * mark.side, 0.7 * mark.lift),
+        textcoords="offset points",
+        fontsize=6.0,
+        color=_style(mark.look)["color"],
+        va="center",
+        path_effects=[withStroke(linewidth=1.5, foreground="w")],
+        zorder=4.0,
         ha={-1: "right", 0: "center", 1: "left"}[mark.side],
-    )  # fmt: skip
+    )

@@ -174,6 +174,17 @@ def force(of, elongation, speed, state, mode, goes):
 
 
 @kernel
+def own_speed(of, speed, state):
+    """Return the speed [m/s] of a damper itself, that of its elongation with the brace being ``speed``."""
+    if of.kind == MAXWELL:
+        return slip_rate(of, state)
+    if of.give > 0.0:
+        rate = response(of, 0.0, speed, state, TAUT, math.copysign(1.0, speed)).state_rate
+        return speed - of.give / of.stiffness * rate
+    return speed
+
+
+@kernel
 def stored(of, elongation, state):
     """Return the energy [J/kg] that a device gives back until it bears nothing; 0 of dampers without a brace."""
     if of.kind == CONTACT:

@@ -70,7 +70,8 @@ class Body(NamedTuple):
 
 
 @kernel
-def _friction(gravity, shear, normal):
+def friction_demand(gravity, shear, normal):
+    """Return |V|/N, infinite where nothing presses the pier down."""
     return abs(shear) / normal if normal > LIFTED * gravity else math.inf
 
 
@@ -104,7 +105,7 @@ def on_springs(m, deck, now, ground):
         free_left * (y.v_rate + at.arm_left * y.omega - velocity_of_top(m, y.z_left)),
         free_right * (y.v_rate + at.arm_right * y.omega - velocity_of_top(m, y.z_right)),
         shear + swung, at.lever * y.omega, y.v_rate, y.omega,
-        _friction(m.gravity, shear, left + right), min(gap_left, gap_right),
+        friction_demand(m.gravity, shear, left + right), min(gap_left, gap_right),
     )  # fmt: skip
 
 
@@ -138,7 +139,7 @@ def _at_rest(m, body, y, ground):
         on_left, on_right = (normal, 0.0 * normal) if pressed == LEFT else (0.0 * normal, normal)
     forces = Forces(
         horizontal, normal, -0.5 * outline.width * m.height / m.half_width * horizontal, on_left, on_right,
-        gap, gap, still, still, horizontal, still, still, y.omega, _friction(m.gravity, horizontal, normal), gap,
+        gap, gap, still, still, horizontal, still, still, y.omega, friction_demand(m.gravity, horizontal, normal), gap,
     )  # fmt: skip
     return forces, (pressed if lacks > back else 0.0)
 
@@ -183,7 +184,7 @@ def on_block(m, body, now, ground):
         shear, normal, moment, on_left * normal, on_right * normal,
         off_left * left, off_right * right, off_left * left_speed, off_right * right_speed,
         horizontal + deck, lever * y.omega, y.v_rate, y.omega,
-        _friction(m.gravity, shear, normal), min(off_left * left, off_right * right),
+        friction_demand(m.gravity, shear, normal), min(off_left * left, off_right * right),
     )  # fmt: skip
 
 
@@ -222,7 +223,7 @@ def on_flexible_block(m, body, now, ground):
         shear, normal, moment, left, right,
         off_left * gap_left, off_right * gap_right, off_left * speed_left, off_right * speed_right,
         horizontal + to_deck, to_right, up, y.omega,
-        _friction(m.gravity, shear, normal), min(off_left * gap_left, off_right * gap_right),
+        friction_demand(m.gravity, shear, normal), min(off_left * gap_left, off_right * gap_right),
     )  # fmt: skip
 
 

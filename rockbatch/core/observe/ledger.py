@@ -85,7 +85,7 @@ def _recovered(m, contact, y, y_end):
 
 
 @kernel
-def _pulled(m, pulls, i):
+def pulled(m, pulls, i):
     """Return the pier at the start, in the middle and at the end of the step to row ``i``."""
     first, last = pulls[i - 1], pulls[i]
     middle = with_pull(m, Pull(0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])))
@@ -126,7 +126,7 @@ def ledger_on_springs(m, rows, pulls, ground, dt, out):
                 both = at.lever * at.lever * (y_end.omega * y_end.omega - y.omega * y.omega)
                 constraint += 0.5 * (now * now * y_end.omega * y_end.omega - was * was * y.omega * y.omega - both)
         else:
-            start, half_way, stop = _pulled(m, pulls, i)
+            start, half_way, stop = pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
             h, k, k_end = step.length, step.rates, step.rates_end
             middle, ground_middle = within(half_way, step, 0.5), ground_within(step, 0.5)
@@ -181,7 +181,7 @@ def ledger_on_rigid_base(m, rows, pulls, ground, dt, out):
         if rows[i].kind > 0:  # the other side of an event
             impact += kinetic - kinetic_end
         else:
-            start, half_way, stop = _pulled(m, pulls, i)
+            start, half_way, stop = pulled(m, pulls, i)
             step = step_between(start, stop, rows[i - 1], rows[i], ground, dt)
             middle = within(half_way, step, 0.5)
             s0 = ground_power(m, y, contact, step.ground)

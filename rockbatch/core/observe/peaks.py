@@ -26,10 +26,12 @@ from rockbatch.core.kernel import entry, hook, kernel
 from rockbatch.core.observe.forces import LIFTED, Body, Forces, fastest_heels, forces_at, waiting
 from rockbatch.core.observe.rows import (
     Step,
+    begin_at,
     contact_of,
     cubic,
     ground_at,
     ground_within,
+    remember,
     state_of,
     step_between,
     within,
@@ -126,16 +128,21 @@ def recorded_force(of, here, state, goes):
 
 
 @kernel
+def _pull_within(m, devices, j, at, place, y):
+    """Return the Gap of device ``j`` in state ``y`` at a Place, whose Attitude is ``at``, and its force [m/s²]; 0 of friction."""
+    of = devices.elements[j]
+    here = gap_of(m, of, at, y)
+    return here, recorded_force(of, here, _state_within(m, devices, j, place), 0.0)
+
+
+@kernel
 def _by_laws(m, devices, place, y):
     """Return the Pull, in state ``y`` at a Place, of all that has a law: not of friction."""
     total, moment, at = 0.0, 0.0, attitude(m, y, place.step.contact, devices.level)
     for j in range(len(devices.elements)):
-        of = devices.elements[j]
-        if of.kind == FRICTION:
+        if devices.elements[j].kind == FRICTION:
             continue
-        here = gap_of(m, of, at, y)
-        x = _state_within(m, devices, j, place)
-        pull = recorded_force(of, here, x, 0.0)
+        here, pull = _pull_within(m, devices, j, at, place, y)
         total += pull * here.by_v
         moment += pull * here.arm
     return Pull(total, moment)
@@ -214,11 +221,47 @@ def _less_deck_within(devices, m, forces, place, y):
     for j in range(len(devices.elements)):
         of = devices.elements[j]
         if of.height != 0.0:
-            here, some = gap_of(m, of, at, y), True
-            x = _state_within(m, devices, j, place)
-            pull = recorded_force(of, here, x, 0.0)
+            (here, pull), some = _pull_within(m, devices, j, at, place, y), True
             shear, moment = shear + of.way * pull, moment + pull * here.by_theta
     return _with_across(forces, m.gravity, shear, moment) if some else forces
+
+
+@hook
+def push_deck(devices, m, i, y, contact, out):
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at row ``i``."""
+
+
+@push_deck.of(type(None))
+def _no_push(devices, m, i, y, contact, out):
+    pass
+
+
+@push_deck.of(RecordedDevices)
+def _push_at_row(devices, m, i, y, contact, out):
+    at = attitude(m, y, contact, devices.level)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            out[j] = of.way * recorded_force(of, gap_of(m, of, at, y), devices.states[i, j], 0.0)
+
+
+@hook
+def push_deck_within(devices, m, place, y, out):
+    """Write the force to the left [m/s²] of each device on the deck, in state ``y`` at a Place."""
+
+
+@push_deck_within.of(type(None))
+def _no_push_within(devices, m, place, y, out):
+    pass
+
+
+@push_deck_within.of(RecordedDevices)
+def _push_within(devices, m, place, y, out):
+    at = attitude(m, y, place.step.contact, devices.level)
+    for j in range(len(devices.elements)):
+        of = devices.elements[j]
+        if of.height != 0.0:
+            out[j] = of.way * _pull_within(m, devices, j, at, place, y)[1]
 
 
 class Stretch(NamedTuple):
@@ -340,6 +383,7 @@ def forces_of_run(m, body, run, extremes, out):
     limits, greatest, noted = extremes
     supports, aloft = Supports(limits.unstressed, limits.unstressed, -1.0, -1.0), 0.0
     was = contact_of(m, rows[0])
+    begin_at(m, state_of(m, rows[0]))
     under, first = with_pull(m, Pull(pulls[0, 0], pulls[0, 1])), state_of(m, rows[0])
     shaking = Ground(ground[0, 0], ground[0, 1], ground[0, 2], ground[0, 3])
     before = forces_at(under, body, Moment(first, was, supports), shaking)
@@ -355,12 +399,15 @@ def forces_of_run(m, body, run, extremes, out):
         if len(out) > 0:
             _put(out, i, now)
         if len(greatest) == 0:
+            if i > 0:
+                remember(m, state_of(m, rows[i - 1]), y, t - t_start)
             continue
         _include(extremes, now, t, m.gravity)
         if t > t_start and rows[i].kind <= 0.0:
             step = step_between(under_start, under, rows[i - 1], rows[i], ground, dt)
             of = Stretch(m, body, pulls, devices, i, step, supports)
             _look_within(of, t, before, now, extremes)
+            remember(m, step.start, y, step.length)
         aloft = aloft + (t - t_start) if airborne(m, contact) else 0.0
         noted[0].longest_flight = max(noted[0].longest_flight, aloft)
         before = now

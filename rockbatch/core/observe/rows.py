@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from rockbatch.core.block.model import Block, Rocking, Stance
 from rockbatch.core.flexure.model import FlexibleBlock, Flexing
-from rockbatch.core.kernel import hook, kernel
+from rockbatch.core.kernel import hook, kernel, optional_hook
 from rockbatch.core.springs.model import Contact, Springs, State
 from rockbatch.core.system import rates, share, stage
 from rockbatch.core.types import Ground
@@ -46,6 +46,16 @@ def _stance(m, row):
 
 contact_of.of(Block)(_stance)
 contact_of.of(FlexibleBlock)(_stance)
+
+
+@optional_hook
+def begin_at(m, y):
+    """Bring what the pier ``m`` remembers to the start of a run in state ``y``; without it, it remembers nothing."""
+
+
+@optional_hook
+def remember(m, y, y_end, length):
+    """Bring what the pier ``m`` remembers beside its states up to a step of ``length`` [s] between two of them."""
 
 
 @kernel

@@ -37,7 +37,7 @@ def geometry(m, theta):
 
 
 @inlined
-def _with_pull(pull, force, moment):
+def with_forces(pull, force, moment):
     """Return force and moment, upwards and to the right, with those of dampers and tendons."""
     if pull is None:
         return force, moment
@@ -55,7 +55,7 @@ def accelerations_at(m, y, contact, at, ground):
     if m.finite is not None:
         effective = lever
         moment -= lever * (at.lever_slope + side * at.swing_slope) * y.omega * y.omega
-    v_acceleration, moment = _with_pull(m.pull, -m.gravity - ground.vertical - force_left - force_right, moment)
+    v_acceleration, moment = with_forces(m.pull, -m.gravity - ground.vertical - force_left - force_right, moment)
     if contact.held == 0.0:
         return v_acceleration, moment * (1.0 / (m.inertia + effective * effective))
     # A held pivot neither lifts nor presses: it goes with its support (Filippov's sliding mode).

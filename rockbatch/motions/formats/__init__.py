@@ -1,8 +1,8 @@
-"""Formats of records: which reader reads a file, by its own header, whatever its name.
+"""Formats of records: choice of the reader of a file by its header, whatever its name.
 
-A format is a module with a check of the first bytes and a parser or reader; it
-joins by a line in ``FORMATS``. Formats whose header does not tell them from all others (SAC, columns of numbers)
-are read in files of their suffixes only, and ObsPy is never left to guess (see ``with_obspy``).
+A format is a module with a check of the first bytes and a parser or reader, and a line in ``FORMATS``. Formats that the header
+does not distinguish from all others (SAC, columns of numbers) are recognised by their suffixes, too; ObsPy never guesses the
+format (see ``with_obspy``).
 """
 
 import re
@@ -15,7 +15,7 @@ import numpy as np
 from rockbatch.common.errors import InputError, UnknownFormat, Unstated
 from rockbatch.common.showing import shown
 from rockbatch.motions.component import Component
-from rockbatch.motions.evidence import Kind, Statement, settled
+from rockbatch.motions.evidence import Kind, Statement, decided_orientation
 from rockbatch.motions.formats import (
     afad,
     asdf,
@@ -37,7 +37,7 @@ from rockbatch.motions.formats import (
     unam,
     volumes,
 )
-from rockbatch.motions.formats.advice import advised
+from rockbatch.motions.formats.advice import with_advice
 from rockbatch.motions.formats.obspy_plugin import HEAD
 from rockbatch.motions.formats.recording import reader
 from rockbatch.motions.limits import HUGE, MOST_SAMPLES, STEPS, is_step
@@ -58,10 +58,10 @@ _INSTEAD = "write it as MiniSEED, or as text columns below a line such as # time
 
 @dataclass(frozen=True)
 class Format:
-    """A format: its name, suffixes in lower case (none if it has none of its own), the check of the first bytes, the reader.
+    """A format: its name, its own suffixes in lower case, the check of the first bytes, the reader.
 
-    ``anywhere``: whether the check holds for files of any name, or only for those with its suffixes. ``counts``: whether its
-    numbers may be counts, so that a sensitivity can be stated.
+    ``anywhere``: whether the check suffices for files of any name, or only for those with its suffixes. ``counts``: whether
+    its numbers may be counts, so that a sensitivity can be stated.
     """
 
     name: str
@@ -107,11 +107,11 @@ FORMATS = (
         anywhere=False,
     ),
 )
-"""In the order in which they are tried: an AT2 file saved as .txt is AT2, other text is columns, a table called .AT2 as well."""
+"""Formats in the order of trial: an AT2 file saved as .txt is AT2, other text is columns, also a table called .AT2."""
 
 
 def is_usual(suffix: str) -> bool:
-    """Return whether records of some format usually have this suffix (with its dot, any case)."""
+    """Return whether a suffix (with its dot, any case) is usual for some format."""
     return any(suffix.lower() in form.suffixes for form in FORMATS)
 
 
@@ -124,7 +124,7 @@ def format_of(suffix: str, head: bytes) -> Format | None:
 
 
 def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
-    """Return the components of a file, their texts made legible, or ``InputError`` if it has no components, with the reason."""
+    """Return the components of a file, usable or not, with legible texts; raise ``InputError`` with the reason if it has none."""
     form = format_of(file.path.suffix, file.data)
     if form is None:
         raise UnknownFormat(_not_recognised(file))
@@ -133,22 +133,22 @@ def read_record(file: RecordFile) -> Sequence[Component | Unusable]:
     read = form.read
 
     def readings(options: ReadOptions) -> list[Component | Unusable]:
-        found = [with_legible_texts(reading) for reading in read(replace(file, options=options))]
-        if len(found) == 1 and isinstance(only := found[0], Component):
-            found = [with_name(only, file.path.name, split_stem(file.stem)[1])]
-        return [usable(reading) for reading in found]
+        raw = [with_legible_texts(reading) for reading in read(replace(file, options=options))]
+        if len(raw) == 1 and isinstance(only := raw[0], Component):
+            raw = [add_name_statement(only, file.path.name, split_stem(file.stem)[1])]
+        return [checked_reading(reading) for reading in raw]
 
-    with np.errstate(over="ignore", invalid="ignore"):  # what becomes of absurd numbers is looked at in usable
+    with np.errstate(over="ignore", invalid="ignore"):  # checked_reading refuses infinite samples
         try:
             return readings(file.options)
         except Unstated as error:
-            raise advised(error, readings, file.options, file.gravity) from None
+            raise with_advice(error, readings, file.options, file.gravity) from None
 
 
-def with_name(component: Component, name: str, orientation: Orientation | None) -> Component:
-    """Return the only component of a file with what the file's name states of its direction, instead of what was said of that.
+def add_name_statement(component: Component, name: str, orientation: Orientation | None) -> Component:
+    """Return the only component of a file, its direction decided with the statement of the file's ``name`` among others.
 
-    Digits that the station's name ends in are no azimuth, nor are those of a location code.
+    Digits of the station's name or of a location code are no azimuth. An earlier statement by a name is replaced.
     """
     statements = tuple(s for s in component.statements if s.kind is not Kind.NAME)
     if orientation and not _is_of_sensor(orientation.label, component):
@@ -156,12 +156,12 @@ def with_name(component: Component, name: str, orientation: Orientation | None) 
         statements += (Statement(Kind.NAME, f"its file is called {shown(name)}", orientation, weak=weak),)
     if statements == component.statements:
         return component
-    orientation = settled(statements, component.orientation.label)
+    orientation = decided_orientation(statements, component.orientation.label)
     return replace(component, statements=statements, orientation=orientation)
 
 
 def _is_of_sensor(label: str, component: Component) -> bool:
-    """Return whether the digits of a file's name are those of its station or location, which beside a channel has two."""
+    """Return whether the digits of a file's name are of its station or location code (two digits beside a channel code)."""
     if not label.isdigit():
         return False
     station = re.sub(r"[\W_]", "", component.sensor.station or component.origin.station)
@@ -169,8 +169,8 @@ def _is_of_sensor(label: str, component: Component) -> bool:
     return station.endswith(label) or label == component.sensor.location or (has_channel and len(label) == _LOCATION)
 
 
-def usable(reading: Component | Unusable) -> Component | Unusable:
-    """Return a component that a motion can be made of, or what is wrong with it."""
+def checked_reading(reading: Component | Unusable) -> Component | Unusable:
+    """Return a component that can become a motion, else an ``Unusable`` with the reason; an ``Unusable`` is returned as is."""
     if isinstance(reading, Unusable):
         return reading
     if len(reading.acceleration) < 2:
@@ -187,7 +187,7 @@ def usable(reading: Component | Unusable) -> Component | Unusable:
 
 
 def _not_recognised(file: RecordFile) -> str:
-    """Return why a file is of no known format, and what to do with it."""
+    """Return the refusal of a file of no known format, with a remedy."""
     suffix = file.path.suffix
     names = " or ".join(dict.fromkeys(form.name for form in FORMATS if suffix.lower() in form.suffixes))
     foreign = next((words for magic, words in _FOREIGN.items() if file.data.startswith(magic)), "")

@@ -1,12 +1,11 @@
-"""What a user may state of a file that lacks it, tried on the file before it is said.
+"""Advice on statements that a file lacks, each tried on the file before it is given.
 
-Advice is a statement as in ``motions.toml``: the file is read again with it, and only what leads to records whose header, count
-and step agree is written into the message.
+A statement is as in ``motions.toml``: the file is read again with it, and the message contains only statements that lead to
+records whose header, count and step agree.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 from rockbatch.common.errors import InputError, Unstated
 from rockbatch.common.showing import shown
@@ -16,12 +15,9 @@ from rockbatch.motions.motion import Unusable
 from rockbatch.motions.plausible import HIGHEST, LOWEST
 from rockbatch.motions.record_file import ReadOptions
 
-_UNITS = (
-    ("g", "m/s2", "cm/s2", "mm/s2"),
-    ("mg", "in/s2", "ft/s2"),
-)  # the second are named where none of the first fits
-_TRIED: Mapping[str, Any] = {"unit": "m/s2", "dt": 0.01}  # any unit and step will do to see whether a file can be read
-_MOST_LACKS = 3  # that come to light one after the other
+_UNITS = (("g", "m/s2", "cm/s2", "mm/s2"), ("mg", "in/s2", "ft/s2"))  # the second if none of the first is plausible
+_TRIED: Mapping[str, str | float] = {"unit": "m/s2", "dt": 0.01}  # any unit and step show whether a file can be read
+_MOST_LACKS = 3  # readings with more and more statements
 _WHERE = (
     "under [motions] in the study, for all files that state none (the others keep their own), or for this file in motions.toml, "
     "which `rockbatch motions FOLDER --write-manifest` drafts"
@@ -29,22 +25,26 @@ _WHERE = (
 _MEANING = {"layout": "if it is one series that goes on from line to line", "columns": "if these are its components"}
 
 Read = Callable[[ReadOptions], Sequence[Component | Unusable]]
+Statement = Mapping[str, object]
+"""Values of fields of ``ReadOptions``, by name."""
 
 
 @dataclass(frozen=True)
 class _Trial:
-    """What a file is read as with a statement: components, or the reason why it is not."""
+    """A reading of a file with a statement: components, or the reason why there are none."""
 
-    stated: Mapping[str, Any]
+    stated: Statement
     components: Sequence[Component]
     refusal: str
 
 
-def advised(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
-    """Return the refusal of a file with what to state, where that was tried and leads to a record, or why nothing does."""
+def with_advice(error: Unstated, read: Read, options: ReadOptions, gravity: float) -> Unstated:
+    """Return the refusal of a file with the statements that lead to a record when tried, or the reason why none does."""
     choices = error.choices or ({key: _TRIED[key] for key in error.keys if key in _TRIED},)
-    trials = [_tried(choice, read, options) for choice in choices]
-    advice = [_words(choice, trial, gravity) for choice, trial in zip(choices, trials, strict=True) if trial.components]
+    trials = [_trial(choice, read, options) for choice in choices]
+    advice = [
+        _advice_text(choice, trial, gravity) for choice, trial in zip(choices, trials, strict=True) if trial.components
+    ]
     problem = "; ".join(error.messages)
     if advice:
         message = f"{problem}; write {', or '.join(advice)} {_WHERE}"
@@ -54,28 +54,28 @@ def advised(error: Unstated, read: Read, options: ReadOptions, gravity: float) -
     return type(error)(message, keys=tuple(stated or error.keys))
 
 
-def _tried(statement: Mapping[str, Any], read: Read, options: ReadOptions) -> _Trial:
-    """Return what a file is read as with a statement, and with a unit and a step if it then lacks these."""
-    values = dict(statement)
+def _trial(statement: Statement, read: Read, options: ReadOptions) -> _Trial:
+    """Return the reading of a file with a statement, and with a unit and a step if it turns out to lack these."""
+    stated = dict(statement)
     for _ in range(_MOST_LACKS):
         try:
-            readings = read(replace(options, **values, instead=frozenset({*options.instead, *values})))
+            readings = read(options.with_statement(stated))
         except Unstated as again:
-            more = {key: _TRIED[key] for key in again.keys if key in _TRIED and key not in values}
+            more = {key: _TRIED[key] for key in again.keys if key in _TRIED and key not in stated}
             if not more:
-                return _Trial(values, (), "; ".join(again.messages))
-            values |= more
+                return _Trial(stated, (), "; ".join(again.messages))
+            stated |= more
         except InputError as refusal:
-            return _Trial(values, (), "; ".join(refusal.messages))
+            return _Trial(stated, (), "; ".join(refusal.messages))
         else:
             reasons = [*_contradictions(readings)]
             components = [reading for reading in readings if isinstance(reading, Component)]
-            return _Trial(values, () if reasons else components, "; ".join(reasons))
-    return _Trial(values, (), "it lacks more than can be stated")
+            return _Trial(stated, () if reasons else components, "; ".join(reasons))
+    return _Trial(stated, (), "it lacks more than can be stated")
 
 
 def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
-    """Yield why readings are no records, or no sound ones."""
+    """Yield the reasons of unusable readings, and the gross findings on components."""
     for reading in readings:
         if isinstance(reading, Unusable):
             yield reading.reason
@@ -83,8 +83,8 @@ def _contradictions(readings: Sequence[Component | Unusable]) -> Iterator[str]:
             yield from (finding.text for finding in reading.findings if finding.gross)
 
 
-def _words(choice: Mapping[str, Any], trial: _Trial, gravity: float) -> str:
-    """Return a statement as it is written, with what it means, and the peaks in units that may be meant."""
+def _advice_text(choice: Statement, trial: _Trial, gravity: float) -> str:
+    """Return a statement in the words of TOML with its meaning, and the PGA in plausible units."""
     words = []
     for key, value in {**choice, **trial.stated}.items():
         if key == "unit":
@@ -98,7 +98,7 @@ def _words(choice: Mapping[str, Any], trial: _Trial, gravity: float) -> str:
 
 
 def _units(peak: float, gravity: float) -> str:
-    """Return the units in which numbers with this ``peak`` may be, with the PGA that each makes of them."""
+    """Return the units that make a plausible PGA [g] of numbers with this ``peak``, each with that PGA."""
     for units in _UNITS:
         peaks = {unit: peak * acceleration_factor(unit, gravity) / gravity for unit in units}
         fitting = [f"{shown(unit)} (PGA {pga:.2g} g)" for unit, pga in peaks.items() if LOWEST <= pga <= HIGHEST]

@@ -1,7 +1,7 @@
 """Text files of Türkiye's network (AFAD, once TR-NSMN): lines of ``KEY : value``, then the columns N-S, E-W and U-D.
 
-What AFAD's database gives today (.asc) is ``dyna``; these are the .txt of the years before. Their unit stands only
-beside their peaks, "RAW PGA VALUES (gal)", which the columns must bear out. The layout is that of the network's own files.
+AFAD's database now gives .asc files (``dyna``); these are the earlier .txt. Their unit is stated only beside their peaks, "RAW
+PGA VALUES (gal)", with which the columns are compared. The layout is that of the network's own files.
 """
 
 import re
@@ -31,7 +31,7 @@ def is_afad(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the components; ``InputError`` with the line where the file is not whole, or its unit is not stated."""
+    """Return the components; raise ``InputError`` with the line if the file is incomplete, or if its unit is missing."""
     lines = lines_of(text)
     heads = next((i for i in range(min(_MOST, len(lines))) if _labels(lines[i])), None)
     if heads is None:
@@ -45,8 +45,10 @@ def parse(text: str) -> list[Recording]:
     if fields is None or set(peaks) != set(labels):
         raise InputError('the header lacks "RAW PGA VALUES (gal) : (N-S) … (E-W) … (U-D) …", which tells the unit')
     station, began = header.get("STATION ID", ""), header.get("RECORD TIME", "")
-    return [
-        Recording(
+    place, event = header.get("PLACE", ""), header.get("EARTHQUAKE DATE", "")
+    recordings = []
+    for i, label in enumerate(labels):
+        recording = Recording(
             label=label.replace("-", ""),
             dt=dt,
             values=values[:, i],
@@ -55,17 +57,17 @@ def parse(text: str) -> list[Recording]:
             start=moment_in(_MOMENT, began),
             processed=False,
             sensor=Sensor(station, "TK"),
-            event=header.get("EARTHQUAKE DATE", ""),
-            origin=origin_of(date=header.get("EARTHQUAKE DATE", ""), station=header.get("PLACE") or station),
+            event=event,
+            origin=origin_of(date=event, station=place or station),
             stated=(Stated("peak", peaks[label], fields["unit"]),),
-            header={"station": header.get("PLACE", ""), "event": header.get("EARTHQUAKE DATE", "")},
+            header={"station": place, "event": event},
         )
-        for i, label in enumerate(labels)
-    ]
+        recordings.append(recording)
+    return recordings
 
 
 def _labels(line: str) -> list[str]:
-    """Return the names of the columns; none where the line is another one."""
+    """Return the names of the columns in a line; [] for any other line."""
     names = line.split()
     return names if sorted(names) == ["E-W", "N-S", "U-D"] else []
 

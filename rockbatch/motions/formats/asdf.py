@@ -8,7 +8,6 @@ import io
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from rockbatch.common.errors import InputError
 from rockbatch.common.lazy import h5py, obspy
 from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component
-from rockbatch.motions.formats.miniseed import of_traces
+from rockbatch.motions.formats.miniseed import components_of_traces
 from rockbatch.motions.limits import MOST_SAMPLES, STEPS, is_step
 from rockbatch.motions.motion import Unusable
 from rockbatch.motions.record_file import RecordFile
@@ -33,7 +32,7 @@ def is_hdf5(head: bytes) -> bool:
 
 
 def read_asdf(file: RecordFile) -> list[Component | Unusable]:
-    """Return one component per channel and event of an ASDF file; ``InputError`` for another HDF5 file, or a damaged one."""
+    """Return a component per channel and event of an ASDF file; raise ``InputError`` for other HDF5 files, or damaged ones."""
     try:
         with h5py.File(io.BytesIO(file.data), "r") as store:
             waveforms = _group(store, "Waveforms")
@@ -50,43 +49,44 @@ def read_asdf(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(f"not an HDF5 file that can be read ({type(error).__name__}); fetch it again") from None
     if not traces:
         raise InputError("holds no waveforms")
-    return of_traces(replace(file, inventories=file.inventories.also(channels)), traces)
+    return components_of_traces(replace(file, inventories=file.inventories.with_channels(channels)), traces)
 
 
-def _own(group: Any, name: str) -> Any:
-    """Return what a group holds itself under a name; ``None`` for links, which may lead into other files."""
+def _own_member(group: "h5py.Group", name: str) -> object:
+    """Return a member stored in the group itself; ``None`` for links, which may lead into other files."""
     return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
 
 
-def _group(group: Any, name: str) -> Any:
-    own = _own(group, name)
-    return own if isinstance(own, h5py.Group) else None
+def _group(group: "h5py.Group", name: str) -> "h5py.Group | None":
+    """Return a group stored in another; ``None`` without one."""
+    member = _own_member(group, name)
+    return member if isinstance(member, h5py.Group) else None
 
 
-def _channels(station: Any) -> list[stationxml.Channel]:
-    """Return the channels of a station's StationXML, if it has one."""
-    own = _own(station, "StationXML")
-    if not isinstance(own, h5py.Dataset) or own.external or own.size > stationxml.LARGEST:
+def _channels(station: "h5py.Group") -> list[stationxml.Channel]:
+    """Return the channels of a station's StationXML; [] without one, or if it is too large."""
+    member = _own_member(station, "StationXML")
+    if not isinstance(member, h5py.Dataset) or member.external or member.size > stationxml.LARGEST:
         return []
     name = f"StationXML of {station.name.rpartition('/')[2]}"
-    return stationxml.channels_of(np.asarray(own[()]).tobytes(), name)
+    return stationxml.channels_of(np.asarray(member[()]).tobytes(), name)
 
 
-def _traces(station: Any) -> "Iterator[obspy.Trace]":
-    """Yield the waveforms of a station."""
+def _traces(station: "h5py.Group") -> "Iterator[obspy.Trace]":
+    """Yield the waveforms of a station; raise ``InputError`` for one that is no series of numbers, or too long."""
     for number, name in enumerate(station):
-        own, match = _own(station, name), _NAME.fullmatch(name)
-        if match is None or not isinstance(own, h5py.Dataset):
+        member, match = _own_member(station, name), _NAME.fullmatch(name)
+        if match is None or not isinstance(member, h5py.Dataset):
             continue
-        is_series = own.ndim == 1 and own.dtype.kind in "iuf" and not own.external
-        if number > _MOST_TRACES or not is_series or not 0 < own.size <= MOST_SAMPLES:
+        is_series = member.ndim == 1 and member.dtype.kind in "iuf" and not member.external
+        if number > _MOST_TRACES or not is_series or not 0 < member.size <= MOST_SAMPLES:
             raise InputError(f"{name}: no series of numbers, or too long; at most {MOST_SAMPLES:,} samples are read")
-        rate, start = float(own.attrs["sampling_rate"]), float(own.attrs["starttime"]) * 1e-9
+        rate, start = float(member.attrs["sampling_rate"]), float(member.attrs["starttime"]) * 1e-9
         if not (rate > 0 and is_step(1.0 / rate)) or not 0.0 <= start < _LATEST:
             raise InputError(f"{name}: sampling_rate = {rate:g}, starttime = {start:g} s; expected steps of {STEPS}")
         header = {
             **match.groupdict(),
             "sampling_rate": rate,
-            "starttime": obspy.UTCDateTime(ns=int(own.attrs["starttime"])),
+            "starttime": obspy.UTCDateTime(ns=int(member.attrs["starttime"])),
         }
-        yield obspy.Trace(np.asarray(own[()], dtype=float), header)
+        yield obspy.Trace(np.asarray(member[()], dtype=float), header)

@@ -28,16 +28,13 @@ from rockbatch.motions.origin import origin_of
 from rockbatch.motions.record_file import RecordFile
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
-_COUNT_AND_STEP = tuple(
-    re.compile(pattern, re.IGNORECASE)
-    for pattern in (
-        rf"\bNPTS\s*[=:]?\s*(?P<npts>\d+)\b.*?\bDT\s*[=:]?\s*(?P<dt>{_NUMBER})",
-        rf"^\s*(?P<npts>\d+)\s*,?\s+(?P<dt>{_NUMBER})\s*,?\s*NPTS\s*,?\s*DT\b",
-        rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(?P<npts>\d+)[,\s]+(?P<dt>{_NUMBER})",
-    )
+_COUNT_AND_STEP = (
+    re.compile(rf"\bNPTS\s*[=:]?\s*(?P<npts>\d+)\b.*?\bDT\s*[=:]?\s*(?P<dt>{_NUMBER})", re.IGNORECASE),
+    re.compile(rf"^\s*(?P<npts>\d+)\s*,?\s+(?P<dt>{_NUMBER})\s*,?\s*NPTS\s*,?\s*DT\b", re.IGNORECASE),
+    re.compile(rf"\bNPTS\s*,\s*DT\s*[=:]?\s*(?P<npts>\d+)[,\s]+(?P<dt>{_NUMBER})", re.IGNORECASE),
 )
 _UNIT = re.compile(r"\bUNITS?\s*(?:OF|[=:])\s*\(?\s*([A-Z0-9/*^²]+)", re.IGNORECASE)
-_IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # of El Centro 1940 as it goes from hand to hand
+_IN_G = re.compile(r"\(\s*(g)\s*\)", re.IGNORECASE)  # in common copies of El Centro 1940
 _MONTH = r"(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*\.?"
 _DATE = re.compile(
     r"(?<!\d)(?:(?:19|20)\d\d([-/.])\d{1,2}\1\d{1,2}|(?:19|20)\d\d(?:0[1-9]|1[0-2])(?:0[1-9]|[12]\d|3[01])"
@@ -52,16 +49,16 @@ _CLOCK = re.compile(
 )
 _FIELD = re.compile(r"(?:[^,(]|\([^()]*(?:\)|$))+")  # between commas, which may stand in parentheses, too
 _SIGNED = re.compile(rf"[-+]?{_NUMBER}", re.IGNORECASE)
-_HEADER_LINES = 10  # the count stands in line 4; a few lines of grace for hand-edited headers
+_HEADER_LINES = 10  # the count is in line 4; hand-edited headers may be longer
 _HEADER_BYTES = 2048
 _HEADER_CHARACTERS = 8192
 _BLANK = re.compile(r"\s")
-_PIECE = 2**20  # characters that are looked at together
+_PIECE = 2**20  # characters parsed at a time
 _WIDEST = 40  # characters of a number
 
 
 def looks_like_at2(head: bytes) -> bool:
-    """Return whether the first bytes are an AT2 header: a count with a time step, below a unit or PEER's name."""
+    """Return whether the first bytes are an AT2 header: a unit or PEER's name, then a count with a time step."""
     lines = _first_lines(head)
     index = next((i for i, line in enumerate(lines) if _count_and_step(line)), 0)
     above = " ".join(lines[:index]).upper()
@@ -69,7 +66,7 @@ def looks_like_at2(head: bytes) -> bool:
 
 
 def has_at2_count(head: bytes) -> bool:
-    """Return whether the first bytes have a count with a time step, as the header of an AT2 file: for files of that suffix."""
+    """Return whether the first bytes have a count with a time step; enough for files with the suffix .AT2."""
     return any(_count_and_step(line) for line in _first_lines(head))
 
 
@@ -92,9 +89,9 @@ def read_component(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str) -> list[Recording]:
-    """Return the recording of an AT2 file, of unit "" if it states none; ``InputError`` with the line if it cannot be used.
+    """Return the recording of an AT2 file, with unit "" if it states none; raise ``InputError`` with the line if unusable.
 
-    PEER's own records are corrected ones.
+    PEER's records are corrected; other files do not say.
     """
     lines = text[:_HEADER_CHARACTERS].splitlines(keepends=True)[:_HEADER_LINES]
     first = next((i for i, line in enumerate(lines) if _count_and_step(line)), None)
@@ -132,15 +129,15 @@ def _parse(text: str) -> list[Recording]:
 
 
 def _count_and_step(line: str) -> re.Match[str] | None:
-    """Return the groups ``npts`` and ``dt`` of a header line, in any dialect."""
+    """Return the match with ``npts`` and ``dt`` of a header line, in any dialect; None for other lines."""
     return next((match for pattern in _COUNT_AND_STEP if (match := pattern.search(line[:200]))), None)
 
 
 def _title(line: str) -> tuple[str, str, str, str]:
-    """Return event, date, station and component of header line 2; empty where it does not say.
+    """Return event, date, station and component of header line 2; "" for those that are missing.
 
-    "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG …)". What stands
-    behind the component is of the agency; parentheses before it are of the station: "Pacoima Dam (upper left), 104".
+    "Duzce Turkey, 11/12/1999, Lamont 362, E" and "CAPE MENDOCINO 04/25/92 1806, CAPE MENDOCINO, 000 (CDMG …)". The text
+    after the component is of the agency; parentheses before it are of the station: "Pacoima Dam (upper left), 104".
     """
     date = _DATE.search(line)
     if date is None:
@@ -163,22 +160,22 @@ def _title(line: str) -> tuple[str, str, str, str]:
 
 
 def _fields(text: str) -> list[str]:
-    """Return what stands between the commas of a title, but those in parentheses."""
+    """Return the fields of a title between commas outside of parentheses, stripped; empty ones are skipped."""
     return [field for match in _FIELD.finditer(text) if (field := match[0].strip())]
 
 
 def _bare(field: str) -> str:
-    """Return a field of a title without what stands in parentheses behind it: "000" of "000 (CDMG STATION 89005)"."""
+    """Return a field of a title without parentheses at its end: "000 (CDMG STATION 89005)" gives "000"."""
     return re.sub(r"(?<=[^\s(])\s*\(.*", "", field).strip()
 
 
 def _component_of(fields: list[str]) -> int:
-    """Return the place of the last field that is a direction, behind which there may be an agency; -1 without one."""
+    """Return the index of the last field that is a direction; -1 without one."""
     return next((i for i in reversed(range(len(fields))) if orientation_of(_bare(fields[i]))), -1)
 
 
 def _values(text: str, start: int, npts: int) -> Samples:
-    """Return the ``npts`` numbers from the character ``start`` on, or ``InputError``: never one more or less."""
+    """Return the ``npts`` numbers from the character ``start`` on, shape (npts,); raise ``InputError`` for more or fewer."""
     try:
         values, last = _between_blanks(text, start)
     except ValueError:
@@ -194,9 +191,9 @@ def _values(text: str, start: int, npts: int) -> Samples:
 
 
 def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
-    """Return the numbers from ``start`` on, and the last of them as they are written; ``ValueError`` for text that is no number.
+    """Return the numbers from ``start`` on, and the last of them as written; raise ``ValueError`` for words that are none.
 
-    A piece of the file after the other: its words as Python's objects would take thirty times its size.
+    In pieces, because all words of a file as Python objects would take thirty times its size.
     """
     end = len(text.rstrip("\x00\x1a"))
     values, last = [np.empty(0)], list[str]()
@@ -215,37 +212,34 @@ def _between_blanks(text: str, start: int) -> tuple[Samples, list[str]]:
 
 
 def _touching_or_double(text: str, start: int, npts: int) -> tuple[Samples, list[str]]:
-    """Return the numbers likewise, of Fortran's touching columns, or in double precision; ``InputError`` with the line."""
+    """Return numbers from ``start`` on in touching Fortran columns or with D exponents, and the last of them as written.
+
+    Raises ``InputError`` with the line of a word that is no number.
+    """
     lines = [line.rstrip() for line in text[start:].rstrip("\x00\x1a").splitlines()]
     body = [line for line in lines if line]
     width = _width(body, npts)
     first = text.count("\n", 0, start)
 
     def fields(line: str) -> list[str]:
-        return (
-            line.split()
-            if width is None
-            else [line[column : column + width].strip() for column in range(0, len(line), width)]
-        )
+        if width is None:
+            return line.split()
+        return [line[column : column + width].strip() for column in range(0, len(line), width)]
 
     values = (number_in(field, first + i) for i, line in enumerate(lines) for field in fields(line))
     return np.fromiter(values, float), [field for line in body[-LOOKED_AT:] for field in fields(line)][-LOOKED_AT:]
 
 
 def _width(lines: list[str], npts: int) -> int | None:
-    """Return the width of Fortran columns whose values touch, such as 5E15.7; ``None`` unless they come to ``npts`` numbers.
-
-    The count tells how many fields a full line has, and so how wide they are.
-    """
+    """Return the width of touching Fortran columns, such as 15 of 5E15.7; ``None`` unless they give ``npts`` numbers."""
     longest = max(map(len, lines), default=0)
     full = len(lines) - 1
     for width in range(1, _WIDEST + 1):
         per_line = longest // width
         if longest % width or not per_line * full < npts <= per_line * (full + 1):
             continue
-        if sum(-(-len(line) // width) for line in lines) == npts and all(
-            _SIGNED.fullmatch(line[i : i + width].strip()) for line in lines for i in range(0, len(line), width)
-        ):
+        fields = [line[i : i + width].strip() for line in lines for i in range(0, len(line), width)]
+        if len(fields) == npts and all(map(_SIGNED.fullmatch, fields)):
             return width
     return None
 

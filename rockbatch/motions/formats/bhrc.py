@@ -2,7 +2,7 @@
 
 Each channel has 13 lines of text, 7 of integers and 7 of real numbers (13 characters each, the second line beginning
 with the sampling rate), then its accelerations, ten to a line of 13 characters each, and a line "/&". The layout is
-that of the Center's own files. What is corrected, or pairs of time and value as digitised from film, is refused.
+that of the Center's own files. Corrected files, and pairs of time and value digitised from film, are refused.
 """
 
 import re
@@ -37,12 +37,12 @@ def is_bhrc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the channels, one after the other; ``InputError`` with the line where the file is not whole."""
+    """Return the channels, one after the other; raise ``InputError`` with the line if the file is incomplete."""
     return one_after_another(text, _channel)
 
 
 def _channel(lines: list[str], start: int) -> tuple[Recording, int]:
-    """Return the channel whose title is ``lines[start]``, and where the next one begins."""
+    """Return the channel whose title is ``lines[start]``, and the index of the line after it."""
     title = read_header(lines, start, [(0, _TITLE, "* VOL1DS FILE: …, after the last declared value")])
     if title["volume"] != "1":
         raise InputError(f"line {start + 1}: Volume {title['volume']}, whose layout is not known; take the .V1 file")

@@ -1,4 +1,4 @@
-"""Clock times in tables of numbers, such as 2023-02-06T01:17:35.010Z, which become seconds after the first of them."""
+"""Clock times in tables of numbers, such as 2023-02-06T01:17:35.010Z, converted to seconds after the first of them."""
 
 import re
 from datetime import UTC, datetime, timedelta
@@ -14,9 +14,9 @@ _DAY = 86400  # s
 
 
 def in_seconds(text: str) -> tuple[str, float | None]:
-    """Return a text in which times at the beginning of lines are seconds after the first one, and that [s since 1970, UTC].
+    """Return a text with times at the beginning of lines as seconds after the first, and the first [s since 1970, UTC].
 
-    ``None`` where lines do not begin with times, or these do not tell date and zone; then the text is as it was, or begins at 0.
+    The first is ``None`` if the times lack a date or a zone; fewer than three times leave the text as it is, with ``None``.
     """
     if ":" not in text or len(times := list(_CLOCK.finditer(text))) < _FEWEST:
         return text, None
@@ -28,10 +28,10 @@ def in_seconds(text: str) -> tuple[str, float | None]:
     days, latest = 0, first
 
     def seconds(match: re.Match[str]) -> str:
-        """Return the line's beginning with seconds in the place of its time, which may go on after midnight."""
+        """Return the line's beginning with seconds in place of its time."""
         nonlocal days, latest
         moment = _moment(match) + timedelta(days=days)
-        if match["date"] is None and moment < latest:
+        if match["date"] is None and moment < latest:  # past midnight
             days += 1
             moment += timedelta(days=1)
         latest = moment
@@ -41,12 +41,12 @@ def in_seconds(text: str) -> tuple[str, float | None]:
 
     try:
         return _CLOCK.sub(seconds, text), _start(times[0], first, fraction)
-    except ValueError:  # a clock that cannot be
+    except ValueError:  # an impossible clock time
         return text, None
 
 
 def _moment(match: re.Match[str]) -> datetime:
-    """Return a time in whole seconds, without its zone; on a day of its own where it has no date."""
+    """Return a time in whole seconds, without its zone; on 1970-01-01 without a date."""
     date = (match["date"] or "1970-01-01").replace("/", "-")
     return datetime.fromisoformat(f"{date}T{match['clock']}")
 
@@ -56,6 +56,7 @@ def _nanoseconds(match: re.Match[str]) -> int:
 
 
 def _start(match: re.Match[str], first: datetime, nanoseconds: int) -> float | None:
+    """Return a time [s since 1970, UTC]; ``None`` without date or zone."""
     zone = (match["zone"] or "").strip()
     if match["date"] is None or not zone:
         return None

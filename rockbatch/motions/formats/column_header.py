@@ -1,4 +1,4 @@
-"""Header of a table, in the ways that people and programs write it: columns, units, count, interval."""
+"""Headers of tables, as people and programs write them: columns, units, count, interval."""
 
 import re
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms
 """Units of time [s]."""
 
 
-_SLOWEST = 1.0  # Hz: a number below it that is called a rate is rather an interval
+_SLOWEST = 1.0  # Hz: a lower "rate" is probably an interval
 _RATE_UNITS = ("hz", "sps", "samples/sec", "samples/s", "pts/sec", "points/sec", "1/s")
 _SAMPLE = r"sampl(?:e|es|ing)[ _-]?"
 _INTERVAL = rf"dt|delta ?t|Δt|time[ _-]?(?:step|increment|interval)|{_SAMPLE}(?:interval|period|step|time)"
@@ -28,9 +28,9 @@ _STEP = re.compile(
     rf"(?:\s*[(\[]?\s*(?P<behind>{_STEP_UNITS})(?![A-Za-z]))?",
     re.IGNORECASE,
 )
-_OF_ANOTHER = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE)
+_OF_OTHER_DATA = re.compile(r"\b(?:original|raw|recorder|instrument|resampled|from|was|were)\b[^:=]*$", re.IGNORECASE)
 
-# possessive (*+): a line of a header takes the square of its length at most, whatever it holds
+# possessive (*+), so that matching any header line takes the square of its length at most
 _UNIT = r"[(\[]\s*+(?P<unit>[^()\[\]]*[^()\[\]\s])\s*+[)\]]"
 _NUMBERED = re.compile(rf"^column\s+(?P<at>\d{{1,3}})\s*[:=]\s*(?P<label>(?:.*?\S)??)\s*+{_UNIT}", re.IGNORECASE)
 _LABELLED = re.compile(rf"(?P<label>[^\s,;()\[\]](?:[^,;\t()\[\]]*[^\s,;()\[\]])?)\s*+{_UNIT}")
@@ -78,21 +78,21 @@ _OTHERS = {
 
 @dataclass(frozen=True)
 class Column:
-    """One column: its label, and its unit if it is known."""
+    """A column of a table."""
 
     label: str
-    unit: str | None = None
+    unit: str | None = None  # None if unknown
     stated: bool = False  # whether the study states the label
 
     @property
     def is_time(self) -> bool:
-        """Return whether it holds times: by its name, or, whatever that is, by a unit of time; periods are none."""
+        """Return whether it holds times, by its label or by a unit of time, but not the periods of a spectrum."""
         key = re.sub(r"[\W\d_]", "", self.label.lower())
         return key in _TIMES or (seconds_in(self.unit or "") is not None and not self.is_abscissa)
 
     @property
     def may_be_time(self) -> bool:
-        """Return whether it is headed by a T without a unit: time, or the transverse component."""
+        """Return whether its label is T without a unit: time, or the transverse component."""
         return self.unit is None and self.label.lower() in ("t", "ts")
 
     @property
@@ -107,16 +107,17 @@ class Column:
 
     @property
     def other(self) -> str:
-        """Return the quantity that it holds other than acceleration: "velocity", "displacement"; empty if it says none."""
+        """Return "velocity" or "displacement" if its label says so; empty for others."""
         return next((_OTHERS[word] for word in sorted(self._words) if word in _OTHERS), "")
 
     @property
     def _words(self) -> set[str]:
+        """Return the words of its label in capitals."""
         return {word.upper() for word in re.findall(r"[A-Za-z]+\d*", self.label)}
 
 
 def spectrum_in(columns: Sequence[Column]) -> str:
-    """Return the kind of spectrum of columns, after the labels that say so; empty for time histories."""
+    """Return the labels of columns of a spectrum and its kind, '"PSA": a response spectrum'; empty for time histories."""
     telling = [column for column in columns if column.is_abscissa or column.is_ordinate]
     if not telling:
         return ""
@@ -129,12 +130,12 @@ def spectrum_in(columns: Sequence[Column]) -> str:
 
 
 def seconds_in(unit: str) -> float | None:
-    """Return the seconds that a unit of time has; ``None`` for an unknown unit."""
+    """Return a unit of time in seconds; ``None`` for other units."""
     return SECONDS.get(unit.strip().lower().rstrip("."))
 
 
 def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return columns of which the header tells label and unit; ``None`` where it does not for all of them.
+    """Return the columns if the header states label and unit of all ``width``; else ``None``.
 
     ``Column 2: North-south acceleration (cm/s/s)``, or in one line ``time(sec) N-S(cm/s/s) …``, or in two, the labels and
     their units.
@@ -144,14 +145,15 @@ def columns_with_units(header: Sequence[str], width: int) -> list[Column] | None
         return [numbered[i + 1] for i in range(width)]
     for line in reversed(header):
         labelled = [] if _KEYED.match(line) else [_column(match) for match in _LABELLED.finditer(line)]
-        whole = len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"')  # "PGA (g): 0.5" is no label
-        if whole and any(_is_unit(column.unit or "") for column in labelled):  # "Final (Baseline corrected)" is none
+        # "PGA (g): 0.5" is no label, and "Final (Baseline corrected)" has no unit
+        complete = len(labelled) == width and not _LABELLED.sub("", line).strip(' \t,;"')
+        if complete and any(_is_unit(column.unit or "") for column in labelled):
             return labelled
     return _with_unit_row(header, width)
 
 
 def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns of a line of labels and the line of their units below it, or above; ``None`` without such lines."""
+    """Return the columns by two neighbouring lines of labels and units, in either order; ``None`` without such lines."""
     for pair in pairwise(header):
         for labels, units in (pair, pair[::-1]):
             of_columns = [unit.strip(" ()[]") for unit in _fields(units)]
@@ -160,12 +162,12 @@ def _with_unit_row(header: Sequence[str], width: int) -> list[Column] | None:
                 continue
             if all(unit in ("", "-") or _is_unit(unit) for unit in of_columns) and not any(map(_is_unit, names)):
                 pairs = zip(names, of_columns, strict=True)
-                return [Column(_tidy(name), None if unit in ("", "-") else unit) for name, unit in pairs]
+                return [Column(_short_label(name), None if unit in ("", "-") else unit) for name, unit in pairs]
     return None
 
 
 def _fields(line: str) -> list[str]:
-    """Return what stands between commas, semicolons or tabs, else between blanks."""
+    """Return the fields of a line between commas, semicolons or tabs if it has any, else between blanks."""
     fields = re.split(r"[,;\t]", line) if re.search(r"[,;\t]", line) else line.split()
     return [field.strip(' "') for field in fields]
 
@@ -176,24 +178,24 @@ def _is_unit(text: str) -> bool:
 
 
 def _is_of_motion(unit: str) -> bool:
-    """Return whether a unit is one of velocity or displacement."""
+    """Return whether a unit is one of velocity or displacement: "cm/s", "mm"."""
     length, slash, time = re.sub(r"[() ]", "", unit.lower()).partition("/")
     return length_factor(length) is not None and (not slash or time in SECONDS)
 
 
-def below_an_index(header: Sequence[str]) -> list[str]:
-    """Return a header without the name of a first column that counts rows, as pandas writes it: none, or such as "index"."""
+def without_index_name(header: Sequence[str]) -> list[str]:
+    """Return the header lines that name a first column as a row index, pandas' "", "index" or "No.", without that name."""
     return [_INDEX.sub("", line) for line in header if _INDEX.match(line)]
 
 
 def columns_without_units(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return columns of which the header tells the labels, and units of some at most: ``t, NS, UD``.
+    """Return the columns if the header states the labels of all ``width``, with or without units, ``t, NS, UD``; else None.
 
-    The first is time, or what a spectrum is drawn over, or all are directions or time: other lines of as many words are
-    text, as are those with a value in them.
+    The first is time, or period or frequency of a spectrum, or all are directions or time: other lines of as many words
+    are text, as are lines with a value.
     """
     if named := next((match for line in header if (match := _COMPONENTS.match(line))), None):
-        labels = [Column(_tidy(word)) for word in re.split(r"[\s,;]+", named["labels"].strip())]
+        labels = [Column(_short_label(word)) for word in re.split(r"[\s,;]+", named["labels"].strip())]
         if len(labels) == width and all(orientation_in(column.label).known for column in labels):
             return labels
     for line in reversed(header):
@@ -212,7 +214,7 @@ def columns_without_units(header: Sequence[str], width: int) -> list[Column] | N
 
 
 def _labels_of(line: str) -> list[list[Column]]:
-    """Return the columns that a line may name: one for each word, or one between commas, semicolons or tabs."""
+    """Return the possible columns of a line of labels: each word, and each field between commas, semicolons or tabs."""
     words = [_column(match) for match in _WORD.finditer(line)]
     fields = [match for field in re.split(r"[,;\t]", line) if (match := _FIELD.fullmatch(field.strip()))]
     by_words = [] if _WORD.sub("", line).strip(" \t,;") else [words]
@@ -220,20 +222,20 @@ def _labels_of(line: str) -> list[list[Column]]:
 
 
 def _column(match: re.Match[str]) -> Column:
-    """Return the column of a label and its unit, which may stand at the end of the label: acc_g, acc_cm_s2."""
+    """Return the column of a matched label and unit; the unit may be the end of the label: acc_g, acc_cm_s2."""
     label, unit = match["label"].strip('"'), match["unit"]
     if unit is None and (suffixed := _SUFFIXED.fullmatch(label)):
         label, unit = suffixed["label"], re.sub("_?s2$", "/s2", suffixed["unit"])
-    return Column(_tidy(label), unit)
+    return Column(_short_label(label), unit)
 
 
-def speaks_of_spectra(header: Sequence[str]) -> str:
-    """Return the line of a header by which columns without labels may be a spectrum; empty without one."""
+def line_about_spectra(header: Sequence[str]) -> str:
+    """Return the first header line with a word for spectra; empty without one."""
     return next((line for line in header if _SPECTRA.search(line)), "")
 
 
 def stated_unit(header: Sequence[str]) -> str | None:
-    """Return the unit of a line ``unit: cm/s2``, or else such as ``acceleration in units of cm/s/s``; ``None`` without one.
+    """Return the unit in a line ``unit: cm/s2``, else in one such as ``acceleration in units of cm/s/s``; ``None`` without.
 
     Raises ``NoRecord`` where a record file of MIDAS says that it holds no accelerations.
     """
@@ -256,12 +258,12 @@ def is_acceleration(unit: str) -> bool:
 
 
 def stated_count(header: Sequence[str]) -> int | None:
-    """Return the number of samples of a line such as ``NPTS = 4000``."""
+    """Return the number of samples in a line such as ``NPTS = 4000``; None without one."""
     return next((int(match["npts"]) for line in header if (match := _COUNT.search(line))), None)
 
 
-def _tidy(label: str) -> str:
-    """Return a column's label for names and tables: "N-S" and "North-south acceleration" give "NS"."""
+def _short_label(label: str) -> str:
+    """Return a column's label shortened for names and tables: "N-S" and "North-south acceleration" give "NS"."""
     label = label.strip('"')
     bare = re.sub(r"(?i)\s*(?:ground\s*)?acc(?:eleration|el)?\b\.?\s*", " ", label).strip()
     key = re.sub(r"[^A-Z]", "", bare.upper())
@@ -281,12 +283,12 @@ class StatedStep:
 
 
 def stated_step(header: Sequence[str]) -> StatedStep | None:
-    """Return the interval of a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
+    """Return the interval in a line such as ``dt = 0.01 s``, ``Sampling rate: 200 Hz`` or ``NPTS= 4000, DT= .0050 SEC``.
 
-    Raises ``InputError`` where a header states two, and for numbers that are no intervals.
+    ``None`` without one. Raises ``InputError`` for two different ones, and for numbers that are no intervals.
     """
     matches = (match for line in header for match in _STEP.finditer(line))
-    steps = [_step(match) for match in matches if not _OF_ANOTHER.search(match.string[: match.start()])]
+    steps = [_step(match) for match in matches if not _OF_OTHER_DATA.search(match.string[: match.start()])]
     for step in steps[1:]:
         if abs(step.dt - steps[0].dt) > SAME_STEP * steps[0].dt:
             raise InputError(
@@ -297,6 +299,7 @@ def stated_step(header: Sequence[str]) -> StatedStep | None:
 
 
 def _step(match: re.Match[str]) -> StatedStep:
+    """Return the interval that a match states, as such or as a rate; raise ``InputError`` for an impossible number."""
     words = match[0].strip()
     unit = (match["behind"] or match["before"] or match["suffix"] or "").lower()
     try:

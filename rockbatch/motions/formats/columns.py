@@ -1,7 +1,7 @@
-"""Plain text columns: time and accelerations, in units that the header or the study declares.
+"""Plain text columns: time and accelerations, in units that the header or the study states.
 
-Exports of spreadsheets and of other programs, among them the SCEC Broadband Platform's (.bbp), which say all in
-their header and are therefore an ObsPy waveform format, "BBP".
+They are exports of spreadsheets and of other programs. Those of the SCEC Broadband Platform (.bbp) state all in their header
+and are therefore an ObsPy waveform format, "BBP".
 """
 
 import codecs
@@ -17,16 +17,16 @@ from rockbatch.motions.formats.clock_times import in_seconds
 from rockbatch.motions.formats.column_header import (
     Column,
     StatedStep,
-    below_an_index,
     columns_with_units,
     columns_without_units,
     is_acceleration,
+    line_about_spectra,
     seconds_in,
-    speaks_of_spectra,
     spectrum_in,
     stated_count,
     stated_step,
     stated_unit,
+    without_index_name,
 )
 from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, to_components
@@ -42,12 +42,12 @@ _GROWING = 0.9  # of the steps of a column of time; those of an acceleration gro
 
 
 def is_columns(head: bytes) -> bool:
-    """Return whether the first bytes may be text."""
+    """Return whether the first bytes may be text: UTF-16 by its mark, or without NUL."""
     return head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\x00" not in head
 
 
 def holds_table(head: bytes) -> bool:
-    """Return whether the first bytes, as far as their lines are whole, are a table of numbers, below a header or none."""
+    """Return whether the complete lines of the first bytes are a table of three rows or more, with or without a header."""
     try:
         return len(read_table(text_of(head.rpartition(b"\n")[0]))[1]) > 2
     except InputError:
@@ -55,7 +55,7 @@ def holds_table(head: bytes) -> bool:
 
 
 def is_bbp(head: bytes) -> bool:
-    """Return whether the first bytes are comments that declare time and three accelerations, each with its unit."""
+    """Return whether the first bytes are comments that name time and three accelerations, each with its unit."""
     lines = [line.lstrip("# \t") for line in head.decode("latin-1").splitlines() if line.startswith("#")]
     columns = columns_with_units(lines, 4) or []
     return (
@@ -66,10 +66,10 @@ def is_bbp(head: bytes) -> bool:
 def read_columns(file: RecordFile) -> list[Component | Unusable]:
     """Return one component per column of acceleration, in m/s².
 
-    What the columns are comes from the header (``# time(sec) N-S(cm/s/s) …``, or ``# Column 2: North-south
-    acceleration (cm/s/s)``); the study's ``columns``, ``unit`` and ``dt`` say what it does not. Nothing is assumed
-    but one thing: in a file of two columns, one that grows evenly in time's manner is time, unless the header speaks
-    of spectra. Uneven times are interpolated, and it is said.
+    The header names the columns (``# time(sec) N-S(cm/s/s) …``, or ``# Column 2: North-south acceleration (cm/s/s)``);
+    the study's ``columns``, ``unit`` and ``dt`` supply what it lacks. There is one assumption: in a file of two columns
+    without labels, a first one that grows evenly is time, unless the header mentions spectra. Uneven times are
+    interpolated, with a note.
     """
     recordings = _parse(file.text, file.options, file.beside)
     for i, recording in enumerate(recordings):
@@ -82,7 +82,7 @@ def read_columns(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[Recording]:
-    """Return the columns of acceleration; ``InputError`` where they are not known, or have no unit."""
+    """Return the columns of acceleration; raise ``InputError`` if they, their unit or their step are unknown."""
     text, start = in_seconds(text)
     header, table = read_table(text, options.layout == "wrapped", named="layout" not in options.instead, stated=beside)
     if len(table) < 2:
@@ -92,13 +92,15 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     if count is not None and count != len(table):
         raise InputError(f"the header says {count} samples, but there are {len(table)} rows; fetch the file again")
     unit = stated_unit(header)
-    if unit is None or not is_acceleration(unit):  # a unit that nobody knows states nothing
+    if unit is None or not is_acceleration(unit):  # an unknown unit counts as none
         unit = options.unit or unit
     not_acceleration = [i for i, column in enumerate(columns) if column.other]
     used = [i for i, column in enumerate(columns) if not (column.is_time or column.other or column.label == "-")]
     units = {i: _unit_of(columns[i], unit, options) for i in used}
-    known = any(map(is_acceleration, units.values()))  # then another unit is the fault of its own column
-    lacking = [_lack(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))]
+    known = any(map(is_acceleration, units.values()))  # then another unit makes only its own column unusable
+    lacking = [
+        _missing_unit(i, columns[i], units[i]) for i in used if not (units[i] if known else is_acceleration(units[i]))
+    ]
     if lacking:
         untimed = not (stated_step(header) or options.dt or any(column.is_time for column in columns))
         message = "; ".join(lacking)
@@ -106,10 +108,11 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
     if not used:
         quantities = " and ".join(columns[i].other for i in not_acceleration)
         raise NoRecord(f"found {quantities or 'a column of time and no other'}; expected accelerations")
-    omitted = tuple(f"{_called(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
-    dt, values, moved = _sampled(columns, table, header, options)
-    return [
-        Recording(
+    omitted = tuple(f"{_column_name(i, columns[i])} left out: a {columns[i].other}" for i in not_acceleration)
+    dt, values, moved = _on_one_step(columns, table, header, options)
+    recordings = []
+    for i in used:
+        recording = Recording(
             label=columns[i].label,
             orientation=orientation_in(columns[i].label),
             stated_by=Kind.USER if columns[i].stated else Kind.HEADER,
@@ -119,31 +122,39 @@ def _parse(text: str, options: ReadOptions, beside: Sequence[str] = ()) -> list[
             start=start,
             notes=(*notes, *omitted, *moved),
         )
-        for i in used
-    ]
+        recordings.append(recording)
+    return recordings
 
 
 def _unit_of(column: Column, of_all: str | None, options: ReadOptions) -> str:
-    """Return the unit of a column, its own or that of all; what is stated where its own is not understood; empty without any."""
+    """Return a column's unit: its own if known, else the study's, else its own or that ``of_all``; empty without any."""
     if column.unit and not is_acceleration(column.unit) and options.unit:
         return options.unit
     return column.unit or of_all or ""
 
 
-def _lack(i: int, column: Column, unit: str) -> str:
-    """Return what the statement of a column's unit lacks."""
-    return f'{_called(i, column)}: the unit "{unit}" is not known' if unit else f"{_called(i, column)} has no unit"
+def _missing_unit(i: int, column: Column, unit: str) -> str:
+    """Return the complaint about a column's missing or unknown unit."""
+    return (
+        f'{_column_name(i, column)}: the unit "{unit}" is not known'
+        if unit
+        else f"{_column_name(i, column)} has no unit"
+    )
 
 
 def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return the columns, and notes on them; ``InputError`` for those of a spectrum."""
+    """Return the columns by header and study, and notes on them; raise ``InputError`` for a spectrum, or another count."""
     width = table.shape[1]
-    columns = _behind_an_index(below_an_index(header), table) or _named(header, width) or _counted(header, table)
+    columns = (
+        _behind_an_index(without_index_name(header), table)
+        or _columns_named(header, width)
+        or _columns_beside_index(header, table)
+    )
     stated = options.columns
     notes: tuple[str, ...] = ()
     if stated is not None:
         known = columns or [Column("")] * width
-        completed = list(map(_completed, known, stated)) if len(stated) == width else [None]
+        completed = list(map(_merged_column, known, stated)) if len(stated) == width else [None]
         if None not in completed:
             columns = [column for column in completed if column]
         elif columns is None:
@@ -153,63 +164,61 @@ def _columns(header: list[str], options: ReadOptions, table: Samples) -> tuple[l
                 f"its header tells its {width} columns; the {len(stated)} that are stated are those of other files",
             )
     if columns is None:
-        return _guessed(header, table)
+        return _guessed_columns(header, table)
     columns = _with_time(columns, table)
     if spectrum := spectrum_in(columns):
         raise NoRecord(f"{spectrum} is no time history; take the record of accelerations instead")
     return columns, notes
 
 
-def _named(header: Sequence[str], width: int) -> list[Column] | None:
-    """Return the columns that a header names, with their units or without; ``None`` if it does not."""
+def _columns_named(header: Sequence[str], width: int) -> list[Column] | None:
+    """Return the columns that a header names, with or without units; ``None`` if it names another number."""
     return columns_with_units(header, width) or columns_without_units(header, width)
 
 
 def _behind_an_index(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one, which has no name or such as "index", has times or counts the rows.
+    """Return the columns of a table whose first one, without a name or called "index", has times or counts the rows.
 
-    ``header`` names the other ones; ``None`` for another table.
+    ``header`` names the others; ``None`` for other tables.
     """
-    if _counts(table[:, 0]):
-        return _counted(header, table)
-    named = _named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
+    if _counts_rows(table[:, 0]):
+        return _columns_beside_index(header, table)
+    named = _columns_named(header, table.shape[1] - 1) if header and grows_evenly(table[:, 0]) else None
     return None if named is None or any(column.is_time for column in named) else [Column("time"), *named]
 
 
-def _counted(header: Sequence[str], table: Samples) -> list[Column] | None:
-    """Return the columns of a table whose first one counts its rows, if the header names all others; ``None`` if not."""
-    named = _named(header, table.shape[1] - 1) if _counts(table[:, 0]) else None
+def _columns_beside_index(header: Sequence[str], table: Samples) -> list[Column] | None:
+    """Return the columns of a table whose first one counts its rows, if the header names all others; else ``None``."""
+    named = _columns_named(header, table.shape[1] - 1) if _counts_rows(table[:, 0]) else None
     return None if named is None else [Column("-"), *named]
 
 
-def _counts(column: Samples) -> bool:
-    """Return whether a column has the numbers of its rows, from 0 or 1."""
+def _counts_rows(column: Samples) -> bool:
+    """Return whether a column numbers its rows, from 0 or 1."""
     return column[0] in (0.0, 1.0) and bool((np.diff(column) == 1.0).all())
 
 
-def _completed(header: Column, stated: str) -> Column | None:
-    """Return a column of the header with what the study states about it where the header says nothing; None if they differ."""
+def _merged_column(header: Column, stated: str) -> Column | None:
+    """Return a column of the header, completed by the study's label for it; None if they contradict each other."""
     if stated == "-":
         return Column(stated)
-    by_header, by_study = orientation_in(header.label), orientation_in(stated)
     study = Column(stated)
     if header.is_time or header.is_abscissa or header.is_ordinate:
-        agree, column = header.is_time == (study.is_time or study.may_be_time), header
-    elif study.is_time or (study.may_be_time and header.may_be_time):
-        agree, column = header.may_be_time or not header.label, Column("time", header.unit)
-    else:
-        agree = not (by_header.known and by_study.known) or (
-            by_header.vertical == by_study.vertical
-            and by_header.down == by_study.down
-            and (None in (by_header.azimuth, by_study.azimuth) or same_azimuth(by_header.azimuth, by_study.azimuth))
-        )
-        unchanged = by_header.vertical or by_header.azimuth is not None or not by_study.known
-        column = header if by_header.known and unchanged else Column(stated, header.unit, stated=True)
-    return column if agree else None
+        return header if header.is_time == (study.is_time or study.may_be_time) else None
+    if study.is_time or (study.may_be_time and header.may_be_time):
+        return Column("time", header.unit) if header.may_be_time or not header.label else None
+    by_header, by_study = orientation_in(header.label), orientation_in(stated)
+    if by_header.known and by_study.known:
+        azimuths = (by_header.azimuth, by_study.azimuth)
+        role_differs = by_header.vertical != by_study.vertical or by_header.down != by_study.down
+        if role_differs or not (None in azimuths or same_azimuth(*azimuths)):
+            return None
+    header_suffices = by_header.vertical or by_header.azimuth is not None or not by_study.known
+    return header if by_header.known and header_suffices else Column(stated, header.unit, stated=True)
 
 
 def _with_time(columns: list[Column], table: Samples) -> list[Column]:
-    """Return columns with a T without unit recognised: time grows, the transverse component does not."""
+    """Return columns with a label T without unit decided: a time grows, the transverse component does not."""
     if any(column.is_time for column in columns):
         return columns
     return [
@@ -218,13 +227,13 @@ def _with_time(columns: list[Column], table: Samples) -> list[Column]:
     ]
 
 
-def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
-    """Return the only column, or time and acceleration."""
+def _guessed_columns(header: list[str], table: Samples) -> tuple[list[Column], tuple[str, ...]]:
+    """Return columns without labels: a single one, or time and acceleration; raise ``InputError`` for more."""
     width = table.shape[1]
     if width == 1:
         return [Column("")], ()
     if width == 2 and len(table) > 2 and grows_evenly(table[:, 0]):
-        if line := speaks_of_spectra(header):
+        if line := line_about_spectra(header):
             raise InputError(
                 f'found two columns without labels below "{line[:60]}": a spectrum is no time history; if this is one, '
                 'state columns = ["time", "000"], in the study or for this file in motions.toml'
@@ -240,10 +249,10 @@ def _guessed(header: list[str], table: Samples) -> tuple[list[Column], tuple[str
     )
 
 
-def _sampled(
+def _on_one_step(
     columns: list[Column], table: Samples, header: list[str], options: ReadOptions
 ) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval [s], from the time column or as stated, the table on even times, and notes."""
+    """Return the sampling interval [s], by the column of time or as stated, the table at even times, and notes."""
     times = [i for i, column in enumerate(columns) if column.is_time]
     if len(times) > 1:
         raise InputError(f"found {len(times)} columns of time; expected one")
@@ -265,7 +274,7 @@ def _sampled(
 
 
 def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
-    """Raise ``InputError`` where the header's interval is neither that of the samples nor that of most of them [s]."""
+    """Raise ``InputError`` if the header's interval is neither ``dt`` of the samples nor their ``usual`` step [s]."""
     if all(abs(stated.dt - step) > SAME_STEP * step for step in (dt, usual)):
         raise Contradiction(
             f'the header says "{stated.words}", {stated.dt:g} s, but time grows by {usual:g} s; correct the one that is '
@@ -273,8 +282,8 @@ def _check_step(stated: StatedStep, dt: float, usual: float) -> None:
         )
 
 
-def _called(i: int, column: Column) -> str:
-    """Return what a column is called in messages."""
+def _column_name(i: int, column: Column) -> str:
+    """Return the name of a column in messages: 'column 2 ("NS")'."""
     return f'column {i + 1} ("{column.label}")' if column.label else f"column {i + 1}"
 
 

@@ -1,11 +1,10 @@
 """COSMOS strong-motion files (text, v01.00 to v01.20): uncorrected V1 and corrected V2 accelerations.
 
-Each channel has lines of text, then integers, real numbers and comments, each under a line that says how many
-there are and in which Fortran format, then its values under a line with their count, unit and format, and a
-line "End-of-data" (in some of CGS's files "/&  --- End of data"). Velocities and displacements in the same file tell how
-the ground moved at the first sample, else real numbers 68 [cm/s] and 69 [cm] do. The sampling interval is real number
-62 [ms]; number 34 is that of the recorder. Source: COSMOS (2001), "COSMOS strong motion data format", version 1.20; for
-68 and 69 the USGS's program PRISM.
+Each channel has lines of text, then integers, real numbers and comments, each below a line with their count and Fortran
+format, then its values below a line with their count, unit and format, and a line "End-of-data" (in some of CGS's files
+"/&  --- End of data"). The ground's initial state follows from velocities and displacements in the same file, else from
+real numbers 68 [cm/s] and 69 [cm]. The sampling interval is real number 62 [ms]; number 34 is that of the recorder. Source:
+COSMOS (2001), "COSMOS strong motion data format", version 1.20; for 68 and 69 the USGS's program PRISM.
 """
 
 import re
@@ -25,7 +24,7 @@ from rockbatch.motions.orientation import orientation_of
 from rockbatch.motions.origin import origin_of
 
 _UNITS = {2: "g", 4: "cm/s2", 10: "gal"}  # the specification's unit codes of accelerations
-_DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # beyond azimuths
+_DIRECTIONS = {400: "Up", 401: "Down", 402: "Vert", 600: "Long", 601: "Tran", 700: "H1", 701: "H2"}  # else azimuths
 _HEADERS = 100  # integers, and real numbers
 _TITLE = re.compile(
     r"^(?P<what>\S.*?) *\(Format v(?P<version>\d\d\.\d\d) with +(?P<lines>\d{1,3}) text lines\)", re.I | re.A
@@ -56,23 +55,23 @@ _SCNL = re.compile(r"<SCNL>(?P<station>\w*)\.(?P<channel>\w*)\.(?P<network>\w*)\
 class _Header:
     """The header of a channel."""
 
-    what: str
+    what: str  # quantity and stage, by its title
     text: list[str]
-    said: Mapping[str, str]  # by the groups of _TEXT
+    fields: Mapping[str, str]  # groups of _TEXT
     integers: list[int]  # counted from 1 in the specification, from 0 here
     reals: list[float]  # likewise
     comments: str
-    unknown: float  # what stands for numbers that are unknown, and for missing values
+    unknown: float  # marks unknown numbers and missing values
     end: int  # index of the first line after it
 
 
 def is_cosmos(head: bytes) -> bool:
-    """Return whether the first bytes are the first line of a COSMOS file, of whatever kind of data."""
+    """Return whether the first bytes are the first line of a COSMOS file, of any quantity."""
     return _TITLE.match(line_at(lines_of(head.decode("latin-1")), 0)) is not None
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the channels, one after the other; ``InputError`` with the line where the file is not whole."""
+    """Return the channels, one after the other; raise ``InputError`` with the line if the file is incomplete."""
     lines = lines_of(text)
     recordings: list[tuple[Recording, _Header]] = []
     quantities: list[str] = []
@@ -93,9 +92,7 @@ def parse(text: str) -> list[Recording]:
             recordings.append((_recording(header, series, values, index), header))
         else:
             quantities.append(series["what"])
-            if recordings and all(
-                line_at(recordings[-1][1].text, i) == line_at(header.text, i) for i in (_STATION, _SENSOR)
-            ):
+            if recordings and _same_sensor(recordings[-1][1], header):
                 recordings[-1] = (_with_series(recordings[-1][0], series, values), header)
         index = end
     if not recordings:
@@ -105,8 +102,13 @@ def parse(text: str) -> list[Recording]:
     return [recording for recording, _ in recordings]
 
 
+def _same_sensor(a: _Header, b: _Header) -> bool:
+    """Return whether two headers have the same lines for station and sensor."""
+    return all(line_at(a.text, i) == line_at(b.text, i) for i in (_STATION, _SENSOR))
+
+
 def _with_series(recording: Recording, series: re.Match[str], values: Samples) -> Recording:
-    """Return a recording with the velocities or displacements that follow its accelerations."""
+    """Return a recording with the velocities or displacements of a further series; itself for other quantities."""
     quantity, samples = series["what"].lower(), (values, series["unit"])
     if quantity.startswith("vel"):
         return replace(recording, velocities=samples)
@@ -114,7 +116,7 @@ def _with_series(recording: Recording, series: re.Match[str], values: Samples) -
 
 
 def _header(lines: list[str], start: int) -> _Header:
-    """Return the header that begins at ``lines[start]``."""
+    """Return the header that begins at ``lines[start]``; raise ``InputError`` with the line if it is incomplete."""
     title = match_line(_TITLE, lines, start, "Corrected acceleration    (Format v01.20 with 13 text lines)")
     if "spectr" in title["what"].lower():
         raise NoRecord(f"line {start + 1}: spectra; expected accelerations: take the V2 file of this record")
@@ -126,14 +128,14 @@ def _header(lines: list[str], start: int) -> _Header:
         count = int(fields["count"])
         if fields["what"].lower() != kind.lower() or count < _HEADERS:
             raise InputError(f'line {end + 1}: found "{fields[0].strip()}"; expected {_HEADERS} {kind}-header values')
-        values, end = fixed_numbers(lines, end + 1, count, *_layout(fields["format"], end))
+        values, end = fixed_numbers(lines, end + 1, count, *_width_and_count(fields["format"], end))
         numbers.append(values)
     comments = int(match_line(_COMMENTS, lines, end, "… Comment line(s) follow")["count"])
     unknown = search_lines(_UNKNOWN, text)
     return _Header(
         what=title["what"],
         text=text,
-        said=read_header(text, 0, _TEXT),
+        fields=read_header(text, 0, _TEXT),
         integers=[int(value) for value in numbers[0]],
         reals=[float(value) for value in numbers[1]],
         comments="\n".join(lines[end + 1 : end + 1 + comments]),
@@ -142,7 +144,7 @@ def _header(lines: list[str], start: int) -> _Header:
     )
 
 
-def _layout(text: str, index: int) -> tuple[int, int]:
+def _width_and_count(text: str, index: int) -> tuple[int, int]:
     """Return width and numbers per line of a Fortran format such as 8F10.5 or 1PE15.6."""
     match = _FORMAT.fullmatch(text)
     if match is None:
@@ -151,17 +153,17 @@ def _layout(text: str, index: int) -> tuple[int, int]:
 
 
 def _values(lines: list[str], index: int, series: re.Match[str]) -> tuple[Samples, int]:
-    """Return the values that ``lines[index]`` declares, and where the lines after their end begin."""
+    """Return the values declared by ``lines[index]``, shape (npts,), and the index of the line after their end mark."""
     npts = int(series["npts"])
     if npts < 1:
         raise InputError(f"line {index + 1}: found {npts} values; expected some")
-    values, end = fixed_numbers(lines, index + 1, npts, *_layout(series["format"], index))
+    values, end = fixed_numbers(lines, index + 1, npts, *_width_and_count(series["format"], index))
     match_line(_END, lines, end, f"End-of-data … after {npts} values; fetch it again")
     return values, end + 1
 
 
 def _recording(header: _Header, series: re.Match[str], values: Samples, index: int) -> Recording:
-    """Return the accelerations that ``lines[index]`` declares, with what their header says; ``InputError`` if it contradicts."""
+    """Return the recording of accelerations declared by ``lines[index]``; raise ``InputError`` for missing values."""
     interval, length, peak, time_of_peak = header.reals[61:65]
     if not 0 < interval < 1e5:
         raise InputError(f"real number 62 of the header says an interval of {interval:g} ms; expected a number above 0")
@@ -170,7 +172,7 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         raise InputError(
             f"{missing} of {len(values)} values are {header.unknown:g}, which marks those that are missing"
         )
-    fields, seed = header.said, _SCNL.search(header.comments)
+    fields, seed = header.fields, _SCNL.search(header.comments)
     network, station, place = fields["network"], fields["code"], fields["place"]
     location, channel = (seed["location"].strip("-"), seed["channel"]) if seed else ("", "")
     corrected = not header.what.lower().startswith(("raw", "uncorr"))
@@ -180,6 +182,10 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         r"^[A-Z]{2}:", "", re.split(r" {2,}", fields["words"].strip())[-1]
     )  # "USGS  AK:Anchorage;R B Atwood Bld"
     year, month, day, hour, minute = (header.integers[i] for i in (39, 41, 42, 43, 44))
+    stated = [Stated("duration", series["seconds"])]
+    for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak)):
+        if value != header.unknown:
+            stated.append(Stated(quantity, f"{value:.5f}"))
     return Recording(
         label=_label(header, channel),
         dt=float(f"{interval / 1000:.12g}"),
@@ -195,21 +201,14 @@ def _recording(header: _Header, series: re.Match[str], values: Samples, index: i
         event=event,
         initial=_initial(header) if corrected else None,
         origin=origin_of(event, name or station, line_at(header.text, 3)),
-        stated=(
-            Stated("duration", series["seconds"]),
-            *(
-                Stated(quantity, f"{value:.5f}")
-                for quantity, value in (("duration", length), ("peak", peak), ("time of the peak", time_of_peak))
-                if value != header.unknown
-            ),
-        ),
+        stated=tuple(stated),
         notes=(f"location: {place}",) if place else (),
         header={"station": line_at(header.text, _STATION).strip(), "event": event.strip()},
     )
 
 
 def _initial(header: _Header) -> Initial | None:
-    """Return the ground's state at the first sample, by real numbers 68 and 69; ``None`` where the first is unknown."""
+    """Return the ground's state at the first sample, by real numbers 68 and 69; ``None`` if number 68 is unknown."""
     velocity, displacement = header.reals[67:69]
     if velocity == header.unknown:
         return None
@@ -217,7 +216,7 @@ def _initial(header: _Header) -> Initial | None:
 
 
 def _unit(header: _Header, series: re.Match[str], index: int) -> str:
-    """Return the unit of the accelerations, by its code, which the header and the text must confirm."""
+    """Return the unit of the accelerations by its code; raise ``InputError`` unless header and text agree with it."""
     code, text = int(series["code"]), series["unit"]
     unit = _UNITS.get(code)
     if unit is None:
@@ -226,10 +225,10 @@ def _unit(header: _Header, series: re.Match[str], index: int) -> str:
             "take the V1 or V2 file of this record"
         )
     try:
-        as_said = acceleration_factor(text or unit) == acceleration_factor(unit)
+        confirmed = acceleration_factor(text or unit) == acceleration_factor(unit)
     except ValueError:
-        as_said = False
-    if not as_said or header.integers[2] not in (code, int(header.unknown)):
+        confirmed = False
+    if not confirmed or header.integers[2] not in (code, int(header.unknown)):
         raise InputError(
             f'line {index + 1}: found the unit "{text}({code:02d})", and code {header.integers[2]} as integer 3 of the '
             "header; expected them to agree"
@@ -238,8 +237,11 @@ def _unit(header: _Header, series: re.Match[str], index: int) -> str:
 
 
 def _label(header: _Header, channel: str) -> str:
-    """Return the direction by the header's text, else by its code for the sensor (integer 54), else by the SEED channel."""
-    code, stated = header.integers[53], header.said["label"]
+    """Return the direction by the header's text, else by its code (integer 54), else by the SEED channel.
+
+    Raises ``InputError`` if they contradict each other.
+    """
+    code, stated = header.integers[53], header.fields["label"]
     by_code = _DIRECTIONS.get(code, str(code) if 1 <= code <= 360 else "")
     labels = [label for label in (stated, by_code, channel) if orientation_of(label)]
     directions = {(o.vertical, o.down) for label in labels if (o := orientation_of(label))}

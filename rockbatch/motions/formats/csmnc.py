@@ -2,7 +2,7 @@
 
 Some sixteen lines of text ("COMP. EW", "NO. OF POINTS: … EQUALLY SPACED INTERVALS OF: … SEC"), then the accelerations,
 eight to a line between blanks. The layout is that of the Center's own files, such as those of Lushan 2013, and of its
-description of them; lines in between differ from year to year.
+description of them; further lines of text differ from year to year.
 """
 
 import math
@@ -41,7 +41,7 @@ def is_csmnc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
+    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
     lines = lines_of(text)
     _, kind = line_with(_KIND, lines, _MOST, "UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC")
     if not kind["what"].upper().startswith("ACC"):  # the Center's own description has "ACCCELERATION"

@@ -27,7 +27,7 @@ def is_cwa(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the three components; ``InputError`` where header and columns do not agree."""
+    """Return the three components; raise ``InputError`` if header and columns do not agree."""
     lines, table = read_table(text)
     header = keys_of(lines)
     unit, _, offset = header.get("AmplitudeUnit", "").partition(".")
@@ -39,8 +39,9 @@ def parse(text: str) -> list[Recording]:
     local = header.get("StartTime(GMT+08)", "")
     began = local or header.get("StartTime", "")
     start = moment_in(_MOMENT, began)
-    return [
-        Recording(
+    recordings = []
+    for i, label in enumerate(labels):
+        recording = Recording(
             label=label,
             dt=dt,
             values=values[:, i],
@@ -61,12 +62,12 @@ def parse(text: str) -> list[Recording]:
             notes=notes,
             header={"start": began, "instrument": header.get("InstrumentKind", "")},
         )
-        for i, label in enumerate(labels)
-    ]
+        recordings.append(recording)
+    return recordings
 
 
 def _labels(sequence: str) -> list[str]:
-    """Return the directions of the columns after time, all positive as they are named: "Time U(+); N(+); E(+)"."""
+    """Return the directions of the columns after time, all with positive sign: "Time U(+); N(+); E(+)"."""
     time, _, remainder = sequence[:200].strip().partition(" ")
     matches = [_LABEL.fullmatch(part) for part in remainder.split(";")]
     if time.lower() != "time" or None in matches:
@@ -75,7 +76,7 @@ def _labels(sequence: str) -> list[str]:
 
 
 def _peak(extremes: str) -> str:
-    """Return the larger of a column's extremes, which are written "4.094~   -4.353"; "" where they are not."""
+    """Return the larger of a column's extremes as written: "4.094~   -4.353" gives "-4.353"; "" for other texts."""
     match = _EXTREMES.fullmatch(extremes)
     return max(match.groups(), key=lambda extreme: abs(float(extreme))) if match else ""
 

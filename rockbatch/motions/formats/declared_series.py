@@ -1,7 +1,7 @@
-"""Series that a line of their own declares: count, interval and unit, then numbers in equal columns.
+"""Series declared by a line with count, interval and unit, then numbers in equal columns.
 
-So are written the volumes of Caltech, USC and CSMIP (Shakal & Huang 1985, OSMS 85-03): "1887 POINTS OF ACC DATA EQUALLY
-SPACED AT .020 SEC. IN UNITS CM/SEC/SEC". Corrected ones go on with velocities and displacements.
+The volumes of Caltech, USC and CSMIP have them (Shakal & Huang 1985, OSMS 85-03): "1887 POINTS OF ACC DATA EQUALLY SPACED AT
+.020 SEC. IN UNITS CM/SEC/SEC". Corrected volumes continue with velocities and displacements.
 """
 
 import re
@@ -30,10 +30,10 @@ def declares_series(lines: list[str], index: int) -> bool:
 
 
 def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Series], int]:
-    """Return the interval [s], the series by kind ("acc", "vel", "dis"), and where the lines after them begin.
+    """Return the interval [s], the series by kind ("acc", "vel", "dis"), and the index of the line after them.
 
-    ``lines[start]`` declares the accelerations; the others are there if their lines follow. Raises ``InputError`` with the
-    line where one is not whole.
+    ``lines[start]`` declares the accelerations; the others are optional. Raises ``InputError`` with the line of an
+    incomplete series.
     """
     _, dt, accelerations, end = _block(lines, start, ("acc",))
     series = {"acc": accelerations}
@@ -44,9 +44,9 @@ def declared_series(lines: list[str], start: int) -> tuple[float, dict[str, Seri
 
 
 def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str, float, Series, int]:
-    """Return what the series that ``lines[start]`` declares is, its interval [s], the values with their unit, and its end.
+    """Return the kind of the series declared by ``lines[start]``, its interval [s], the values with their unit, and its end.
 
-    Raises ``InputError`` where it is not one of those ``expected``.
+    Raises ``InputError`` unless its kind is one of those ``expected``.
     """
     line = match_line(_SPACING, lines, start, "… points of accel data equally spaced at … sec. (units: …)")
     quantity = (line["what"] or "acc").lower()
@@ -66,9 +66,9 @@ def _block(lines: list[str], start: int, expected: tuple[str, ...]) -> tuple[str
 def equal_columns(
     lines: list[str], start: int, npts: int, columns: tuple[int, int] | None = None
 ) -> tuple[Samples, int]:
-    """Return ``npts`` numbers from ``lines[start]`` on, shape (npts,), and where the lines after them begin.
+    """Return ``npts`` numbers from ``lines[start]`` on, shape (npts,), and the index of the line after them.
 
-    They stand in ``columns`` of a width and so many to a line, or in eight that the first line tells: 8F9.6 or 8F10.3.
+    ``columns`` are their width and number per line; by default eight, with the width from the first line: 8F9.6 or 8F10.3.
     """
     width, per_line = columns or (len(line_at(lines, start).rstrip()) // min(_PER_LINE, npts), _PER_LINE)
     if per_line < 1 or width < 2:

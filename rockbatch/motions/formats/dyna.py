@@ -30,7 +30,7 @@ def is_dyna(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; ``InputError`` with all that is wrong with the header, or the line."""
+    """Return the recording of a file; raise ``InputError`` with the missing keys, or the line that is wrong."""
     lines = lines_of(text)
     header = _header(lines)
     if header.get("NETWORK") in _TURKISH:
@@ -65,7 +65,7 @@ def parse(text: str) -> list[Recording]:
 
 
 def _header(lines: list[str]) -> dict[str, str]:
-    """Return the keys before the first line that has none, each with its value."""
+    """Return the values by keys of the lines before the first without a colon; raise ``InputError`` for other quantities."""
     end = next((i for i, line in enumerate(lines[:_MOST_KEYS]) if ":" not in line), len(lines))
     header = keys_of(lines[:end], "SAMPLING_INTERVAL_S", "NDATA", "UNITS", "STREAM", once=True)
     kind = header.get("DATA_TYPE", "ACCELERATION")

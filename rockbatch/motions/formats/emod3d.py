@@ -1,8 +1,8 @@
 """Text files of the program EMOD3D and of QuakeCoRE's ucgmsim: a component each, called .000, .090 or .ver.
 
 A line with station and direction, one with count, interval, hour, minute and second of the first sample, distance and two
-azimuths, then the values, six to a line between blanks. They do not tell their quantity: records are kept in g, simulations
-in cm/s² or, velocities, in cm/s. The layout is that of the programs' own files.
+azimuths, then the values, six to a line between blanks. They do not state their quantity: records are in g, simulations in
+cm/s² or, of velocities, in cm/s. The layout is that of the programs' own files.
 """
 
 from rockbatch.common.errors import NoUnit
@@ -28,7 +28,7 @@ def is_emod3d(head: bytes) -> bool:
 
 
 def read_emod3d(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component; ``InputError`` where the file is not whole, or nobody has stated its unit."""
+    """Return the component; raise ``InputError`` if the file is incomplete, or if the user has not stated its unit."""
     lines = lines_of(file.text)
     fields = read_header(lines, 0, _TEXT)
     npts, dt = count_and_step(fields, "npts", "dt")

@@ -1,7 +1,5 @@
-"""Numbers in the fixed columns of Fortran programs, which need no blank between them: ``-11024.7-9733.1``.
-
-And in lines of numbers between blanks whose count is known.
-"""
+"""Numbers in the fixed columns of Fortran programs, with or without blanks between them, ``-11024.7-9733.1``, and lines of a
+known count of numbers between blanks."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -9,6 +7,7 @@ from itertools import islice
 from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.common.errors import InputError, Truncated
 from rockbatch.motions.limits import HUGE
@@ -21,40 +20,37 @@ _END_MARK = re.compile(  # "-inf" is none
     re.IGNORECASE,
 )
 _MOST_MARKS, _LONGEST_MARK = 10, 300  # lines, and characters of one
-_ALIGNED = 20  # lines that do not have numbers in the same columns by chance
+_ALIGNED = 20  # lines whose numbers are hardly right-aligned by chance
 _WORD = re.compile(r"\S+")
-_MANY = 100  # numbers that do not have the same number of decimals by chance
+_MANY = 100  # numbers that hardly have the same number of decimals by chance
 _PRINTED = re.compile(r" *[-+]?\d*(?P<fraction>\.\d+)?(?P<power>[Ee][-+]\d\d?)?")
 _OTHER, _BLANK, _PLUS, _MINUS, _DIGIT, _POINT, _POWER = 0x00, 0x20, 0x40, 0x50, 0x60, 0x80, 0xA0
-_CODES = bytes(
-    _DIGIT + int(character) if character in "0123456789"
-    else {" ": _BLANK, "+": _PLUS, "-": _MINUS, ".": _POINT, "E": _POWER, "e": _POWER}.get(character, _OTHER)
-    for character in map(chr, range(256))
-)  # fmt: skip
-"""Of characters: three bits of their kind, which grow along a number, one of its sign, four of a digit."""
-_DIGITS = 15  # that a float holds exactly
-_POWERS = np.array([float(f"1e{power}") for power in range(23)])  # as it does these
+_KINDS = {" ": _BLANK, "+": _PLUS, "-": _MINUS, ".": _POINT, "E": _POWER, "e": _POWER}
+_KINDS |= {str(digit): _DIGIT + digit for digit in range(10)}
+_CODES = bytes(_KINDS.get(chr(i), _OTHER) for i in range(256))
+"""Codes of characters: three bits for their kind, which rises along a number, one for the sign, four for a digit."""
+_DIGITS = 15  # decimal digits that a float holds exactly
+_POWERS = np.array([float(f"1e{power}") for power in range(23)])  # exact, too
 LOOKED_AT = 1000
-"""Numbers at the end of a file that ``is_cut_short`` needs."""
+"""Numbers at the end of a file that ``is_cut_short`` reads."""
 
 
 def lines_of(text: str) -> list[str]:
-    """Return the lines of a file with any of the three line ends, less what old programs write after the last one.
+    """Return the lines of a file with any line ends, without NULs, Ctrl-Z and line breaks at its end.
 
-    ``str.splitlines`` would also break at the control characters that Latin-1 texts may hold. Raises ``InputError`` for
-    a line that is longer than any of numbers, whose words would take thirty times its size.
+    ``str.splitlines`` would also break at control characters of Latin-1 texts. Raises ``InputError`` for a line longer than
+    any line of numbers: its words would take thirty times its size.
     """
     lines = text.rstrip("\x00\x1a\r\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    if (
-        len(text) > _LONGEST
-        and (too_long := next((i for i, line in enumerate(lines) if len(line) > _LONGEST), -1)) >= 0
-    ):
-        raise InputError(f"line {too_long + 1} has {len(lines[too_long]):,} characters; expected {_LONGEST:,} at most")
+    if len(text) > _LONGEST:
+        for number, line in enumerate(lines, 1):
+            if len(line) > _LONGEST:
+                raise InputError(f"line {number} has {len(line):,} characters; expected {_LONGEST:,} at most")
     return lines
 
 
 def without_end_marks(text: str) -> str:
-    """Return a text without lines at its end that mark the end of the numbers: "*** End Data ***", "*ENDDATA", "EOF", "====="."""
+    """Return a text without end marks in its last lines: "*** End Data ***", "*ENDDATA", "EOF", "====="."""
     for _ in range(_MOST_MARKS):
         text = text.rstrip()
         last = text[-_LONGEST_MARK:].splitlines()[-1:]
@@ -65,9 +61,9 @@ def without_end_marks(text: str) -> str:
 
 
 def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, int]]) -> list[T]:
-    """Return the channels of a file: ``channel`` reads the one that begins at a line, and tells where it ends.
+    """Return the channels of a file: ``channel`` takes the lines and an index, and returns the channel and its end.
 
-    Raises ``InputError`` for a file without any.
+    Raises ``InputError`` for a file without channels.
     """
     lines = lines_of(text)
     channels = []
@@ -84,10 +80,10 @@ def one_after_another(text: str, channel: Callable[[list[str], int], tuple[T, in
 
 
 def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_line: int) -> tuple[Samples, int]:
-    """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and where the lines after them begin.
+    """Return ``count`` numbers from ``lines[first]`` on, shape (count,), and the index of the line after them.
 
-    There are ``per_line`` of ``width`` characters each: every line is full but the last, which holds the rest and nothing
-    more. Raises ``InputError`` with the line for anything else; nothing is allocated before the lines are there.
+    There are ``per_line`` of ``width`` characters each: every line is full but the last, which has exactly the rest. Raises
+    ``InputError`` with the line for anything else, before memory is allocated for more numbers than there are lines.
     """
     needed = -(-count // per_line)
     if len(lines) - first < needed:
@@ -111,7 +107,7 @@ def fixed_numbers(lines: Sequence[str], first: int, count: int, width: int, per_
 def _numbers(
     lines: Sequence[str], first: int, count: int, per_line: int, fields: Callable[[str, int, int], list[str]]
 ) -> Samples:
-    """Return the numbers of lines that begin with number ``first``; ``fields`` takes a line, its index, and how many it has."""
+    """Return the numbers of lines, the first of index ``first``; ``fields`` splits a line, given its index and count."""
     aligned = aligned_numbers(lines, len(lines[0]) // min(per_line, count)) if count else None
     if aligned is not None and len(aligned) == count and (np.abs(aligned) < HUGE).all():
         return aligned
@@ -120,7 +116,7 @@ def _numbers(
         place = i * per_line
         row = fields(line, first + i, min(per_line, count - place))
         try:
-            numbers = list(map(float, row))  # as nearly all are written
+            numbers = list(map(float, row))  # suffices for all but Fortran's D exponents
         except ValueError:
             numbers = [np.nan]
         if "_" in line or not sum(map(abs, numbers)) < HUGE:
@@ -130,9 +126,10 @@ def _numbers(
 
 
 def aligned_numbers(lines: Sequence[str], width: int) -> Samples | None:
-    """Return the numbers of lines in columns of one ``width``, all printed as the first one: F8.3, E15.7; ``None`` for others.
+    """Return the numbers of lines in columns of one ``width``, all in the format of the first: F8.3, E15.7; else ``None``.
 
-    A decimal of up to 15 digits, times or over a power of ten up to 22, is rounded once, as by ``float`` (Clinger, 1990).
+    They equal those of ``float``: a decimal of up to 15 digits, times or over a power of ten up to 22, is rounded once
+    (Clinger, 1990). All columns are parsed at once, digit by digit.
     """
     full, text = len(lines[0]), "".join(lines)
     printed = _PRINTED.fullmatch(text[:width]) if width else None
@@ -143,13 +140,8 @@ def aligned_numbers(lines: Sequence[str], width: int) -> Samples | None:
     if power > _DIGITS or not set(map(len, lines[:-1])) <= {full}:
         return None
     codes = np.frombuffer(text.encode().translate(_CODES), np.uint8).reshape(-1, width).T.copy()
-    kinds, digits = codes & 0xE0, codes & 0x0F
-    whole, tail = kinds[:point], kinds[point:]
-    if not (
-        ((whole > _OTHER) & (whole <= _DIGIT)).all() and (whole[1:] >= whole[:-1]).all()
-        and ((whole == _PLUS).sum(axis=0) <= 1).all() and (tail == tail[:, :1]).all()
-        and (point < width or (whole[-1] == _DIGIT).all())
-    ):  # fmt: skip
+    digits = codes & 0x0F
+    if not _are_printed_alike(codes & np.uint8(0xE0), point):
         return None
     values, exponents = np.zeros(codes.shape[1]), np.zeros(codes.shape[1], dtype=int)
     for row in (*digits[:point], *digits[point + 1 : power]):
@@ -165,8 +157,17 @@ def aligned_numbers(lines: Sequence[str], width: int) -> Samples | None:
     return np.where((codes[:point] == _MINUS).any(axis=0), -values, values)
 
 
+def _are_printed_alike(kinds: npt.NDArray[np.uint8], point: int) -> bool:
+    """Return whether kinds of characters, shape (width, numbers), are blanks, a sign and digits before ``point``, then equal."""
+    whole, tail = kinds[:point], kinds[point:]
+    in_order = ((whole > _OTHER) & (whole <= _DIGIT)).all() and (whole[1:] >= whole[:-1]).all()
+    one_sign = ((whole == _PLUS).sum(axis=0) <= 1).all()  # a minus has the kind of a plus
+    ends_in_digit = len(tail) > 0 or (whole[-1] == _DIGIT).all()
+    return bool(in_order and one_sign and (tail == tail[:, :1]).all() and ends_in_digit)
+
+
 def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
-    """Raise ``InputError`` for text from ``lines[end]`` on, after what a header has ``declared``: "the 40 values"."""
+    """Raise ``InputError`` for text from ``lines[end]`` on, after the ``declared`` numbers: "the 40 values"."""
     number = next((i for i in range(end, len(lines)) if lines[i].strip()), None)
     if number is not None:
         raise InputError(f'line {number + 1}: found "{lines[number][:40]}" after {declared}')
@@ -175,8 +176,8 @@ def refuse_more(lines: Sequence[str], end: int, declared: str) -> None:
 def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) -> Samples:
     """Return ``count`` numbers between blanks from ``lines[first]`` to the end of the file, shape (count,).
 
-    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for
-    anything else; nothing is allocated before the lines are there.
+    Every line has ``per_line`` of them but the last, which has the rest. Raises ``InputError`` with the line for anything
+    else, before memory is allocated for more numbers than there are lines.
     """
     needed = -(-count // per_line)
     end = next((i for i in range(len(lines), first, -1) if lines[i - 1].strip()), first)
@@ -202,16 +203,16 @@ def spaced_numbers(lines: Sequence[str], first: int, count: int, per_line: int) 
 
 
 def _ends_within_a_column(lines: Sequence[str], per_line: int) -> bool:
-    """Return whether the last number ends before its column does, where those of the lines before stand right-aligned.
+    """Return whether the last number ends before its column, given that the lines before are right-aligned.
 
-    So a whole number that has lost digits is found, which has no point.
+    This finds a file cut within a whole number, whose lost digits ``is_cut_short`` cannot count.
     """
     *full, last = ([match.end() for match in _WORD.finditer(line)] for line in lines[-_ALIGNED - 1 :])
     return per_line > 1 and len(full) > 1 and full.count(full[0]) == len(full) and last[-1] < full[0][len(last) - 1]
 
 
 def number_in(field: str, index: int) -> float:
-    """Return the number in a field of the line with index ``index``, Fortran's D exponents included; else ``InputError``."""
+    """Return the number in a field of ``lines[index]``, also with Fortran's D exponent; raise ``InputError`` for others."""
     try:
         if "_" in field:  # Python would read 1_0 as ten
             raise ValueError
@@ -224,10 +225,10 @@ def number_in(field: str, index: int) -> float:
 
 
 def is_cut_short(backwards: Iterable[str]) -> bool:
-    """Return whether the last number has fewer characters after its point than the others before it, which agree.
+    """Return whether the last number has fewer decimals than a hundred or more before it, which agree.
 
-    A file that was cut within it has all its values, and the last one wrong. The numbers come ``backwards``, and few of them
-    are looked at unless the last one is short.
+    A file cut within its last number has the right count, but a wrong value. The numbers come ``backwards``; only two are
+    read unless the last one is short.
     """
     tokens = islice(backwards, LOOKED_AT)
     last_tail, tail_before = next(tokens, ""), next(tokens, "")
@@ -239,5 +240,5 @@ def is_cut_short(backwards: Iterable[str]) -> bool:
 
 
 def _tail(token: str) -> int:
-    """Return the characters of a number from its point on."""
+    """Return the number of characters from a number's point on; its length + 1 without a point."""
     return len(token) - token.rfind(".")

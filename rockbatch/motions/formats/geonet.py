@@ -18,21 +18,14 @@ from rockbatch.motions.origin import origin_of
 _WIDTH, _PER_LINE = 8, 10
 _INTEGERS, _REALS, _DATA = 16, 20, 26  # lines of a component's header at which these begin
 _TITLE = re.compile(r"(?P<un>un)?corrected accelerogram\s+(?P<id>\S+)", re.IGNORECASE)
+_COUNT = r"(?i)number of points\s+(?P<npts>[0-9]{1,9})\s+duration\s+(?P<duration>[0-9.]{1,15})\s*s"
+_PEAK = r"(?i)acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)(?:\s+at\s+(?P<at>[0-9.]{1,15})\s*s)?"
 _OF_PEAK = r"peak\s+[-0-9.]{1,15}\s+"
 _TEXT = layout(
     (0, rf"(?i){_TITLE.pattern}", "(Un)corrected accelerogram …, after the last declared value"),
-    (
-        *(9, r"(?i)number of points\s+(?P<npts>[0-9]{1,9})\s+duration\s+(?P<duration>[0-9.]{1,15})\s*s"),
-        "Number of points … Duration … s",
-    ),
+    (9, _COUNT, "Number of points … Duration … s"),
     (12, r"(?i)component\s+(?P<label>\S+)", "Component …"),
-    (
-        *(
-            13,
-            r"(?i)acceleration:\s+peak\s+(?P<peak>[-0-9.]{1,15})\s+(?P<of_peak>\S+)(?:\s+at\s+(?P<at>[0-9.]{1,15})\s*s)?",
-        ),
-        "Acceleration: peak … mm/s/s",
-    ),
+    (13, _PEAK, "Acceleration: peak … mm/s/s"),
     (1, r"(?i)site\s+(?P<site>\S+)", "Site …"),
     (14, rf"(?i)^\s*velocity:\s+{_OF_PEAK}(?P<velocity>\S+)", ""),
     (15, rf"(?i)^\s*displacement:\s+{_OF_PEAK}(?P<displacement>\S+)", ""),
@@ -53,15 +46,15 @@ def is_geonet(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the components, one after the other; ``InputError`` with the line where the file is not whole."""
+    """Return the components, one after the other; raise ``InputError`` with the line if the file is incomplete."""
     return one_after_another(text, _component)
 
 
 def _component(lines: list[str], first_line: int) -> tuple[Recording, int]:
-    """Return the component whose title is ``lines[first_line]``, and where the next one begins.
+    """Return the component whose title is ``lines[first_line]``, and the index of the line after it.
 
     The header has the time of the recorder's first sample, the year to the hour at the end of its first two lines of
-    integers, minute and ms at the end of the fourth. Corrected data begin some s of padding earlier.
+    integers, minute and ms at the end of the fourth. Corrected data begin some seconds of padding earlier.
     """
     fields = read_header(lines, first_line, _TEXT)
     integers = [int(n) for n in fixed_numbers(lines, first_line + _INTEGERS, 40, _WIDTH, _PER_LINE)[0]]

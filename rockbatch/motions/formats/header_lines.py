@@ -1,4 +1,4 @@
-"""Lines of headers, by a layout or by keys, dates and times in them, and errors with the number of the line."""
+"""Lines of headers by a layout or by keys, and dates and times in them; errors have the number of the line."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from rockbatch.common.errors import InputError
 from rockbatch.motions.formats.fixed_width import number_in
 
-_LONGEST_OF_HEADER = 200  # characters of a header line that are looked at
+_LONGEST_OF_HEADER = 200  # characters of a header line that are read
 _YEAR_FIRST = re.compile(r"(?P<year>\d{4})[-/. ](?P<month>\d{1,2}|[A-Z]{3,})[-/. ](?P<day>\d{1,2})(?!\d)", re.ASCII)
 _DAY_FIRST = re.compile(
     r"(?P<day>\d{1,2})(?:[-/. ]| DEL? )(?P<month>\d{1,2}|[A-Z]{3,})(?:[-/., ]| DEL? )+(?P<year>\d{4})(?!\d)", re.ASCII
@@ -15,13 +15,13 @@ _DAY_FIRST = re.compile(
 CLOCK = r"(?P<hour>\d{1,2}):(?P<minute>[ \d]\d):(?P<second>[ \d]\d(?:\.\d{1,6})?)"
 """Pattern of a time of day; Fortran writes "03:16: 8.0"."""
 
-_MONTHS = {name: i for i, names in enumerate(
-    ("JAN ENE", "FEB", "MAR", "APR ABR", "MAY", "JUN", "JUL", "AUG AGO", "SEP SET", "OCT", "NOV", "DEC DIC"), start=1
-) for name in names.split()}  # fmt: skip
+_ENGLISH_MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
+_SPANISH_MONTHS = {"ENE": 1, "ABR": 4, "AGO": 8, "SET": 9, "DIC": 12}  # the others are as in English
+_MONTHS = {name: i for i, name in enumerate(_ENGLISH_MONTHS, start=1)} | _SPANISH_MONTHS
 
 
 def match_line(pattern: re.Pattern[str], lines: Sequence[str], index: int, expected: str) -> re.Match[str]:
-    """Return the match of ``pattern`` in ``lines[index]``; ``InputError`` where the line is another one, or none."""
+    """Return the match of ``pattern`` in ``lines[index]``; raise ``InputError`` for another line, or the file's end."""
     match = pattern.search(line_at(lines, index))
     if match is None:
         raise _mismatch(lines, index, f'"{expected}"')
@@ -29,6 +29,7 @@ def match_line(pattern: re.Pattern[str], lines: Sequence[str], index: int, expec
 
 
 def _mismatch(lines: Sequence[str], index: int, expected: str) -> InputError:
+    """Return the error for ``lines[index]``, or the end of the file, in place of the ``expected`` text."""
     line = f'"{line_at(lines, index).strip()[:60]}"' if index < len(lines) else "the end of the file"
     return InputError(f"line {index + 1}: found {line}; expected {expected}")
 
@@ -37,43 +38,41 @@ HeaderLine = tuple[int, re.Pattern[str], str]
 
 
 def layout(*lines: tuple[int, str, str]) -> tuple[HeaderLine, ...]:
-    """Return the layout of a header's text: of each line its offset from the first, its pattern and an example.
+    """Return the compiled layout of a header: for each line its offset from the first, its pattern and an example.
 
-    The third item is an example for messages; a line without one may be any other.
+    The example is for messages; lines with an empty example are optional.
     """
     return tuple((offset, re.compile(pattern), example) for offset, pattern, example in lines)
 
 
 def read_header(lines: Sequence[str], start: int, layout: Sequence[HeaderLine]) -> dict[str, str]:
-    """Return the groups of the lines of a header that begins at ``lines[start]``, "" for those that are not in them.
+    """Return the pattern groups of a header that begins at ``lines[start]``, "" for missing ones.
 
-    Raises ``InputError`` with the line where one that is needed is another one, or none.
+    Raises ``InputError`` with the first required line that does not match.
     """
     groups: dict[str, str] = {}
     for offset, pattern, expected in layout:
-        match = (
-            match_line(pattern, lines, start + offset, expected)
-            if expected
-            else pattern.search(line_at(lines, start + offset))
-        )
+        match = pattern.search(line_at(lines, start + offset))
+        if match is None and expected:
+            raise _mismatch(lines, start + offset, f'"{expected}"')
         groups |= {name: (match[name] or "" if match else "") for name in pattern.groupindex}
     return groups
 
 
 def past_mark(lines: Sequence[str], start: int, after: str) -> int:
-    """Return the index behind the mark "/&" at ``lines[start]``; ``InputError`` unless it stands there, ``after`` its data."""
+    """Return the index after the mark "/&" at ``lines[start]``; raise ``InputError`` unless it is there, ``after`` its data."""
     if not line_at(lines, start).startswith("/&"):
         raise _mismatch(lines, start, f'"/&" after {after}; fetch it again')
     return start + 1
 
 
 def search_lines(pattern: re.Pattern[str], lines: Sequence[str]) -> re.Match[str] | None:
-    """Return the match of ``pattern`` in the first of ``lines`` that it is in, as far as a header goes; ``None`` if in none."""
+    """Return the first match of ``pattern`` in ``lines``, each up to 200 characters; ``None`` without one."""
     return next((match for line in lines if (match := pattern.search(line[:_LONGEST_OF_HEADER]))), None)
 
 
 def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expected: str) -> tuple[int, re.Match[str]]:
-    """Return index and match of the first of ``most`` lines that ``pattern`` is in; ``InputError`` where it is in none."""
+    """Return index and match of the first of ``most`` lines that match ``pattern``; raise ``InputError`` without one."""
     for index in range(min(most, len(lines))):
         if match := pattern.search(line_at(lines, index)):
             return index, match
@@ -83,8 +82,7 @@ def line_with(pattern: re.Pattern[str], lines: Sequence[str], most: int, expecte
 def keys_of(lines: Sequence[str], *needed: str, once: bool = False) -> dict[str, str]:
     """Return the values of header lines ``KEY : value``, the first of each key; other lines are skipped.
 
-    Raises ``InputError`` with all ``needed`` keys that it lacks, or has without a value, and for a key that is there twice
-    instead of ``once``.
+    Raises ``InputError`` with all ``needed`` keys that are missing or without a value, and for a repeated key if ``once``.
     """
     header: dict[str, str] = {}
     for index in range(len(lines)):
@@ -100,13 +98,13 @@ def keys_of(lines: Sequence[str], *needed: str, once: bool = False) -> dict[str,
 
 
 def require(header: Mapping[str, str], *keys: str) -> None:
-    """Raise ``InputError`` with all the ``keys`` that a header lacks, or has without a value."""
+    """Raise ``InputError`` with all ``keys`` that are missing in a header or without a value."""
     if lacking := [key for key in keys if not header.get(key)]:
         raise InputError(f"the header lacks {', '.join(lacking)}")
 
 
 def number_of(header: Mapping[str, str], key: str) -> float:
-    """Return the number that a header states under ``key``; ``InputError`` where it has none."""
+    """Return the number under ``key`` of a header; raise ``InputError`` without one."""
     if key not in header:
         raise InputError(f"the header lacks {key}")
     try:
@@ -116,7 +114,7 @@ def number_of(header: Mapping[str, str], key: str) -> float:
 
 
 def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[int, float]:
-    """Return the number of samples and the sampling interval [s] under these keys; ``InputError`` for impossible ones."""
+    """Return the number of samples and the sampling interval [s] under two keys; raise ``InputError`` for impossible ones."""
     npts, dt = number_of(header, count), number_of(header, step)
     if npts != int(npts) or npts < 2 or not 0 < dt < 10:
         raise InputError(f"the header says {npts:g} values every {dt:g} s; expected a whole number and an interval")
@@ -124,14 +122,15 @@ def count_and_step(header: Mapping[str, str], count: str, step: str) -> tuple[in
 
 
 def line_at(lines: Sequence[str], index: int) -> str:
-    """Return ``lines[index]`` as far as a header goes; empty after the last line."""
+    """Return ``lines[index]`` up to 200 characters; "" after the last line."""
     return lines[index][:_LONGEST_OF_HEADER] if index < len(lines) else ""
 
 
 def date_in(text: str) -> tuple[int, int, int] | None:
-    """Return year, month and day of a date such as "2000/07/21", "21/JUL/2000" or "21 de julio de 2000"; ``None`` if none.
+    """Return year, month and day of a text that begins with a date; ``None`` for others.
 
-    The day stands before the month where the year is last. Months may be English or Spanish.
+    "2000/07/21", "21/JUL/2000", "21 de julio de 2000": if the year is last, the day is first. Months may be English or
+    Spanish.
     """
     text = " ".join(text[:_LONGEST_OF_HEADER].upper().split())
     match = _YEAR_FIRST.match(text) or _DAY_FIRST.match(text)
@@ -142,7 +141,7 @@ def date_in(text: str) -> tuple[int, int, int] | None:
 
 
 def moment_of(groups: Mapping[str, str]) -> float | None:
-    """Return the time in UTC [s since 1970] of the groups ``year`` to ``second``; ``None`` if they are empty, or no time."""
+    """Return the time [s since 1970, UTC] of the groups ``year`` to ``second``; ``None`` if they are no time."""
     try:
         year, month, day, hour, minute = (int(groups[name]) for name in ("year", "month", "day", "hour", "minute"))
         return moment(year, month, day, hour, minute, float(groups["second"].replace(",", ".")))
@@ -151,13 +150,13 @@ def moment_of(groups: Mapping[str, str]) -> float | None:
 
 
 def moment_in(pattern: re.Pattern[str], text: str) -> float | None:
-    """Return the time in UTC [s since 1970] that a text begins with; ``None`` if it does not match the ``pattern``."""
+    """Return the time [s since 1970, UTC] at the beginning of a text by a ``pattern``; ``None`` without a match."""
     match = pattern.match(text)
     return moment_of(match.groupdict()) if match else None
 
 
 def moment(year: int, month: int, day: int, hour: int, minute: int, second: float) -> float | None:
-    """Return a time in UTC [s since 1970]; ``None`` for an impossible date."""
+    """Return a date and time in UTC as [s since 1970]; ``None`` for an impossible one."""
     try:
         whole = datetime(year, month, day, hour, minute, tzinfo=UTC).timestamp()
     except (ValueError, OverflowError):

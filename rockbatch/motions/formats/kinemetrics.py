@@ -1,4 +1,4 @@
-"""Kinemetrics' .evt (K2, Etna): read by ObsPy's reader of that name, in m/s² by the full scale and sensitivity of its header."""
+"""Kinemetrics .evt files (K2, Etna), read by ObsPy, in m/s² by the full scale and sensitivity in their header."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ __all__ = ["is_evt", "read_evt"]
 
 
 def read_evt(file: RecordFile) -> list[Component | Unusable]:
-    """Return one component per channel of a file, whose direction it does not state."""
+    """Return a component per channel of a file, each of unknown direction."""
     stream = read_stream(file.data, "KINEMETRICS_EVT")
     recordings = []
     for number, trace in enumerate(stream, start=1):

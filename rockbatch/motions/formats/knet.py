@@ -1,7 +1,7 @@
 """K-NET and KiK-net (NIED, Japan): one component per file, counts with their scale in the header.
 
-Seventeen lines of text, then eight counts to a line. The time of the first sample is 15 s before the stated one, the delay of
-the recorders, and nine hours ahead of UTC. The stated peak is that without the offset.
+Seventeen lines of text, then eight counts to a line. The first sample is 15 s before the stated time, by the delay of the
+recorders, which is nine hours ahead of UTC. The stated peak is without the offset.
 """
 
 from datetime import UTC, datetime
@@ -40,7 +40,7 @@ def is_knet(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
+    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
     lines = lines_of(text)
     quake, start = moment_of(read_header(lines, 0, _EVENT)), moment_of(header := read_header(lines, 0, _TEXT))
     day = "" if quake is None else datetime.fromtimestamp(quake - _JAPAN, UTC).strftime("%Y-%m-%d %H:%M")

@@ -1,11 +1,11 @@
-"""MiniSEED: counts, which a StationXML file in the same folder, or the study, turns into accelerations."""
+"""MiniSEED: counts, converted to accelerations by StationXML in the same folder, or by the study."""
 
 import re
 from collections.abc import Container, Iterable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rockbatch.common.errors import InputError, Truncated, Unstated
 from rockbatch.common.grouping import grouped
@@ -14,7 +14,7 @@ from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions import stationxml
 from rockbatch.motions.component import Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
+from rockbatch.motions.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.formats.with_obspy import read_stream
 from rockbatch.motions.motion import Finding, Samples, Unusable
 from rockbatch.motions.orientation import is_clock, not_acceleration, orientation_of
@@ -26,24 +26,21 @@ _YEARS = 1900, 2100
 _STATED = "sensitivity = … (counts per m/s²) in the study, or for this file in motions.toml"
 _MOST_NAMED = 5  # of the .xml files that could not be read
 _MOST_PIECES = 1000  # of channels in a file: a network of three hundred stations
-_APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: more lies between two events
-_BLOCK = {  # of a fixed header: its fields, as numpy.dtype has them
-    "names": ["number", "quality", "codes", "year", "day", "hour", "minute", "second", "fraction", "npts"],
-    "formats": ["S6", "S1", "S12", "u2", "u2", "u1", "u1", "u1", "u2", "u2"],
-    "offsets": [0, 6, 8, 20, 22, 24, 25, 26, 28, 30],
-}
+_APART, _LEAST_APART = 3.0, 60.0  # times the longest piece of a channel, and seconds: longer gaps separate two events
+_BLOCK_FIELDS = ["number", "quality", "codes", "year", "day", "hour", "minute", "second", "fraction", "npts"]
+_BLOCK_FORMATS = ["S6", "S1", "S12", "u2", "u2", "u1", "u1", "u1", "u2", "u2"]
+_BLOCK_OFFSETS = [0, 6, 8, 20, 22, 24, 25, 26, 28, 30]  # bytes, in the fixed header of a block
 _BROKEN_OFF = (
     Finding(
         "time of blocks",
-        "a block goes on from the one before by its number, but not by its time: check whether the file "
-        "holds two events",
+        "a block follows the one before by its number, but not by its time: check whether the file holds two events",
         gross=True,
     ),
 )
 
 
 def is_miniseed(head: bytes) -> bool:
-    """Return whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume, which has control headers before."""
+    """Return whether the first bytes are those of a MiniSEED 2 record, or of a SEED volume with control headers."""
     if re.match(rb"[0-9]{6}V 0(?:05|08|10)[0-9]{4}", head):
         return True
     if re.match(rb"[0-9 ]{6}[DRQM][ \x00][ -~]{12}", head) is None:  # sequence number, quality, codes
@@ -53,10 +50,10 @@ def is_miniseed(head: bytes) -> bool:
 
 
 def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
-    """Return one component per channel and event; a channel that cannot be used is an ``Unusable`` beside the others.
+    """Return a component per channel and event; an unusable channel becomes an ``Unusable`` beside the others.
 
-    A gap of more than a minute, and of three times the longest piece of a channel, lies between two events; a
-    shorter one is a fault, as are overlaps.
+    A gap longer than a minute, and than three times the longest piece of a channel, separates two events; a shorter one is
+    a fault, as are overlaps. Raises ``InputError`` for a cut file, or one with too many pieces.
     """
     stream = read_stream(file.data, "MSEED")
     lengths = {trace.stats.mseed.record_length for trace in stream}
@@ -68,13 +65,13 @@ def read_miniseed(file: RecordFile) -> list[Component | Unusable]:
         raise InputError(
             f"holds {len(stream)} pieces of channels; at most {_MOST_PIECES} are read: divide it by stations"
         )
-    return of_traces(file, stream, _broken_off(file.data, stream))
+    return components_of_traces(file, stream, _channels_broken_off(file.data, stream))
 
 
-def of_traces(
+def components_of_traces(
     file: RecordFile, traces: "Iterable[obspy.Trace]", broken: Container[str] = ()
 ) -> list[Component | Unusable]:
-    """Return one component per channel and event of traces in counts; those of ``broken`` channels say so."""
+    """Return a component per channel and event of traces in counts; those of ``broken`` channels have a finding."""
     segments = grouped(traces, lambda trace: str(trace.id))
     readings: list[Component | Unusable] = []
     for channel_id, of_channel in segments.items():
@@ -96,33 +93,39 @@ def of_traces(
     return readings
 
 
-def _broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
-    """Return the channels of which a block goes on from the one before by its number, but not by its time.
+def _channels_broken_off(data: bytes, stream: "obspy.Stream") -> set[str]:
+    """Return the channels in which a block follows the one before by its number, but not by its time.
 
-    Between two events numbers are left out, or begin anew. Files with blocks of several lengths are not looked at.
+    Between two events numbers are skipped, or begin anew. Files with blocks of several lengths are not checked.
     """
     lengths = {trace.stats.mseed.record_length for trace in stream}
     rates = {trace.id: trace.stats.sampling_rate for trace in stream}
     if len(lengths) > 1 or len(rates) == len(stream):
         return set()
-    block: Any = {**_BLOCK, "itemsize": lengths.pop()}
-    blocks = np.frombuffer(data, np.dtype(block).newbyteorder(stream[0].stats.mseed.byteorder))
+    block = np.dtype(
+        {
+            "names": _BLOCK_FIELDS,
+            "formats": _BLOCK_FORMATS,
+            "offsets": _BLOCK_OFFSETS,
+            "itemsize": lengths.pop(),
+        }
+    )
+    blocks = np.frombuffer(data, block.newbyteorder(stream[0].stats.mseed.byteorder))
     blocks = blocks[np.isin(blocks["quality"], [b"D", b"R", b"Q", b"M"]) & np.char.isdigit(blocks["number"])]
     broken = set[str]()
     for codes in np.unique(blocks["codes"]):
-        station, location, channel, network = (
-            codes[i:j].decode("latin-1").strip() for i, j in ((0, 5), (5, 7), (7, 10), (10, 12))
-        )
+        text = codes.decode("latin-1").ljust(12)
+        station, location, channel, network = (text[i:j].strip() for i, j in ((0, 5), (5, 7), (7, 10), (10, 12)))
         of_channel = blocks[blocks["codes"] == codes]
         channel_id = f"{network}.{station}.{location}.{channel}"
-        between = rates.get(channel_id, 0.0) * np.diff(_times(of_channel))  # samples; 0 of a channel of text
+        between = rates.get(channel_id, 0.0) * np.diff(_times(of_channel))  # samples; 0 for a channel of text
         goes_on = np.diff(of_channel["number"].astype(int)) == 1
         if (goes_on & (np.abs(between - of_channel["npts"][:-1]) > 1.0)).any():
             broken.add(channel_id)
     return broken
 
 
-def _times(blocks: "np.ndarray[Any, Any]") -> Samples:
+def _times(blocks: npt.NDArray[np.void]) -> Samples:
     """Return the times of the first samples of blocks [s since the last day of 1969], shape (blocks,)."""
     midnight = (blocks["year"].astype(int) - 1970).astype("M8[Y]").astype("M8[D]") + blocks["day"].astype(int)
     day, hour, minute = midnight.astype(float), blocks["hour"].astype(float), blocks["minute"].astype(float)
@@ -130,7 +133,7 @@ def _times(blocks: "np.ndarray[Any, Any]") -> Samples:
 
 
 def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
-    """Return the pieces of a channel by record: a gap far longer than the longest piece lies between two events."""
+    """Return the pieces of a channel by event, which a gap far longer than the longest piece separates."""
     ordered = sorted(traces, key=lambda trace: trace.stats.starttime.timestamp)
     longest = max(trace.stats.endtime - trace.stats.starttime for trace in ordered)
     events = [[ordered[0]]]
@@ -144,7 +147,7 @@ def _events(traces: "list[obspy.Trace]") -> "list[list[obspy.Trace]]":
 
 
 def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -> Component:
-    """Return one channel as a component, by the StationXML beside it or by what the study states."""
+    """Return one channel as a component, its sensitivity by StationXML or by the study; raise ``InputError`` without one."""
     stats = trace.stats
     if not np.issubdtype(trace.data.dtype, np.number):
         raise InputError(f"{trace.id} holds text, not samples")
@@ -152,7 +155,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         raise InputError(f"{trace.id} is the recorder's clock, no ground motion")
     start = stats.starttime.timestamp
     entry = None if "sensitivity" in file.options.instead else _entry(file, trace)
-    covering = (epoch for epoch in file.inventories.of(trace.id) if epoch.start <= start < epoch.end)
+    covering = (epoch for epoch in file.inventories.epochs_of(trace.id) if epoch.start <= start < epoch.end)
     statements = _directions(trace.id, entry or next(covering, None))
     if entry is not None:
         assert entry.sensitivity
@@ -173,7 +176,7 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
         name=name,
         dt=float(stats.delta),
         acceleration=trace.data * (factor / sensitivity),
-        orientation=settled(statements, stats.channel),
+        orientation=decided_orientation(statements, stats.channel),
         statements=statements,
         station=f"{stats.network}.{stats.station}.{stats.location}.{stats.channel[:-1]}",
         source=source,
@@ -190,7 +193,10 @@ def _component(name: str, source: str, file: RecordFile, trace: "obspy.Trace") -
 
 
 def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Statement, ...]:
-    """Return what states the direction of a channel: its code, and azimuth and dip of StationXML; ``InputError`` if inclined."""
+    """Return the statements of a channel's direction: its code, and StationXML's azimuth and dip.
+
+    Raises ``InputError`` for an inclined channel.
+    """
     channel = channel_id.rpartition(".")[2]
     code = orientation_of(channel)
     statements = [Statement(Kind.CODE, f"channel {shown(channel)}", code)] if code else []
@@ -198,7 +204,7 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
         named = (("azimuth", entry.azimuth), ("dip", entry.dip))
         words = " and ".join(f"{name} {value:g}°" for name, value in named if value is not None)
         try:
-            angles = by_angles(channel, f"{words} in StationXML", entry.azimuth, entry.dip)
+            angles = angles_statement(channel, f"{words} in StationXML", entry.azimuth, entry.dip)
         except ValueError as error:
             raise InputError(f"{channel_id} is {error}") from None
         statements += [angles] if angles else []
@@ -206,11 +212,11 @@ def _directions(channel_id: str, entry: stationxml.Channel | None) -> tuple[Stat
 
 
 def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
-    """Return the epoch of StationXML that gives a channel's sensitivity; ``None`` if none does.
+    """Return the epoch of StationXML with a channel's sensitivity; ``None`` without one.
 
-    Raises ``InputError`` where two give another one, unless the study states which it is.
+    Raises ``InputError`` if two contradict each other; then ``None`` if the study states the sensitivity.
     """
-    epochs = file.inventories.of(trace.id)
+    epochs = file.inventories.epochs_of(trace.id)
     start, end = trace.stats.starttime.timestamp, trace.stats.endtime.timestamp
     if not any(epoch.start <= start < epoch.end for epoch in epochs):
         return None
@@ -227,7 +233,7 @@ def _entry(file: RecordFile, trace: "obspy.Trace") -> stationxml.Channel | None:
 
 def _without_sensitivity(file: RecordFile, trace: "obspy.Trace") -> Unstated:
     """Return the refusal of counts that no StationXML covers, with the files of StationXML that were not read."""
-    stats, epochs = trace.stats, file.inventories.of(trace.id)
+    stats, epochs = trace.stats, file.inventories.epochs_of(trace.id)
     refused = ", ".join(file.inventories.refused[:_MOST_NAMED])
     unread = f" (not read: {refused})" if refused else ""
     if epochs:

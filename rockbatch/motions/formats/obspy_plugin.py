@@ -1,4 +1,4 @@
-"""Readers as ObsPy waveform plugins: what ObsPy hands over becomes bytes, what was read a Stream.
+"""Readers as ObsPy waveform plugins, from a path or file-like object to a Stream.
 
 A format's module makes its two entry points by ``is_x, read_x = plugin("X", …)``; pyproject.toml registers them.
 """
@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 from rockbatch.common.errors import InputError, placed
 from rockbatch.common.lazy import obspy
@@ -16,24 +16,24 @@ from rockbatch.motions.formats.recording import Recording, contradictions_of, le
 from rockbatch.motions.record_file import text_of
 
 HEAD = 4096
-"""Bytes that a format is known by."""
+"""Number of first bytes by which formats are recognised."""
 
 FileLike = str | os.PathLike[str] | BinaryIO
 
 
-def first_bytes(filename: Any) -> bytes:
-    """Return the first bytes of a path or file-like object, which stays where it is; none of anything else.
+def first_bytes(filename: FileLike) -> bytes:
+    """Return the first bytes of a path or file-like object, without moving its position; b"" for anything else.
 
-    Never raises: ObsPy hands over whatever it got while it looks for a format.
+    Never raises: ObsPy passes on whatever it was given while it searches for a format.
     """
     try:
-        if hasattr(filename, "read"):
+        if not isinstance(filename, str | os.PathLike):
             position = filename.tell()
             try:
                 return bytes(filename.read(HEAD))
             finally:
                 filename.seek(position)
-        with open(os.fspath(filename), "rb") as file:  # open() takes a number for an open file
+        with open(os.fspath(filename), "rb") as file:
             return file.read(HEAD)
     except Exception:
         return b""
@@ -48,19 +48,19 @@ def name_and_bytes(filename: FileLike) -> tuple[str, bytes]:
 
 def plugin(
     name: str, matches: Callable[[bytes], bool], parse: Callable[[str], Sequence[Recording]]
-) -> tuple[Callable[[Any], bool], Callable[..., "obspy.Stream"]]:
+) -> tuple[Callable[[FileLike], bool], Callable[..., "obspy.Stream"]]:
     """Return ObsPy's ``isFormat`` and ``readFormat`` of the format ``name``, by its check and its parser.
 
-    ``readFormat`` raises ``InputError``, with the file's name in front, for files that cannot be used. Data stay
-    in the file's unit, which stands in ``stats`` under the format's name beside what else the header says.
+    ``readFormat`` raises ``InputError``, beginning with the file's name, for unusable files. Data stay in the file's unit,
+    which is in ``stats`` under the format's name with the other facts of the header.
     """
 
-    def is_format(filename: Any) -> bool:
-        """Return whether a path or a file-like object holds a file of this format; never raises."""
+    def is_format(filename: FileLike) -> bool:
+        """Return whether a path or file-like object is a file of this format; never raises."""
         return matches(first_bytes(filename))
 
-    def read_format(filename: FileLike, headonly: bool = False, **kwargs: Any) -> "obspy.Stream":
-        """Read a file of this format into an ObsPy Stream, one Trace per channel."""
+    def read_format(filename: FileLike, headonly: bool = False, **kwargs: object) -> "obspy.Stream":
+        """Return a file of this format as an ObsPy Stream, with a Trace per channel; ObsPy's other arguments are ignored."""
         place, data = name_and_bytes(filename)
         try:
             recordings = parse(text_of(data))
@@ -73,7 +73,7 @@ def plugin(
 
 
 def _warn_of_contradictions(place: str, recordings: Sequence[Recording]) -> None:
-    """Warn of recordings whose samples are not what their header states; of those in g and m/s² alike, in standard gravity."""
+    """Warn of recordings whose samples differ from their header's statements; of recordings in units of acceleration only."""
     for recording in recordings:
         try:
             factor = acceleration_factor(recording.unit)
@@ -84,7 +84,7 @@ def _warn_of_contradictions(place: str, recordings: Sequence[Recording]) -> None
 
 
 def _trace(name: str, recording: Recording, headonly: bool) -> "obspy.Trace":
-    """Return one channel as ObsPy has it."""
+    """Return one channel as an ObsPy Trace, without its samples if ``headonly``."""
     sensor = recording.sensor
     by_sensor = (sensor.network or "", letters(sensor.station), sensor.location or "", recording.label.upper())
     network, station, location, channel = recording.codes or by_sensor

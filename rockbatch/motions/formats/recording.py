@@ -1,4 +1,4 @@
-"""One channel as its file has it, in its own unit, and the way from there to a component in m/s²."""
+"""One channel of a file in its own unit, and its conversion to a component in m/s²."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -23,49 +23,49 @@ Series = tuple[Samples, str]
 class Recording:
     """One channel of a file."""
 
-    label: str  # its direction, as the file has it: "N10E", "Up", "HNZ"
+    label: str  # its direction, as in the file: "N10E", "Up", "HNZ"
     dt: float  # sampling interval [s]
     values: Samples  # accelerations in unit, shape (npts,)
-    unit: str  # as units.acceleration_factor understands it
-    station: str = ""  # what the channels of one station share, other versions of the same record not included
-    orientation: Orientation | None = None  # where it is not what the label says
-    stated_by: Kind = Kind.HEADER  # what the label is from
+    unit: str  # as understood by units.acceleration_factor
+    station: str = ""  # key shared by the channels of one station, but not by other versions of the same record
+    orientation: Orientation | None = None  # if it differs from that of the label
+    stated_by: Kind = Kind.HEADER  # source of the label
     codes: tuple[str, str, str, str] | None = None  # network, station, location, channel for ObsPy; else of the sensor
     start: float | None = None  # time of the first sample [s since 1970, UTC]
-    processed: bool | None = None  # whether the agency has corrected it; None where the file does not say
+    processed: bool | None = None  # whether the agency has corrected it; None if the file does not say
     raw: bool | None = None  # whether the instrument's offset may still be in it; None: if it is not processed
-    sensor: Sensor = UNKNOWN_SENSOR  # as the header states it
-    event: str = ""  # what the header says of it
-    initial: Initial | None = None  # the ground's state at the first sample, where the header has it
-    velocities: Series | None = None  # beside the accelerations
-    displacements: Series | None = None  # likewise
-    stated: tuple[Stated, ...] = ()  # what else the header states of the samples
-    counts: bool = False  # whether the file has counts, and their scale: no unit of its own
-    as_read: Samples | None = None  # accelerations before they were interpolated, which have the stated peak and count
-    notes: tuple[str, ...] = ()  # what was done to the data
-    origin: Origin = UNKNOWN_ORIGIN  # what the header calls event and station
-    header: dict[str, str] = field(default_factory=dict)  # what else it says, for ObsPy
+    sensor: Sensor = UNKNOWN_SENSOR  # by the header
+    event: str = ""  # by the header
+    initial: Initial | None = None  # the ground's state at the first sample, by the header
+    velocities: Series | None = None  # in the same file
+    displacements: Series | None = None  # in the same file
+    stated: tuple[Stated, ...] = ()  # the header's statements about the samples
+    counts: bool = False  # whether the file has counts with a scale, and so no unit of its own
+    as_read: Samples | None = None  # accelerations before interpolation, with the stated peak and count
+    notes: tuple[str, ...] = ()  # on processing
+    origin: Origin = UNKNOWN_ORIGIN  # event and station in words, by the header
+    header: dict[str, str] = field(default_factory=dict)  # further facts, for ObsPy
 
 
 def reader(parse: Callable[[str], Sequence[Recording]]) -> Callable[[RecordFile], list[Component | Unusable]]:
-    """Return the reader of a format of text: the recordings that ``parse`` makes of it, as components."""
+    """Return the reader of a text format whose files ``parse`` turns into recordings."""
 
     def read(file: RecordFile) -> list[Component | Unusable]:
-        """Return the components of a file in m/s², or ``InputError`` with the line where it is not whole."""
+        """Return the components of a file in m/s²; raise ``InputError`` with the line if it is incomplete."""
         return to_components(file, parse(file.text))
 
     return read
 
 
 def letters(text: str, most: int = 5) -> str:
-    """Return the first ASCII letters and digits of a text, as a code of SEED."""
+    """Return the first ``most`` ASCII letters and digits of a text, as a SEED code."""
     return "".join(c for c in text if c.isascii() and c.isalnum())[:most]
 
 
 def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Component | Unusable]:
     """Return the channels of ``file`` in m/s², named by its stem and, if there are several, their labels.
 
-    A channel whose unit is not understood is an ``Unusable`` beside the others.
+    A channel in an unknown unit becomes an ``Unusable`` beside the others.
     """
     readings: list[Component | Unusable] = []
     for recording in recordings:
@@ -80,7 +80,7 @@ def to_components(file: RecordFile, recordings: Sequence[Recording]) -> list[Com
 
 
 def _component(file: RecordFile, recording: Recording, name: str, source: str) -> Component:
-    """Return one channel as a component; ``InputError`` for a clock's, and for a unit that is not understood."""
+    """Return one channel as a component; raise ``InputError`` for the recorder's clock, and for an unknown unit."""
     if is_clock(recording.label):
         raise InputError(f'component "{recording.label}": the recorder\'s clock, no ground motion')
     orientation = recording.orientation or orientation_of(recording.label) or unknown(recording.label)
@@ -116,14 +116,14 @@ def _component(file: RecordFile, recording: Recording, name: str, source: str) -
 
 
 def contradictions_of(recording: Recording, factor: float, gravity: float) -> list[Finding]:
-    """Return how a recording's samples, which ``factor`` brings into m/s², differ from what its header states."""
+    """Return findings on samples, times ``factor`` in m/s², that differ from their header's statements."""
     as_read = recording.values if recording.as_read is None else recording.as_read
     sampled = Sampled(recording.values, recording.dt, recording.unit, factor, as_read)
     return contradictions(recording.stated, sampled, gravity)
 
 
 def _in_metres(series: Series | None) -> Samples | None:
-    """Return velocities in m/s, displacements in m; ``None`` if missing or in an unknown unit."""
+    """Return velocities in m/s, or displacements in m; ``None`` if missing or in an unknown unit."""
     if series is None or (factor := length_factor(series[1])) is None:
         return None
     return series[0] * factor

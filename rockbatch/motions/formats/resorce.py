@@ -1,7 +1,7 @@
 """RESORCE files (.cor.acc), the reference database of European records: one corrected component in m/s².
 
-Nine lines of ``KEY : value`` and one with the unit, then the accelerations, five to a line of 14 characters each, which
-touch. The layout is that of the database's own files.
+Nine lines of ``KEY : value`` and one with the unit, then the accelerations, five to a line of 14 characters each, without
+blanks between them. The layout is that of the database's own files.
 """
 
 import re
@@ -24,7 +24,7 @@ def is_resorce(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; ``InputError`` with the line, or the key, where it is not whole."""
+    """Return the recording of a file; raise ``InputError`` with the line or the missing key if it is incomplete."""
     lines = lines_of(text)
     index, unit = line_with(_UNIT, lines, 20, "Acceleration time series in m/s/s")
     header = keys_of(lines[:index], *_NEEDED)

@@ -1,4 +1,4 @@
-"""SAC (binary): one component, in a unit that its header does not tell reliably.
+"""SAC (binary): one component, in a unit that its header does not state reliably.
 
 A header of 70 floats and 40 integers of four bytes and 24 words of eight letters, in either byte order, then the samples as
 floats. Words whose value is -12345 are undefined. Source: SAC's manual, "SAC data file format".
@@ -14,7 +14,7 @@ from rockbatch.common.errors import InputError, NoUnit, Truncated
 from rockbatch.common.showing import shown
 from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.component import FIRST_YEAR, Component, Sensor
-from rockbatch.motions.evidence import Kind, Statement, by_angles, settled
+from rockbatch.motions.evidence import Kind, Statement, angles_statement, decided_orientation
 from rockbatch.motions.formats.header_lines import moment
 from rockbatch.motions.formats.stated import Sampled, Stated, contradictions
 from rockbatch.motions.motion import Samples, Unusable
@@ -24,12 +24,12 @@ from rockbatch.motions.places import depth_as_place
 from rockbatch.motions.record_file import RecordFile, no_acceleration
 
 _DAY = 86400.0  # s
-_STALE = (1.0, 1.0)  # limits of extremes: a factor of 2
+_STALE = (1.0, 1.0)  # limits for DEPMIN and DEPMAX, which some programs do not update: a factor of 2
 _KINDS = {6: "displacements (IDEP 6)", 7: "velocities (IDEP 7)"}
 _HEADER, _FLOATS, _INTEGERS, _TEXTS = 632, 70, 40, 24  # bytes; words
 _VERSION_AT = 76 * 4  # bytes: NVHDR, 6 or 7
 _UNDEFINED = -12345
-_NUMBERS = {  # word, the least and the largest value; floats are the first of them
+_NUMBERS = {  # index of the word, least and largest value; floats come first
     "DELTA": (0, 1e-5, 1.0),
     "DEPMIN": (1, -math.inf, math.inf),
     "DEPMAX": (2, -math.inf, math.inf),
@@ -60,7 +60,7 @@ def is_sac(head: bytes) -> bool:
 
 
 def _byte_order(data: bytes) -> str | None:
-    """Return the byte order in which the version of the header is one."""
+    """Return the byte order, "<" or ">", in which the header's version is 6 or 7; None without one."""
     whole = len(data) >= _VERSION_AT + 4
     return next(
         (order for order in "<>" if whole and np.frombuffer(data, f"{order}i4", 1, _VERSION_AT)[0] in (6, 7)), None
@@ -68,10 +68,10 @@ def _byte_order(data: bytes) -> str | None:
 
 
 def read_sac(file: RecordFile) -> list[Component | Unusable]:
-    """Return the component of a SAC file, in the unit that the study states: data / sensitivity × unit.
+    """Return the component of a SAC file in the study's unit: data / sensitivity × unit; raise ``UnstatedError`` without.
 
-    SAC's own entry for the kind of data (IDEP) says no unit: files in g that claim nm/s² are common. Velocities and
-    displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
+    SAC's entry for the kind of data (IDEP) is no statement of the unit: files in g that claim nm/s² are common. Velocities
+    and displacements are refused by it, and by the channel of a seismometer, unless a manifest states the file's unit.
     """
     options = file.options
     numbers, names, samples = _parsed(file.data)
@@ -89,7 +89,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
     statements = _directions(channel, numbers)
     unit = options.unit or "m/s2"
     factor = acceleration_factor(unit, file.gravity) / (options.sensitivity or 1.0)
-    dt = float(str(np.float32(numbers["DELTA"])))  # the shortest decimal that a header of four bytes may mean
+    dt = float(str(np.float32(numbers["DELTA"])))  # the shortest decimal with this float of four bytes: 0.01
     sampled = Sampled(samples, dt, unit if options.sensitivity is None else "counts", factor, samples)
     findings = contradictions(_statements(numbers), sampled, file.gravity)
     return [
@@ -97,7 +97,7 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
             name=file.stem,
             dt=dt,
             acceleration=samples * factor,
-            orientation=settled(statements, channel),
+            orientation=decided_orientation(statements, channel),
             statements=statements,
             station=".".join((network, station, location, channel[:-1])) if station else "",
             source=file.source,
@@ -115,9 +115,9 @@ def read_sac(file: RecordFile) -> list[Component | Unusable]:
 
 
 def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
-    """Return numbers and texts of the header by their names, those that are defined and "" for the others, and the samples.
+    """Return the header's defined numbers and its texts ("" if undefined) by name, and the samples, shape (npts,).
 
-    Raises ``InputError`` for words that cannot be, and for a file of another length.
+    Raises ``InputError`` for impossible numbers, and for a file of another length.
     """
     if len(data) < _HEADER:
         raise Truncated(f"holds {len(data)} bytes; a SAC header alone has {_HEADER}: the file is cut")
@@ -143,11 +143,11 @@ def _parsed(data: bytes) -> tuple[dict[str, float], dict[str, str], Samples]:
 
 
 def _statements(numbers: dict[str, float]) -> list[Stated]:
-    """Return what the header states of its samples: their times from B to E, and DEPMIN and DEPMAX, which some programs leave."""
+    """Return the header's statements about its samples: the duration from B to E, and the range from DEPMIN to DEPMAX."""
     statements = []
     if "B" in numbers and "E" in numbers:
         begins, ends = numbers["B"], numbers["E"]
-        rounded = float(np.spacing(np.float32(begins)) + np.spacing(np.float32(ends)))  # by four bytes
+        rounded = float(np.spacing(np.float32(begins)) + np.spacing(np.float32(ends)))  # of floats of four bytes
         statements.append(Stated("duration", f"{ends - begins:.6g}", within=abs(rounded)))
     if "DEPMIN" in numbers and "DEPMAX" in numbers and numbers["DEPMAX"] > numbers["DEPMIN"]:
         statements.append(Stated("range", f"{numbers['DEPMAX'] - numbers['DEPMIN']:.6g}", limits=_STALE))
@@ -155,7 +155,7 @@ def _statements(numbers: dict[str, float]) -> list[Stated]:
 
 
 def _start(numbers: dict[str, float]) -> tuple[float, str]:
-    """Return the time of the first sample [s since 1970, or B without a date] and its day; "" without a date."""
+    """Return the time of the first sample [s since 1970] and its day "2016-02-14"; B and "" without a date."""
     begins = numbers.get("B", 0.0)
     try:
         year, day, hour, minute, second, ms = (
@@ -171,17 +171,17 @@ def _start(numbers: dict[str, float]) -> tuple[float, str]:
 
 
 def _directions(channel: str, numbers: dict[str, float]) -> tuple[Statement, ...]:
-    """Return what states the direction: the channel, CMPAZ (from north) and CMPINC (from upward vertical) [degrees].
+    """Return the statements of direction: the channel, and CMPAZ (from north) with CMPINC (from upward vertical) [degrees].
 
-    Angles of 0° both are those of an upward component, and what programs write that do not set them. Those of an inclined
-    one state nothing.
+    If both angles are 0°, the component is upward, or its program did not set them. Inclined components have no statement
+    by angles.
     """
     code = orientation_of(channel)
     by_code = (Statement(Kind.CODE, f"channel {shown(channel)}", code),) if code else ()
     azimuth, inclination = numbers.get("CMPAZ"), numbers.get("CMPINC")
     words = ", ".join(f"{name} {numbers[name]:g}" for name in ("CMPAZ", "CMPINC") if name in numbers)
     try:
-        angles = by_angles(channel, words, azimuth, None if inclination is None else inclination - 90.0)
+        angles = angles_statement(channel, words, azimuth, None if inclination is None else inclination - 90.0)
     except ValueError:
         return by_code
     if angles is None:

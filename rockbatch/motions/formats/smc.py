@@ -1,8 +1,8 @@
 """USGS SMC files: one component, corrected or not, in cm/s².
 
-Eleven lines of text, six of integers (8I10) and ten of real numbers (5E15.7), as many comments as the integers
-say, then the values, which touch: ``1.5057E+0-2.2223E+0`` (8E10.4, or 5E14.7 where integer 47 says eight
-digits). Without a sampling rate they are pairs of time [s] and value, as digitised from film: they are interpolated.
+Eleven lines of text, six of integers (8I10) and ten of real numbers (5E15.7), comments counted by an integer, then the
+values without blanks between them: ``1.5057E+0-2.2223E+0`` (8E10.4, or 5E14.7 if integer 47 is 8). Without a sampling rate
+they are pairs of time [s] and value, digitised from film, and are interpolated.
 Source: USGS National Strong-Motion Program, "SMC-format data files" (2001).
 """
 
@@ -19,7 +19,7 @@ from rockbatch.motions.formats.time_steps import from_pairs
 from rockbatch.motions.motion import Samples
 from rockbatch.motions.origin import origin_of
 
-_UNIT = "cm/s2"  # which the format prescribes
+_UNIT = "cm/s2"  # by the format
 _INTEGERS, _REALS, _COMMENTS = 11, 17, 27  # lines at which these begin
 _TITLE = re.compile(r"^(?:(?P<kind>[0-6]) (?P<what>[A-Z]+(?: [A-Z]+)*)|\*)\s*$")
 _KINDS = {"1": "uncorrected", "2": "corrected"}
@@ -33,7 +33,7 @@ _DAY = 86400.0  # s
 
 
 def is_smc(head: bytes) -> bool:
-    """Return whether the first bytes are the header of an SMC file, of whatever kind of data."""
+    """Return whether the first bytes are the header of an SMC file, of any quantity."""
     lines = head.decode("latin-1").splitlines()
     return (
         len(lines) > _INTEGERS
@@ -43,7 +43,7 @@ def is_smc(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the recording of a file; ``InputError`` with the line where it is not whole."""
+    """Return the recording of a file; raise ``InputError`` with the line if it is incomplete."""
     lines = lines_of(text)
     title = read_header(lines, 0, _TEXT[:1])
     if title["kind"] not in _KINDS:
@@ -61,7 +61,7 @@ def parse(text: str) -> list[Recording]:
         raise InputError(f"line 18: found a sampling rate of {rate:g} Hz; expected 0.1 to 100000")
     numbers, end = fixed_numbers(lines, _COMMENTS + comments, npts, *((14, 5) if integers[46] == 8 else (10, 8)))
     refuse_more(lines, end, f"the {npts} values that line 14 declares")
-    dt, values, notes = _on_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
+    dt, values, notes = _from_film(numbers, number) if rate is None else (float(f"{1.0 / rate:.12g}"), numbers, ())
     year, day, hour, minute, second, ms = integers[1:7]
     start = None if unknown in (day, ms) else moment(year, 1, 1, hour, minute, second)
     extremes = [(peak, _real(lines, n - 1)) for n in (30, 32) if (peak := _real(lines, n))]
@@ -88,26 +88,29 @@ def parse(text: str) -> list[Recording]:
     ]
 
 
-def _on_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return interval [s], samples and notes of pairs of time [s] and value, which a header without a rate counts singly."""
+def _from_film(values: Samples, number: str) -> tuple[float, Samples, tuple[str, ...]]:
+    """Return interval [s], even samples and notes of pairs of time [s] and value, flattened in ``values``.
+
+    Raises ``NoRecordError`` for uneven times, since the corrected file of station ``number`` will do instead.
+    """
     try:
         if len(values) % 2:
             raise InputError(f"no sampling rate, so digitised from film: found {len(values)} numbers; expected pairs")
         return from_pairs(values.reshape(-1, 2), "no sampling rate, so digitised from film")
     except InputError as error:
         raise NoRecord(
-            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', number
+            f'{error}; or take the corrected file of this record ("2 CORRECTED ACCELEROGRAM")', station=number
         ) from None
 
 
 def _real(lines: list[str], n: int) -> str:
-    """Return real number ``n`` of the header, counted from 1, as it is written; "" if it is the first, which is unknown."""
+    """Return real number ``n`` of the header, counted from 1, as written; "" if it equals the first, the mark for unknown."""
     field = line_at(lines, _REALS + (n - 1) // 5)[15 * ((n - 1) % 5) :][:15].strip()
     return "" if field == line_at(lines, _REALS)[:15].strip() else field
 
 
 def _label(vertical: int, azimuth: int, unknown: int, text: str) -> str:
-    """Return the direction by the angle from the vertical and the azimuth [degrees], or as the text has it."""
+    """Return the direction by the angle from the vertical and the azimuth [degrees], else the text's; "Up" and "Down" so."""
     if vertical in _VERTICAL:
         return _VERTICAL[vertical]
     if vertical not in (90, unknown):

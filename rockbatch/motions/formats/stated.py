@@ -1,8 +1,8 @@
-"""What a header states of its samples beside what its reader needs, and whether the samples bear it out.
+"""Statements of headers about their samples beyond those a reader needs, and their comparison with the samples.
 
-A reader hands its header's statements over as they are printed (``Stated``); they are compared here, of whatever format.
-A stated value that differs by rounding, or by little, is remarked; by more it is a warning; by much, the record waits to be
-confirmed (``QUANTITIES``). A count that differs is an error: nobody can tell which samples are missing.
+Readers pass them on as printed (``Stated``). A stated value that differs by more than rounding gives a note if the difference is
+small, a warning if it is larger, and holds the record back until confirmed if it is gross (``QUANTITIES``). A different count is
+an error, since the missing samples are unknown.
 """
 
 import math
@@ -18,19 +18,19 @@ from rockbatch.common.units import acceleration_factor
 from rockbatch.motions.motion import Finding, Samples
 
 _PRINTED = re.compile(r"(?=.*\d)(?P<number>[-+]?\d*\.?(?P<decimals>\d*))(?:[EeDd](?P<power>[-+]?\d{1,3}))?")
-_NEARLY = 0.95  # of the peak: samples beyond may have been it before they were rounded, or filtered
-_CUT = 1.0  # s: what a stated duration that is rounded may differ, in whatever digits it is printed
+_NEARLY = 0.95  # of the peak: larger samples may have been the peak before rounding or filtering
+_CUT = 1.0  # s: difference of a rounded duration, in whatever digits it is printed
 
 
 @dataclass(frozen=True)
 class Stated:
-    """A statement of a header about its samples; without a number in its text it states nothing."""
+    """A statement of a header about its samples; ignored if its text is no number."""
 
-    quantity: str  # of QUANTITIES
-    text: str  # as it is printed, of any sign
-    unit: str = ""  # of a peak or a range; "" for that of the samples
-    begins: float = 0.0  # time of the first sample [s], where times count from another one
-    within: float = 0.0  # what it may be off besides its last digit, where its writer lost more
+    quantity: str  # key of QUANTITIES, or "count"
+    text: str  # as printed, of any sign
+    unit: str = ""  # of a peak or a range; "" for the unit of the samples
+    begins: float = 0.0  # time of the first sample [s], from the origin of its times
+    within: float = 0.0  # tolerance beyond its last digit, if its writer lost more
     limits: tuple[float, float] | None = None  # instead of those of the quantity
 
 
@@ -47,20 +47,20 @@ class Sampled:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """A quantity that headers state, what of it samples have, and what it may differ by rounding, and beyond."""
+    """A quantity in headers, its values in samples, and its tolerances by rounding and beyond."""
 
     words: str
-    has: Callable[[Sampled, Stated], Sequence[float]]
+    values: Callable[[Sampled, Stated], Sequence[float]]  # possible values, the closest of which is compared
     advice: str
-    limits: tuple[float, float]  # relative differences up to which it is remarked, and beyond which the record waits
-    unit: str = "s"  # "" for that of the samples, of whatever sign
-    digits: int = 1  # units of the last digit that is printed
-    share: float = 0.0  # of what the samples have
-    samples: int = 0
+    limits: tuple[float, float]  # relative differences: greatest for a note, least to hold the record back
+    unit: str = "s"  # "" for the unit of the samples, compared without sign
+    digits: int = 1  # tolerance in units of the last printed digit
+    share: float = 0.0  # tolerance relative to the value of the samples
+    samples: int = 0  # tolerance in sampling intervals
 
 
 def _peaks(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the peak of the samples with their offset and without it."""
+    """Return the peaks of the samples with and without their offset."""
     return [_largest(sampled.as_read - offset) for offset in (0.0, sampled.as_read.mean())]
 
 
@@ -69,14 +69,14 @@ def _largest(samples: Samples) -> float:
 
 
 def _times_of_peak(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the times of all samples that may have been the peak."""
+    """Return the times of all samples of 95 % of the peak or more, with or without offset."""
     either = [np.abs(sampled.values - offset) for offset in (0.0, sampled.values.mean())]
     places = np.flatnonzero(np.logical_or(*(samples >= _NEARLY * samples.max() for samples in either)))
     return list(stated.begins + sampled.dt * places)
 
 
 def _durations(sampled: Sampled, stated: Stated) -> list[float]:
-    """Return the duration, and the time of the end."""
+    """Return the duration and the time of the end [s]."""
     duration = sampled.dt * len(sampled.values)
     return [duration, stated.begins + duration]
 
@@ -108,23 +108,23 @@ QUANTITIES = {  # peaks in five digits, of 1.0000; times to a sample, durations 
 
 
 def contradictions(statements: Sequence[Stated], sampled: Sampled, gravity: float) -> list[Finding]:
-    """Return how the samples differ from what their header states; what is to be remarked only is without ``what``.
+    """Return findings on statements that the samples contradict; notes on small differences have an empty ``what``.
 
-    Raises ``InputError`` for a count that is another one.
+    Raises ``InputError`` for another count of samples.
     """
     findings = [_contradiction(stated, sampled, gravity) for stated in statements]
     return [finding for finding in findings if finding is not None]
 
 
 def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding | None:
-    """Return how the samples differ from a statement, if they do."""
+    """Return the finding on a statement that the samples contradict; None within its tolerances."""
     printed = stated.text.strip()
     number = _PRINTED.fullmatch(printed)
     if number is None:
         return None
     power = int(number["power"] or 0)
-    value, digit = (float(f"{n}e{e}") for n, e in ((number["number"], power), (1, power - len(number["decimals"]))))
-    if not math.isfinite(value):  # as of 9e999
+    value, digit = float(f"{number['number']}e{power}"), float(f"1e{power - len(number['decimals'])}")
+    if not math.isfinite(value):  # 9e999
         return None
     if stated.quantity == "count":
         if value != (npts := len(sampled.as_read)):
@@ -133,22 +133,23 @@ def _contradiction(stated: Stated, sampled: Sampled, gravity: float) -> Finding 
     quantity, scale = QUANTITIES[stated.quantity], 1.0
     if not quantity.unit:
         value = abs(value)
-    elif value == 0.0:  # not set
+    elif value == 0.0:  # programs write 0 for an unknown time
         return None
     if stated.unit:
         try:
             scale = sampled.factor / acceleration_factor(stated.unit, gravity)
-        except ValueError:  # a unit that is not understood states nothing
+        except ValueError:  # in an unknown unit there is nothing to compare
             return None
-    has = min((scale * has for has in quantity.has(sampled, stated)), key=lambda has: abs(has - value))
-    off = abs(has - value)
-    if off <= quantity.digits * digit + quantity.share * has + quantity.samples * sampled.dt + stated.within:
+    nearest = min((scale * x for x in quantity.values(sampled, stated)), key=lambda x: abs(x - value))
+    difference = abs(nearest - value)
+    rounding = quantity.digits * digit + quantity.share * nearest + quantity.samples * sampled.dt + stated.within
+    if difference <= rounding:
         return None
     unit = f" {quantity.unit or stated.unit or sampled.unit}".rstrip()
-    text = f"its header states {quantity.words} {printed}{unit}, and its samples have {has:.6g}{unit}"
+    text = f"its header states {quantity.words} {printed}{unit}, and its samples have {nearest:.6g}{unit}"
     noted, gross = stated.limits or quantity.limits
-    apart = off / max(min(abs(has), abs(value)), sys.float_info.min)
-    if apart <= noted:
+    relative = difference / max(min(abs(nearest), abs(value)), sys.float_info.min)
+    if relative <= noted:
         return Finding("", text)
-    cut = stated.quantity == "duration" and gross < math.inf and off > _CUT
-    return Finding(stated.quantity, f"{text}: {quantity.advice}", gross=apart > gross or cut)
+    cut = stated.quantity == "duration" and gross < math.inf and difference > _CUT
+    return Finding(stated.quantity, f"{text}: {quantity.advice}", gross=relative > gross or cut)

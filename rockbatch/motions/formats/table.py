@@ -1,4 +1,4 @@
-"""Text to a table of numbers: comment and header lines, and columns however a program or Excel separates them."""
+"""Tables of numbers in text: comment and header lines, and columns with the separators of programs and Excel."""
 
 import re
 from array import array
@@ -15,15 +15,15 @@ from rockbatch.motions.limits import HUGE
 from rockbatch.motions.motion import Samples
 
 _COMMENT = ("#", "%")
-_WRAPPED = {"layout": "wrapped"}  # what may be meant by numbers that go on from line to line
-_LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and lines, that are looked at
-_MOST_COUNTS = 3  # numbers of lines above a table that count its samples
+_WRAPPED = {"layout": "wrapped"}  # a possible statement about a table with a shorter last row
+_LONGEST, _MOST_HEADER = 300, 300  # characters of a header line, and header lines, that are read
+_MOST_COUNTS = 3  # greatest count of numbers above a table that state its size
 _FEWEST_PAIRS = 5
-_PIECE = 10_000  # lines that are read at once
+_PIECE = 10_000  # lines parsed at once
 _TOUCHING = re.compile(  # with points, unlike a date such as 2010-11-14; possessive: digits may end one number or begin the next
     r"\s*+(?:[-+]?\d*+\.\d++(?:[EDed][-+]?\d++)?\s*+)+"  # but for the groups: Python 3.11.2 errs there
 )
-_CONTINUED = "\\ \t"  # what some programs put behind each line
+_CONTINUED = "\\ \t"  # ends of lines by some programs
 _SIGN = re.compile(r"(?<=[\d])-(?=[\d.])")
 _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 
@@ -31,15 +31,15 @@ _NUMERIC = re.compile(r'[-+.,;"\s]*[0-9][-+0-9.,;eEdD"\s]*')
 def read_table(
     text: str, wrapped: bool = False, named: bool = True, stated: Sequence[str] = ()
 ) -> tuple[list[str], Samples]:
-    """Return the header lines, without their comment sign, and the table of numbers, shape (npts, columns).
+    """Return the header lines, without comment signs, and the table of numbers, shape (npts, columns).
 
-    Columns stand between blanks, tabs, commas or semicolons. Decimal commas are understood where they cannot
-    be anything else: between semicolons, tabs or blanks in a file without a decimal point. Raises
-    ``InputError`` with the line for a row unlike those above it, and for commas that may be either. A ``wrapped`` table is one
-    column that goes on from line to line, as is one whose header states as many samples as there are numbers; its last row
-    may be shorter. Columns that the header names are not wrapped, unless ``named`` is False. Pairs of time and value, several on
-    a line, are a table of two columns. ``stated`` lines are put before the header; a line of numbers that counts those below
-    it becomes one of the header.
+    Columns are separated by blanks, tabs, commas or semicolons. Commas are decimal only if they can be nothing else: between
+    semicolons, tabs or blanks in a file without decimal points. A ``wrapped`` table is one column that continues from line
+    to line, shape (npts, 1), as is one whose header states as many samples as there are numbers; its last row may be shorter.
+    Columns with names in the header are not wrapped, unless ``named`` is False. Pairs of time and value, several on a line, are
+    a table of two columns. ``stated`` lines go before the header; numbers above the table that state its size go into it.
+
+    Raises ``InputError`` with the line for a row unlike those above it, and for commas of unclear meaning.
     """
     header: list[str] = list(stated)
     text = without_end_marks(text)
@@ -48,7 +48,7 @@ def read_table(
     lines = [line.rstrip(_CONTINUED) for line in lines_of(text)] if "\\" in text else lines_of(text)
     separators = _separators(text, lines)
     for i, line in enumerate(lines):
-        if i < end:  # of the rows that were read at once
+        if i < end:  # read with the block of rows above
             continue
         stripped = line.strip()
         comment = stripped.startswith(_COMMENT)
@@ -64,10 +64,10 @@ def read_table(
         elif row:
             if len(rows) <= _MOST_COUNTS and (counted := _counted(lines, row_lines, rows, wrapped, named, stated)):
                 return counted
-            raise _refused(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
+            raise _table_error(lines, f"line {i + 1}: found {len(row)} numbers; expected {width} as above")
         elif stripped.strip(' ;,\t"'):
             if rows and not comment:
-                raise _refused(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
+                raise _table_error(lines, f'line {i + 1}: found "{stripped[:60]}"; expected {width} numbers as above')
             if len(header) < _MOST_HEADER:
                 header.append(stripped.lstrip("#% \t")[:_LONGEST])
     if not rows:
@@ -77,7 +77,7 @@ def read_table(
         wrapped = not (named and (columns_with_units(header, width) or columns_without_units(header, width)))
     if remainder and pairs is None and not wrapped:
         reason = f"line {len(lines)}: found {len(remainder)} numbers; expected {width} as above"
-        refusal = _refused(lines, reason)
+        refusal = _table_error(lines, reason)
         may_be_wrapped = width > 2 and not isinstance(refusal, NoRecord)
         raise Unstated(reason, keys=("layout",), choices=(_WRAPPED,)) if may_be_wrapped else refusal
     table = np.array(rows).reshape(-1, width)
@@ -102,20 +102,20 @@ def _counted(
     named: bool,
     stated: Sequence[str],
 ) -> tuple[list[str], Samples] | None:
-    """Return header and table if the lines at ``places`` are the count, or count and step, of all that follow, else None."""
-    said = _count_and_step(numbers)
-    if said is None:
+    """Return header and table if the ``numbers`` in the lines ``places`` state the size of the table below, else None."""
+    statement = _count_and_step(numbers)
+    if statement is None:
         return None
-    npts, words = said
+    npts, words = statement
     below = "\n".join("" if i in places else line for i, line in enumerate(lines))
     header, table = read_table(below, wrapped, named, [*stated, words])
     return (header, table) if npts in (table.size, len(table)) else None
 
 
 def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
-    """Return the count that one to three numbers are, with a step before or behind it, and the line of a header that says so.
+    """Return the count in one to three numbers, with a step before or after it, and both as a header line; None if none.
 
-    A third number, such as RspMatch's count of zeros in front, says nothing here.
+    A third number, such as RspMatch's count of leading zeros, is ignored.
     """
     first, *others = numbers
     step = others[0] if others else None
@@ -127,9 +127,9 @@ def _count_and_step(numbers: Sequence[float]) -> tuple[float, str] | None:
 
 
 def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Samples | None:
-    """Return pairs of time and value, shape (npts, 2), of numbers that are pairs, one or several on a line; ``None`` if not.
+    """Return numbers as pairs of time and value, shape (npts, 2), if they are such; else ``None``.
 
-    Programs for structures write them so; the times, which grow evenly from pair to pair, tell them from any other table.
+    Programs for structures write several pairs on a line; they differ from other tables by times that grow evenly.
     """
     numbers = np.array([*rows, *remainder]) if remainder else np.array(rows)
     if width % 2 or len(numbers) % 2 or len(numbers) < 2 * _FEWEST_PAIRS:
@@ -140,26 +140,29 @@ def _pairs(rows: Sequence[float], remainder: Sequence[float], width: int) -> Sam
 
 
 def _below_its_count(header: list[str], pairs: Samples) -> tuple[list[str], Samples]:
-    """Return header and pairs, of which the first is no pair where it is count and step of those below it."""
-    said = _count_and_step(list(pairs[0]))
-    if said is None or grows_evenly(pairs[:, 0]):
+    """Return header and pairs; a first pair that is count and step of those below goes into the header."""
+    statement = _count_and_step(list(pairs[0]))
+    if statement is None or grows_evenly(pairs[:, 0]):
         return header, pairs
-    return [*header, said[1]], pairs[1:]
+    return [*header, statement[1]], pairs[1:]
 
 
-def _refused(lines: list[str], reason: str) -> InputError:
-    """Return the error of a table, or of a text with some numbers in it: less than half of its lines hold numbers only."""
+def _table_error(lines: list[str], reason: str) -> InputError:
+    """Return the error of a bad table: ``NoRecordError`` if fewer than half of the lines are numbers only."""
     written = [line for line in lines if line.strip()]
     numbers = sum(_NUMERIC.fullmatch(line) is not None for line in written)
     return InputError(reason) if 2 * numbers >= len(written) else NoRecord(reason)
 
 
 def _separators(text: str, lines: list[str]) -> tuple[str, str]:
-    """Return the characters between columns besides blanks, and the decimal comma, "" without one."""
+    """Return the separator of columns besides blanks, and the decimal comma or "".
+
+    Raises ``InputError`` for numbers with both points and commas, and for commas of unclear meaning.
+    """
     if not _in_numbers(",", text, lines):
         return ";", ""
     semicolon, point, tab = (_in_numbers(sign, text, lines) for sign in ";.\t")
-    if point and not (semicolon or tab):  # most are; one look more at each line tells the others apart
+    if point and not (semicolon or tab):  # the usual case; the others need another pass over the lines
         return ",", ""
     body = [line for line in lines if _NUMERIC.fullmatch(line)]
     if semicolon or (tab and any("," in field.strip(" ,") for line in body for field in line.split("\t"))):
@@ -179,14 +182,15 @@ def _separators(text: str, lines: list[str]) -> tuple[str, str]:
 
 
 def _in_numbers(sign: str, text: str, lines: list[str]) -> bool:
-    """Return whether a character stands in one of the lines that hold numbers only."""
+    """Return whether a character occurs in a line of numbers only."""
     return sign in text and any(sign in line and _NUMERIC.fullmatch(line) for line in lines)
 
 
 def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> "array[float]":
-    """Return the numbers of the first ``lines``, as far as all hold ``width`` of them, as plainly written as most are.
+    """Return the numbers of the first ``lines``, up to the first that is unlike ``width`` plainly written numbers.
 
-    They are those that :func:`_numbers` gives. A piece after the other: all words at once would take thirty times their size.
+    They equal those of :func:`_numbers`, but are faster. In pieces, since all words at once would take thirty times the size of
+    the text.
     """
     rows = array("d")
     for first in range(0, len(lines), _PIECE):
@@ -206,7 +210,7 @@ def _even_rows(lines: Sequence[str], width: int, between: str, decimal: str) -> 
 
 
 def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
-    """Return the numbers of a line, ``None`` if it holds anything else."""
+    """Return the numbers of a line, also touching ones and with D exponents; ``None`` if it has anything else."""
     if "_" in line:  # Python would read 1_0 as ten
         return None
     if '"' in line:
@@ -215,7 +219,7 @@ def _numbers(line: str, between: str, decimal: str) -> list[float] | None:
         line = line.replace(between, " ")
     if decimal:
         line = line.replace(decimal, ".")
-    if _SIGN.search(line) and _TOUCHING.fullmatch(line):  # few lines get to the second, which is slower
+    if _SIGN.search(line) and _TOUCHING.fullmatch(line):  # the second is slower, and few lines reach it
         line = _SIGN.sub(r" \g<0>", line)
     try:
         return [float(token) for token in line.split()]

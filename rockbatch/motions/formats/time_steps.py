@@ -1,31 +1,31 @@
-"""From printed times to an even sampling interval: rounding counts as even; uneven steps are interpolated, with a note."""
+"""Even sampling intervals from printed times: rounding counts as even; uneven steps are interpolated, with a note."""
 
 import numpy as np
 
 from rockbatch.common.errors import InputError
 from rockbatch.motions.motion import Samples
 
-_EVEN = 0.05  # of the step: what clocks and printing may be off from an even grid; a lost sample is off by 1
-_COARSEST = 0.4  # of the step: coarser printing does not tell rounding from a lost sample (off by 0.5 at least)
-_MOST_DIGITS = 9  # decimals of seconds that are looked for
-_FINEST = 10  # how many parts of the usual step are tried as the grid of uneven times
-_SPREAD = 20.0  # longest, and inverse of the shortest, over the usual step: beyond, something is missing
-_WHOLE = 2.0**53  # up to which floats are told apart as whole numbers
-_GROWTH = 20  # how many times more samples an even grid may take
+_EVEN = 0.05  # of the step: deviation of clocks and printing from an even grid; a lost sample deviates by 1
+_COARSEST = 0.4  # of the step: coarser printing hides a lost sample, which deviates by 0.5 at least
+_MOST_DIGITS = 9  # decimals of seconds that are tried
+_FINEST = 10  # parts of the usual step that are tried as the grid of uneven times
+_SPREAD = 20.0  # longest, and inverse of the shortest, over the usual step: beyond, samples are missing
+_WHOLE = 2.0**53  # greatest whole number up to which floats have all whole numbers
+_GROWTH = 20  # greatest ratio of the samples of an even grid to those read
 
 
 def grows_evenly(t: Samples) -> bool:
-    """Return whether times are samples of one interval, as far as their printing tells; shape (npts,), any unit."""
+    """Return whether times, shape (npts,), rise in even steps within the rounding of their printing."""
     return _is_growing(t) and _on_grid(t, np.arange(len(t), dtype=float)) is not None
 
 
 def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval, in the unit of ``t``, values on it, and notes on what was done to them.
+    """Return the sampling interval, in the unit of ``t``, values at even times, and notes on interpolation.
 
-    ``t`` has shape (npts,), ``values`` shape (npts, channels). Uneven times get an even grid that keeps every
-    sample, of a part of their usual step (lost samples), of their greatest common step (film, digitised in
-    whole ms), or else of their shortest step. Values between are linear, as a motion is between its samples. Raises
-    ``InputError`` for times that do not grow, and for gaps.
+    ``t`` has shape (npts,), ``values`` shape (npts, channels). Uneven times get an even grid that keeps every sample, of a
+    part of their usual step (lost samples), or of their greatest common step (film, digitised in whole ms), or else of their
+    shortest step. Interpolation is linear, as a motion is between its samples. Raises ``InputError`` for times that do not
+    rise, and for gaps.
     """
     if not _is_growing(t):
         still = int(np.argmin(np.diff(t) > 0)) if len(t) > 1 else 0
@@ -63,9 +63,9 @@ def on_even_steps(t: Samples, values: Samples) -> tuple[float, Samples, tuple[st
 
 
 def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str, ...]]:
-    """Return the sampling interval, even samples, shape (npts,), and notes on pairs of time and value, shape (npts, 2).
+    """Return the sampling interval, even samples, shape (npts,), and notes for pairs of time and value, shape (npts, 2).
 
-    Raises ``InputError``, with the ``channel`` in front, as :func:`on_even_steps` does.
+    Raises ``InputError``, beginning with the ``channel``, as :func:`on_even_steps` does.
     """
     try:
         dt, values, notes = on_even_steps(pairs[:, 0], pairs[:, 1:])
@@ -75,12 +75,12 @@ def from_pairs(pairs: Samples, channel: str) -> tuple[float, Samples, tuple[str,
 
 
 def _is_growing(t: Samples) -> bool:
-    """Return whether every time is later than the one before."""
+    """Return whether there are two times or more, each later than the one before."""
     return len(t) > 1 and bool((np.diff(t) > 0).all())
 
 
 def _candidates(t: Samples, usual: float) -> list[float]:
-    """Return steps, from coarse to fine, of which times may be multiples: parts of the usual one, and what is printed."""
+    """Return possible steps of an even grid: parts of the ``usual`` one, from coarse to fine, then the greatest common step."""
     steps = [usual / parts for parts in range(1, _FINEST + 1)]
     printed = _resolution(t)
     if printed > 0 and np.abs(t).max() < _WHOLE * printed:
@@ -89,7 +89,7 @@ def _candidates(t: Samples, usual: float) -> list[float]:
 
 
 def _on_grid(t: Samples, counts: Samples) -> float | None:
-    """Return the step of the even grid on which sample i has the number counts[i]; ``None`` if the times are off it."""
+    """Return the step of the even grid in which sample i is number counts[i]; ``None`` if the times deviate from it."""
     dt = float(t[-1] - t[0]) / float(counts[-1])
     printed = _resolution(t)
     allowed = _EVEN * dt if printed > _COARSEST * dt else max(_EVEN * dt, printed)
@@ -98,7 +98,7 @@ def _on_grid(t: Samples, counts: Samples) -> float | None:
 
 
 def _resolution(t: Samples) -> float:
-    """Return the unit of the last decimal that times are printed with, in their own unit; 0 if there are too many."""
+    """Return the unit of the last printed decimal of times, in their unit; 0 for more than nine decimals."""
     shortest = float(np.diff(t).min())
     for digits in range(_MOST_DIGITS + 1):
         scaled = t * 10.0**digits
@@ -108,10 +108,10 @@ def _resolution(t: Samples) -> float:
 
 
 def _interpolated(places: Samples, counts: Samples, values: Samples) -> Samples:
-    """Return ``values`` of samples ``counts``, linearly at ``places``, channel by channel."""
+    """Return ``values`` at ``counts``, interpolated linearly at ``places``, shape (places, channels)."""
     return np.column_stack([np.interp(places, counts, channel) for channel in values.T])
 
 
 def _note(shortest: float, longest: float, dt: float, effect: str) -> str:
-    """Return the note on uneven times."""
+    """Return the note on uneven times, with the ``effect`` of interpolation."""
     return f"uneven times (steps of {shortest:g} to {longest:g}) interpolated linearly to dt = {dt:g}; {effect}"

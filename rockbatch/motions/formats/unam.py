@@ -41,14 +41,16 @@ _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:[.,]\d{1,6})?)", re.ASCII)
 _DAY = 86400.0  # s
 _COUNT, _STEP, _DECIMATION = "NUM. TOTAL DE MUESTRAS, C1-C6", "INTERVALO DE MUESTREO, C1-C6", "FACTOR DE DECIMACION"
 _RATE, _PEAK, _PEAK_SAMPLE = "VEL. DE MUESTREO, C1-C6", "ACEL. MAX.(Gal), C1-C6", "ACEL. MAX., C1-C6, EN LA MUESTRA"
-_NEEDED = (
-    *("NUMERO DE CANALES", "ORIENTACION C1-C6", _COUNT, _STEP, "FORMATO DATOS", "UNIDADES DE LOS DATOS"),
+_CHANNELS, _DIRECTIONS, _LAYOUT = "NUMERO DE CANALES", "ORIENTACION C1-C6", "FORMATO DATOS"
+_UNIT, _STATION, _NAME, _FILE = (
+    "UNIDADES DE LOS DATOS",
     "CLAVE DE LA ESTACION",
+    "NOMBRE DE LA ESTACION",
+    "NOMBRE DEL ARCHIVO",
 )
-_ELSE = (
-    *(_DECIMATION, _RATE, _PEAK, _PEAK_SAMPLE, "FECHA DEL SISMO", "HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"),
-    *("NOMBRE DE LA ESTACION", "NOMBRE DEL ARCHIVO"),
-)
+_DATE, _QUAKE, _BEGAN = "FECHA DEL SISMO", "HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"
+_NEEDED = (_CHANNELS, _DIRECTIONS, _COUNT, _STEP, _LAYOUT, _UNIT, _STATION)
+_OPTIONAL = (_DECIMATION, _RATE, _PEAK, _PEAK_SAMPLE, _DATE, _QUAKE, _BEGAN, _NAME, _FILE)
 
 
 def is_unam(head: bytes) -> bool:
@@ -57,35 +59,36 @@ def is_unam(head: bytes) -> bool:
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the channels; ``InputError`` with the line, or the key, where the file is not whole."""
+    """Return the channels; raise ``InputError`` with the line or the missing key if the file is incomplete."""
     lines = lines_of(text)
     index, _ = line_with(_DATA, lines, _MOST, "DATOS DE ACELERACION:")
     header = _header(lines[:index])
-    channels = number_of(header, "NUMERO DE CANALES")
+    channels = number_of(header, _CHANNELS)
     if not 1 <= channels <= _MOST_CHANNELS or channels != int(channels):
-        raise InputError(f"the header says NUMERO DE CANALES: {channels:g}; expected 1 to {_MOST_CHANNELS}")
+        raise InputError(f"the header says {_CHANNELS}: {channels:g}; expected 1 to {_MOST_CHANNELS}")
     if header[_DECIMATION] and number_of(header, _DECIMATION) != 1:
         raise InputError(f"the header says that samples were left out ({_DECIMATION}); expected 1")
     count = int(channels)
-    labels = [label.partition(";")[::2] for label in _value_of_each(header, "ORIENTACION C1-C6", count)]
+    directions = [text.partition(";")[::2] for text in _value_of_each(header, _DIRECTIONS, count)]
+    labels = [label.strip() for label, _ in directions]
     npts, dt = count_and_step({key: _common_value(header, key, count) for key in (_COUNT, _STEP)}, _COUNT, _STEP)
-    first = _first(lines, index, [label.strip() for label, _ in labels])
-    values, more = _values(lines, first, npts, count, header["FORMATO DATOS"])
+    first = _first_sample_line(lines, index, labels)
+    values, more = _values(lines, first, npts, count, header[_LAYOUT])
     rates, peaks, peak_samples = (_texts_of(header[key], count) for key in (_RATE, _PEAK, _PEAK_SAMPLE))
-    station, date, name = (header[key] for key in ("CLAVE DE LA ESTACION", "FECHA DEL SISMO", "NOMBRE DE LA ESTACION"))
-    start, event = _start(header), f"{date} {header['HORA EPICENTRO']}".strip()
+    station, date, name = header[_STATION], header[_DATE], header[_NAME]
+    start, event = _start(header), f"{date} {header[_QUAKE]}".strip()
     notes = (f"its header says {npts} samples, and {more} more follow, which are left out",) if more else ()
-    return [
-        Recording(
-            label=label.strip(),
-            orientation=Orientation(label.strip(), vertical=True, down=True)
-            if (label[:1], sign) == ("V", "-")
-            else None,
+    recordings = []
+    for i, label in enumerate(labels):
+        down = label[:1] == "V" and directions[i][1] == "-"
+        recording = Recording(
+            label=label,
+            orientation=Orientation(label, vertical=True, down=True) if down else None,
             dt=dt,
             values=values[:, i],
-            unit=header["UNIDADES DE LOS DATOS"].partition("(")[0].strip(),
+            unit=header[_UNIT].partition("(")[0].strip(),
             station=f"{station}, {event} {start}" if event else station,
-            codes=("MG", station[:5], "", label.strip().upper()),
+            codes=("MG", station[:5], "", label.upper()),
             start=start,
             processed=False,
             sensor=Sensor(station),
@@ -97,27 +100,30 @@ def parse(text: str) -> list[Recording]:
                 Stated("time of the peak", _time_of_sample(peak_samples[i], dt)),
             ),
             notes=notes,
-            header={"station": name, "file": header["NOMBRE DEL ARCHIVO"]},
+            header={"station": name, "file": header[_FILE]},
         )
-        for i, (label, sign) in enumerate(labels)
-    ]
+        recordings.append(recording)
+    return recordings
 
 
 def _header(lines: list[str]) -> dict[str, str]:
-    """Return the values of ``_NEEDED`` and ``_ELSE``; what stands behind a key differs: "(s)", "(Hz)", and so do blanks in it."""
+    """Return the values of the keys ``_NEEDED`` and ``_OPTIONAL``, "" without one; raise ``InputError`` for needed ones.
+
+    Keys are compared without blanks and by their beginnings, since institutes add units such as "(s)".
+    """
     entries = {re.sub(r"\s", "", key): value for key, value in keys_of(lines).items()}
 
     def value_of(name: str) -> str:
         begins = re.sub(r"\s", "", name)
         return next((value for key, value in entries.items() if key.startswith(begins)), "")
 
-    header = {name: value_of(name) for name in (*_NEEDED, *_ELSE)}
+    header = {name: value_of(name) for name in (*_NEEDED, *_OPTIONAL)}
     require(header, *_NEEDED)
     return header
 
 
 def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
-    """Return the values of all channels, between slashes."""
+    """Return the values of all channels, between slashes; raise ``InputError`` for another number of them."""
     values = [part.strip() for part in header[key].strip("/ ").split("/")]
     if len(values) != count:
         raise InputError(f"the header says {count} channels, but {key}: {header[key][:60]}")
@@ -125,26 +131,26 @@ def _value_of_each(header: dict[str, str], key: str, count: int) -> list[str]:
 
 
 def _texts_of(text: str, count: int) -> list[str]:
-    """Return what a key that may be empty states of each channel; "" of all where it has another number of values."""
+    """Return the values of an optional key for all channels, between slashes; "" for each if there is another number."""
     texts = [part.strip() for part in text.strip("/ ").split("/")]
     return texts if len(texts) == count else [""] * count
 
 
 def _time_of_sample(number: str, dt: float) -> str:
-    """Return the time of a sample [s], counted from 1; "" where none is stated."""
+    """Return the time [s] of a sample counted from 1, as text; "" for a text that is no number."""
     return f"{(int(number) - 1) * dt:.6f}" if number.isdecimal() and 0 < len(number) < 10 else ""
 
 
 def _common_value(header: dict[str, str], key: str, count: int) -> str:
-    """Return the value that is the same for all channels; ``InputError`` where it is not."""
+    """Return the common value of all channels; raise ``InputError`` if they differ."""
     texts = set(_value_of_each(header, key, count))
     if len(texts) > 1:
         raise InputError(f"the header says {key}: {', '.join(sorted(texts))[:60]}; expected the same for all channels")
     return texts.pop()
 
 
-def _first(lines: list[str], start: int, labels: list[str]) -> int:
-    """Return the index of the first sample's line, behind rulers and the directions, which must be those of the header."""
+def _first_sample_line(lines: list[str], start: int, labels: list[str]) -> int:
+    """Return the index of the first sample's line, after rulers and the directions ``labels``; raise ``InputError`` without."""
     named = False
     for i in range(start + 1, min(start + _BEHIND, len(lines))):
         words = [word.partition(";")[0] for word in lines[i].split()]
@@ -158,7 +164,7 @@ def _first(lines: list[str], start: int, labels: list[str]) -> int:
 
 
 def _values(lines: list[str], first: int, npts: int, channels: int, layout: str) -> tuple[Samples, int]:
-    """Return the samples, shape (npts, channels), and how many lines follow them: two at most."""
+    """Return the samples, shape (npts, channels), and the number of further lines, two at most."""
     form = _FORMAT.fullmatch(layout.replace(" ", ""))
     if form is None or int(form["per_line"]) != channels or int(form["width"]) < 2:
         raise InputError(f'the header says FORMATO DATOS : "{layout[:20]}"; expected one such as {channels}F10.4')
@@ -176,7 +182,7 @@ def _values(lines: list[str], first: int, npts: int, channels: int, layout: str)
 
 
 def _row(line: str, index: int, width: int, channels: int) -> list[float]:
-    """Return the numbers of a line, in columns of the declared width, or else between blanks."""
+    """Return the numbers of a line, in columns of the declared width, else between blanks; raise ``InputError`` for others."""
     in_columns = len(line) == width * channels
     fields = [line[k : k + width] for k in range(0, len(line), width)] if in_columns else line.split()
     if len(fields) != channels:
@@ -187,16 +193,20 @@ def _row(line: str, index: int, width: int, channels: int) -> list[float]:
 
 
 def _start(header: dict[str, str]) -> float | None:
-    """Return the time of the first sample [s since 1970]: its date is that of the earthquake, or the day before or after."""
-    date = date_in(header["FECHA DEL SISMO"])
-    origin, first = (_CLOCK.match(header[key]) for key in ("HORA EPICENTRO", "HORA DE LA PRIMERA MUESTRA"))
+    """Return the time of the first sample [s since 1970]; ``None`` without date or clock.
+
+    Only the earthquake's date is stated: the sample may be of the day before or after.
+    """
+    date, first = date_in(header[_DATE]), _CLOCK.match(header[_BEGAN])
     if date is None or first is None:
         return None
-    began, quake = (
-        moment(*date, int(clock[1]), int(clock[2]), float(clock[3].replace(",", ".")))
-        for clock in (first, origin or first)
-    )
+    began, quake = _moment(date, first), _moment(date, _CLOCK.match(header[_QUAKE]) or first)
     return None if began is None or quake is None else began + _DAY * round((quake - began) / _DAY)
+
+
+def _moment(date: tuple[int, int, int], clock: re.Match[str]) -> float | None:
+    """Return the time [s since 1970] of a clock on a date; ``None`` for an impossible one."""
+    return moment(*date, int(clock[1]), int(clock[2]), float(clock[3].replace(",", ".")))
 
 
 is_unam_file, read_unam_stream = plugin("UNAM", is_unam, parse)

@@ -1,18 +1,18 @@
 """Volumes I and II in Caltech's layout, as CSMIP (CGS, formerly CDMG), USC, RENADIC (Universidad de Chile) and others write them.
 
 Each channel has 13 lines of text, 7 of integers (16I5) and 7 of real numbers (8F10.3), then its samples. Volume II, which is
-corrected, has a title before these lines, 11 on what was done after the first 13, and 13 of real numbers. Its accelerations,
-velocities and displacements stand eight to a line, below a line that declares each (``declared_series``) or, as the text
-has their count and interval as well, without one. Volume I declares its samples, or has them as pairs of time and value,
-digitised from film, five to a line in ten columns of 7 characters, which USC puts behind a blank. ``/&`` ends a channel,
-in files of USC not all. Volume III has spectra. Sources: Shakal & Huang (1985), "Standard tape format for CSMIP
-strong-motion data tapes", OSMS 85-03, which tells Caltech's; else the agencies' own files.
+corrected, has a title before these lines, 11 lines on the processing after the first 13, and 13 of real numbers. Its
+accelerations, velocities and displacements are eight to a line, each below a line that declares it (``declared_series``) or,
+since the text has count and interval as well, without one. Volume I declares its samples, or has pairs of time and value,
+digitised from film, five to a line in ten columns of 7 characters, in files of USC after a blank. ``/&`` ends a channel,
+except in some files of USC. Volume III has spectra. Sources: Shakal & Huang (1985), "Standard tape format for CSMIP
+strong-motion data tapes", OSMS 85-03, for Caltech's; else the agencies' own files.
 """
 
 import math
 import re
 from functools import partial
-from typing import Any
+from typing import NamedTuple
 
 from rockbatch.common.errors import InputError, NoRecord
 from rockbatch.motions.component import Sensor
@@ -23,6 +23,7 @@ from rockbatch.motions.formats.obspy_plugin import plugin
 from rockbatch.motions.formats.recording import Recording, Series
 from rockbatch.motions.formats.stated import Stated
 from rockbatch.motions.formats.time_steps import from_pairs
+from rockbatch.motions.motion import Samples
 from rockbatch.motions.orientation import is_clock
 from rockbatch.motions.origin import origin_of
 
@@ -48,7 +49,7 @@ _TEXT = layout(  # of Volume I, which Volume II repeats
     (3, r"(?a)^\d+\.(?P<network>[A-Z0-9]{1,2})\.(?P<code>[A-Z0-9]{1,5})\.(?P<location>[A-Z0-9-]{2})\.", ""),
     (3, rf"(?ai)(?P<began>start|trigger) time: *{_DAY},? *{CLOCK} *(?:UTC|GMT|\(GPS\)|\(Q=|$)", ""),
 )
-_STATED = {  # where the text says once more, or alone, what the samples are; CSMIP does not everywhere
+_STATED = {  # statements about the samples in the text, which some files of CSMIP lack
     1: layout(
         (10, r"(?ai)no\. of points\s*=\s*(?P<npts>\d{1,9})", "NO. OF POINTS = …"),
         (10, r"(?ai)(?:duration|record length) *= *(?P<duration>[\d.]{1,12}) *sec", "DURATION = … SEC"),
@@ -75,7 +76,7 @@ _STATED = {  # where the text says once more, or alone, what the samples are; CS
 
 
 def _is_dialect(name: str, head: bytes) -> bool:
-    """Return whether the first bytes are a header in the layout that is called so: "CSMIP", "RENADIC" or "USC"."""
+    """Return whether the first bytes are a header in the dialect ``name``: "CSMIP", "RENADIC" or "USC"."""
     lines = head.decode("latin-1").splitlines()
     volume = _volume(lines, 0)
     if volume is None:
@@ -87,17 +88,20 @@ def _is_dialect(name: str, head: bytes) -> bool:
 
 
 def _volume(lines: list[str], first: int) -> int | None:
-    """Return the volume of the channel that begins at ``lines[first]``: each has one title more above that of Volume I."""
+    """Return the volume, 1 to 3, of the channel that begins at ``lines[first]``; None for other lines.
+
+    Volume II has one line above the title of Volume I, Volume III has two.
+    """
     return next((i + 1 for i in range(3) if _TITLE.search(line_at(lines, first + i))), None)
 
 
 def parse(text: str) -> list[Recording]:
-    """Return the channels, one after the other, on even steps; ``InputError`` with the line where the file is not whole."""
+    """Return the channels, one after the other; raise ``InputError`` with the line if the file is incomplete."""
     return [recording for recording, _ in one_after_another(text, _channel)]
 
 
 def parse_pairs(text: str) -> list[Recording]:
-    """Return the channels likewise of a recorder that tells when each begins by its times, unless it has set the clock."""
+    """Return the channels of a RENADIC file; raise ``InputError`` if they begin at different times, and no clock was set."""
     channels = one_after_another(text, _channel)
     recordings = [recording for recording, _ in channels]
     begins = [first or 0.0 for recording, first in channels if not is_clock(recording.label)] or [0.0]
@@ -110,7 +114,7 @@ def parse_pairs(text: str) -> list[Recording]:
 
 
 def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | None], int]:
-    """Return the channel whose title is ``lines[first]``, the first time of its pairs [s], and where the next one begins."""
+    """Return the channel whose title is ``lines[first]`` with the first time of its pairs [s], and the index after it."""
     volume = _volume(lines, first)
     if volume is None:
         raise InputError(
@@ -124,7 +128,7 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     fields |= read_header(lines, first, [(i, said, needed * example) for i, said, example in _STATED[volume]])
     samples, begins, end = _samples(lines, first, volume, fields)
     place = fields["place"]
-    notes = (*samples.pop("notes", ()), *([f"channel {fields['number']}: {place}"] if place else []))
+    notes = (*samples.notes, *([f"channel {fields['number']}: {place}"] if place else []))
     # the right half is about the recorder in some files
     event, date, name = (re.split(r"   |\(", line_at(lines, header + i))[0].strip() for i in (1, 2, 5))
     date = "" if _NOT_SET.match(date) else date
@@ -132,6 +136,12 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
     number, location = fields["station"], fields["location"].strip("-")
     recording = Recording(
         label=fields["label"],
+        dt=samples.dt,
+        values=samples.values,
+        unit=samples.unit,
+        velocities=samples.velocities,
+        displacements=samples.displacements,
+        as_read=samples.as_read,
         station=", ".join(filter(None, [number or name, record, place, f"Volume {volume}"])),
         start=_start(fields, begins),
         processed=volume == 2,
@@ -147,7 +157,6 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
         stated=_statements(fields, begins, volume),
         notes=notes,
         header={"station": name, "event": event, "record": fields["record"]},
-        **samples,
     )
     if fields["number"]:
         return (recording, begins), past_mark(lines, end, "the declared values")
@@ -155,9 +164,9 @@ def _channel(lines: list[str], first: int) -> tuple[tuple[Recording, float | Non
 
 
 def _start(fields: dict[str, str], begins: float | None) -> float | None:
-    """Return the time of the first sample [s since 1970]; ``None`` where only the time of triggering is known.
+    """Return the time of the first sample [s since 1970]; ``None`` if unknown.
 
-    Times of pairs count from that one, where the recorder has a clock.
+    Times of pairs count from the trigger time, if the recorder's clock was set.
     """
     year = fields["year"]
     if fields["began"].lower() != "trigger":
@@ -167,10 +176,20 @@ def _start(fields: dict[str, str], begins: float | None) -> float | None:
     return None if trigger is None or begins is None or unset else trigger + begins
 
 
-def _samples(
-    lines: list[str], first: int, volume: int, fields: dict[str, str]
-) -> tuple[dict[str, Any], float | None, int]:
-    """Return the samples as fields of a recording, the first time of pairs [s], and where the samples end."""
+class _Samples(NamedTuple):
+    """The samples of a channel, as fields of a ``Recording``."""
+
+    dt: float
+    values: Samples
+    unit: str
+    velocities: Series | None = None
+    displacements: Series | None = None
+    notes: tuple[str, ...] = ()
+    as_read: Samples | None = None
+
+
+def _samples(lines: list[str], first: int, volume: int, fields: dict[str, str]) -> tuple[_Samples, float | None, int]:
+    """Return the samples, the first time of pairs [s] or None, and the index of the line after them."""
     start = first + _DATA[volume]
     declared = declares_series(lines, start)
     if volume == 1 and not declared and fields["npts"] and fields["unit"]:
@@ -180,12 +199,12 @@ def _samples(
     else:
         dt, series, end = declared_series(lines, start)
     values, unit = series["acc"]
-    of_others = {"velocities": series.get("vel"), "displacements": series.get("dis")}  # the header's initial velocity
-    return {"dt": dt, "values": values, "unit": unit} | of_others, None, end  # has the wrong sign in files of the USGS
+    # the initial state is computed from these: the header's initial velocity has the wrong sign in files of the USGS
+    return _Samples(dt, values, unit, series.get("vel"), series.get("dis")), None, end
 
 
-def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[dict[str, Any], float, int]:
-    """Return likewise pairs of time and value, on even steps."""
+def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[_Samples, float, int]:
+    """Return the samples at even steps of pairs of time and value, their first time [s], and the index after them."""
     npts, start = int(fields["npts"]), first + _DATA[1]
     if npts < 2:
         raise InputError(f"line {first + 11}: found {npts} points; expected at least two")
@@ -197,12 +216,11 @@ def _pairs(lines: list[str], first: int, fields: dict[str, str]) -> tuple[dict[s
     block = [""] * start + [line[indent:] for line in lines[start:end]]
     pairs = fixed_numbers(block, start, 2 * npts, _WIDTH, _PER_LINE)[0].reshape(npts, 2)
     dt, values, notes = from_pairs(pairs, f"channel {fields['label']} from line {first + 1} on")
-    samples = {"dt": dt, "values": values, "unit": fields["unit"], "notes": notes, "as_read": pairs[:, 1]}
-    return samples, float(pairs[0, 0]), end
+    return _Samples(dt, values, fields["unit"], notes=notes, as_read=pairs[:, 1]), float(pairs[0, 0]), end
 
 
 def _undeclared(lines: list[str], start: int, fields: dict[str, str]) -> tuple[float, dict[str, Series], int]:
-    """Return interval [s], series and end of samples of Volume II that no line declares; their unit is that of the peak."""
+    """Return interval [s], series by kind and end of undeclared samples of Volume II, in the unit of the stated peak."""
     unit, series, end = _unit_of_peak(fields), {}, start
     for kind, per in (("acc", "/SEC/SEC"), ("vel", "/SEC"), ("dis", "")):
         if kind == "acc" or line_at(lines, end)[:1].isspace():
@@ -217,7 +235,7 @@ def _unit_of_peak(fields: dict[str, str]) -> str:
 
 
 def _statements(fields: dict[str, str], begins: float | None, volume: int) -> tuple[Stated, ...]:
-    """Return what the header's text states of the samples, whose times, of pairs, begin at ``begins`` [s]."""
+    """Return the statements of the header's text about the samples, whose times of pairs begin at ``begins`` [s]."""
     start = begins or 0.0
     return (
         Stated("count", fields["npts"]),

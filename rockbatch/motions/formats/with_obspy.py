@@ -1,11 +1,10 @@
-"""The one door to ObsPy's readers: always with the format named, and after a check of the file.
+"""The only access to ObsPy's readers: always with the format named, and after a check of the file.
 
-Left to find the format itself, ``obspy.read`` unpickles files that look like a pickled Stream, which runs
-their code. Bytes are handed over rather than a path, so that nothing in a file's name is taken for a pattern
-or an address.
+Left to recognise the format, ``obspy.read`` unpickles files that look like a pickled Stream, which runs their code. Bytes are
+passed rather than a path, so that nothing in a file's name is taken for a pattern or an address.
 
-The readers believe what a header says: a control header whose blockette is 0 long is read again and again. So each of them has a
-check here, which raises ``InputError`` for words that cannot be.
+ObsPy's readers trust headers: a blockette of length 0 is an endless loop. So each format has a check here, which raises
+``InputError`` for impossible values.
 """
 
 import io
@@ -20,7 +19,7 @@ import numpy as np
 from rockbatch.common.errors import InputError, Truncated
 from rockbatch.common.lazy import obspy
 
-_ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # another one each time
+_ADDRESS = re.compile(r"<[\w.]+ object at 0x[0-9a-fA-F]+>")  # changes from run to run
 
 _DATA, _CONTROL = b"DRQM", b"VAST"  # kinds of records in a SEED volume
 _FIXED = 48  # bytes of a data record's fixed header
@@ -29,8 +28,8 @@ _LENGTH_IN = (b"005", b"008", b"010")  # the blockettes of a volume that tell th
 _BLOCKETTE = re.compile(rb"[0-9]{7}")  # three digits of type, four of length
 
 
-def mseed(data: bytes) -> bytes:
-    """Return MiniSEED, or a SEED volume, whose first data record can be."""
+def check_mseed(data: bytes) -> bytes:
+    """Return MiniSEED, or a SEED volume, unchanged; raise ``InputError`` if its first data record is impossible."""
     start = 0
     if data[6:7] in _CONTROL:
         length = 2 ** _volume_exponent(data)
@@ -41,7 +40,7 @@ def mseed(data: bytes) -> bytes:
 
 
 def _volume_exponent(data: bytes) -> int:
-    """Return the power of 2 that is the length of a volume's records, by its first blockettes."""
+    """Return log₂ of the length of a volume's records, by its first blockettes; raise ``InputError`` without it."""
     offset = 8
     while _BLOCKETTE.match(data, offset):
         kind, length = data[offset : offset + 3], int(data[offset + 3 : offset + 7])
@@ -57,7 +56,7 @@ def _volume_exponent(data: bytes) -> int:
 
 
 def _data_record(record: bytes) -> None:
-    """Raise ``InputError`` unless this begins with a data record: its time and its chain of blockettes."""
+    """Raise ``InputError`` unless bytes begin with a data record of possible time and chain of blockettes."""
     if len(record) < _FIXED or record[6:7] not in _DATA:
         raise Truncated("holds no whole data record; fetch it again")
     order = ">" if 1 <= int.from_bytes(record[22:24], "big") <= 366 else "<"
@@ -89,19 +88,19 @@ def is_evt(head: bytes) -> bool:
 
 
 def _tag(data: bytes, at: int) -> tuple[int, int, int]:
-    """Return type of a frame, and the lengths of its header and its data [bytes], of the tag at a place."""
+    """Return the type of a frame and the lengths of its header and data [bytes], by the tag at byte ``at``."""
     order = ">" if data[at + 1] == 1 else "<"
     (kind,) = np.frombuffer(data, f"{order}u4", 1, at + 4)
     length, of_data = np.frombuffer(data, f"{order}u2", 2, at + 8)
     return int(kind), int(length), int(of_data)
 
 
-def evt(data: bytes) -> bytes:
-    """Return an .evt whose tags lead from one to the next, and to its end."""
+def check_evt(data: bytes) -> bytes:
+    """Return an .evt unchanged; raise ``InputError`` unless its tags lead from one to the next up to its end."""
     at = 0
     while at < len(data):
         if data[at : at + 1] == b"\0" and not any(data[at : at + _TAG]):
-            break  # what recorders put behind the last frame
+            break  # zeros that recorders write after the last frame
         if len(data) < at + _TAG or data[at : at + 1] != b"K" or data[at + 1] > 1:
             raise Truncated(f".evt: no tag at byte {at}: it is cut, or damaged")
         kind, length, of_data = _tag(data, at)
@@ -113,13 +112,13 @@ def evt(data: bytes) -> bytes:
 
 _OF_TRIGGERS = ("chan_lta", "chan_sta")
 
-CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": mseed, "KINEMETRICS_EVT": evt}
-"""By ObsPy's name of the format."""
+CHECKS: dict[str, Callable[[bytes], bytes]] = {"MSEED": check_mseed, "KINEMETRICS_EVT": check_evt}
+"""Checks by ObsPy's name of the format."""
 
 
 @contextmanager
-def _unraisable() -> Iterator[list[str]]:
-    """Collect errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
+def _collecting_unraisable() -> Iterator[list[str]]:
+    """Yield a list of the errors that ObsPy's callbacks from C cannot raise; Python would print them on the terminal."""
     errors: list[str] = []
     hook = sys.unraisablehook
     sys.unraisablehook = lambda unraised: errors.append(f"{type(unraised.exc_value).__name__}: {unraised.exc_value}")
@@ -130,22 +129,20 @@ def _unraisable() -> Iterator[list[str]]:
 
 
 def _is_harmless(warning: warnings.WarningMessage, name: str) -> bool:
-    """Return whether a warning says nothing of the samples: of ObsPy's own use of libraries, and of settings of a trigger."""
+    """Return whether a warning is not about the samples: about ObsPy's use of libraries, or settings of a trigger."""
     if issubclass(warning.category, DeprecationWarning | FutureWarning):
         return True
     return name == "KINEMETRICS_EVT" and str(warning.message).startswith(_OF_TRIGGERS)
 
 
 def read_stream(data: bytes, name: str) -> "obspy.Stream":
-    """Return ObsPy's reading of ``data`` in the format ``name``; ``InputError`` if its header cannot be, or ObsPy complains."""
+    """Return ``data`` in the format ``name`` as read by ObsPy; raise ``InputError`` for damage or any complaint of ObsPy."""
     data = CHECKS[name](data)
-    with warnings.catch_warnings(record=True) as caught, _unraisable() as unraised:
+    with warnings.catch_warnings(record=True) as caught, _collecting_unraisable() as unraised:
         warnings.simplefilter("always")
         try:
-            stream = obspy.read(  # warns of its own use of the standard library when it is loaded
-                io.BytesIO(data), format=name, check_compression=False
-            )
-        except Exception as error:  # ObsPy's readers raise all sorts of types on damaged files
+            stream = obspy.read(io.BytesIO(data), format=name, check_compression=False)
+        except Exception as error:  # ObsPy's readers raise errors of any type on damaged files
             message = _ADDRESS.sub("the file", str(error))
             raise InputError(f"ObsPy's {name} reader refuses it: {type(error).__name__}: {message}") from None
     complaints = [str(w.message) for w in caught if not _is_harmless(w, name)]

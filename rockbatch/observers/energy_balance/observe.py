@@ -7,9 +7,11 @@ import numpy as np
 
 from rockbatch.common.lazy import pd
 from rockbatch.core import types
+from rockbatch.core.observe.beds import BED_STATE, follow_bed
 from rockbatch.core.observe.ledger import LEDGER, ledger_on_rigid_base, ledger_on_springs
 from rockbatch.motions.motion import Samples
 from rockbatch.outcome.outcome import TERMS, Outcome
+from rockbatch.pier import FootingBase
 from rockbatch.simulation import restraints
 from rockbatch.simulation.models import ground_of, model, springs
 from rockbatch.simulation.observing import Observer
@@ -58,7 +60,9 @@ def energies(run: Run, rows: np.recarray) -> Samples:
     terms = np.zeros((len(rows), len(TERMS)))
     balance = terms.view(LEDGER)[:, 0].view(np.recarray)  # the same memory, by names
     plain, pulls = restraints.apart(base, rows)
-    if base.on_springs:
+    if isinstance(base, FootingBase):
+        follow_bed(model(pier, base), plain, pulls, ground, dt, balance, np.recarray(len(rows), BED_STATE))
+    elif base.on_springs:
         ledger_on_springs(springs(pier, base), plain, pulls, ground, dt, balance)
     else:
         ledger_on_rigid_base(model(pier, base), plain, pulls, ground, dt, balance)

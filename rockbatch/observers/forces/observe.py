@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from rockbatch.common.lazy import pd
 from rockbatch.outcome.outcome import Outcome, PeakForces
+from rockbatch.simulation.error_control import CHANCE
 from rockbatch.simulation.forces import at_rows, forces_table, impacts_table, peak_forces, with_error
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -34,14 +35,14 @@ class PeaksOfForces(Observer):
         peaks, note = fine
         outcome = outcome.noted(note)
         if coarse is not None:
-            peaks, note = with_error(peaks, coarse[0], run.pier)
+            peaks, note = with_error(peaks, coarse[0], run.pier, CHANCE)
             outcome = outcome.noted(note)
         return outcome.changed(forces=peaks)
 
     def histories(self, recording: Recording) -> "Mapping[str, pd.DataFrame]":
         """See :class:`Observer`."""
         run, rows = recording.run, recording.at_samples.rows
-        moments = at_rows(run, rows)
+        moments = at_rows(run, recording.rows)[recording.shown] if run.base.remembers else at_rows(run, rows)
         return {"forces": forces_table(rows.t, moments, run.pier.gravity), "impacts": impacts_table(rows, moments)}
 
 

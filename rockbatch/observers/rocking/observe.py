@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rockbatch.outcome.outcome import Outcome
-from rockbatch.pier import YieldingBase
+from rockbatch.pier import ElasticBase, YieldingBase
 from rockbatch.simulation.leaning import Apart, apart, with_error_of_rocking, with_rocking
 from rockbatch.simulation.observing import Observer
 from rockbatch.simulation.recording import Recording
@@ -29,7 +29,7 @@ class Rocking(Observer):
     def read(self, recording: Recording, outcome: Outcome) -> Apart:
         """See :class:`Observer`."""
         base = recording.run.base
-        assert base.on_springs
+        assert isinstance(base, ElasticBase)
         return apart(recording.run.pier, base, recording.rows)
 
     def add(self, run: Run, outcome: Outcome, fine: Apart | None, coarse: Apart | None) -> Outcome:

@@ -13,6 +13,7 @@ from rockbatch.checks.responses import LOST, RESPONSES, Worst, heights_of, in_wo
 from rockbatch.common.grouping import grouped
 from rockbatch.common.lazy import pd
 from rockbatch.quantities.catalogue import DEMANDS
+from rockbatch.quantities.quantity import SETTLING
 from rockbatch.quantities.rows import NOT_RUN
 from rockbatch.reporting.finished import Finished
 from rockbatch.reporting.labels import counted
@@ -176,7 +177,7 @@ def _notes(finished: Finished, checked: bool) -> Iterator[object]:
         bases = {str(case["base"]) for case in finished.info["cases"]}
         if bases == {"rigid"}:
             yield "No settlement: the ground is rigid. "
-        elif "yielding" not in bases:
+        elif not bases & set(SETTLING):
             yield "No settlement: the supports are elastic. "
     else:
         yield f"{verdicts.statistics_in_words(finished)} "

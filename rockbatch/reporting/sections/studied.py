@@ -76,7 +76,9 @@ def section(finished: Finished, level: str = "h3") -> Markup:
 
 def in_a_line(finished: Finished) -> str:
     """Return the line below the title: "20 m high, 4 m wide · 11 stations, 22 components (…) · 44 runs, all end standing"."""
-    given = finished.pier_as_given
+    highest = {case["pier"].get("highest_m") for case in finished.info["cases"]}
+    of_parts = {"height_m": highest.pop()} if "part" in finished.pier_as_given and len(highest) == 1 else {}
+    given = finished.pier_as_given | of_parts
     numbers = {key: given[key] for key in IN_A_LINE if type(given.get(key)) in (int, float)}
     sizes = [f"{plain(float(value), 6)} {IN_A_LINE[key]}" for key, value in numbers.items()]
     for symbol_, key, unit in () if sizes else (("α", "alpha", ""), ("p", "p", " rad/s")):

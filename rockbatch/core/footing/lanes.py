@@ -1,0 +1,243 @@
+"""Lanes of piers on a footing: what a table holds of them, how runs begin, take their steps and end."""
+
+import math
+from typing import NamedTuple
+
+from rockbatch.core import system
+from rockbatch.core.clock import (
+    CALM,
+    COMMON,
+    EVENTFUL,
+    ON_ITS_SIDE,
+    TIMING,
+    Clearances,
+    ground_at,
+    include_height,
+    include_peak,
+    note_flight,
+)
+from rockbatch.core.footing import equations
+from rockbatch.core.footing.ending import Ending, set_deadline
+from rockbatch.core.footing.model import (
+    BED_OF_LANES,
+    NUMBERS,
+    POSITIONS,
+    SET,
+    FootingTraits,
+    Numbers,
+    Place,
+    State,
+    Touch,
+    model_in,
+)
+from rockbatch.core.footing.statics import lean, level_at, tilt
+from rockbatch.core.footing.strips import deflection, lay, plastic_work, pressure, push, settle, sinking
+from rockbatch.core.ground import later
+from rockbatch.core.kernel import inlined, kernel
+from rockbatch.core.rk4 import rk4
+from rockbatch.core.system import System, rates
+from rockbatch.core.table import LANES, get, lanes_of, put, taken, with_beds
+from rockbatch.core.types import Instant, Moment, Part
+
+
+class Demands(NamedTuple):
+    """What the bed has borne so far."""
+
+    contact_least: float  # least share of the area that was pressed at the end of a step
+    pressure: float  # greatest pressure at an edge, over that on the whole area per unit mass [m/s²]
+    pressure_time: float  # [s]
+    pressure_side: float  # LEFT or RIGHT
+    force: float  # greatest push [m/s²]
+    force_time: float  # [s]
+    yielding: float  # rocks to one side in which the ground has yielded
+    yields: float  # 1 if it has in the present one
+    yield_time: float  # when it first did [s]; NaN before that
+
+
+LANE = with_beds(lanes_of(COMMON | {
+    "model": Numbers, "now": State, "end": State, "rates": State, "contact": Touch, "bed": Place, "demands": Demands,
+    "ending": Ending,
+}), BED_OF_LANES)  # fmt: skip
+
+
+LINE = (
+    *NUMBERS, *TIMING,
+    ("prestress", float),  # of tendons, over the mass [m/s²]
+    ("theta", float),  # where the pier is held at the start [rad]
+)  # fmt: skip
+"""Fields of a run as it is requested."""
+
+Line = NamedTuple("Line", LINE)  # type: ignore[misc]
+
+
+@system.pier_in.of(FootingTraits)
+def pier_in(traits, lanes, i):
+    """Return the Footing of lane ``i``, and its Moment; the bed is part of the pier."""
+    return model_in(traits, lanes, i), Moment(get(lanes.now, i, State), get(lanes.contact, i, Touch), None)
+
+
+@kernel
+def _free_slot(lanes, i):
+    """Return the place of a bed that none of the lanes before ``i`` has."""
+    for slot in range(LANES):
+        free = True
+        for j in range(i):
+            free = free and lanes.bed.slot[j] != slot
+        if free:
+            return float(slot)
+    return -1.0
+
+
+@inlined
+def touch(m, d, bed):
+    """Return the Touch of the foot under the Sinking ``d``, pressed by this Push."""
+    left, right = deflection(m, d, 0), deflection(m, d, int(m.strips))
+    return Touch(1.0 if left > 0.0 else 0.0, 1.0 if right > 0.0 else 0.0, 1.0 if bed.touched == 0.0 else 0.0)
+
+
+@kernel
+def start_on_bed(m, y):
+    """Lay the bed as it is after the foot was pressed into it once, to state ``y``."""
+    lay(m)
+    d = sinking(m, y)
+    settle(m, d, d, 1.0)
+
+
+@system.begin.of(FootingTraits)
+def begin(traits, lanes, i, run):
+    """Put the model of ``run`` into lane ``i``, at rest, or as it was pushed to a rotation from there."""
+    put(lanes.model, i, taken(run, Numbers))
+    put(lanes.bed, i, Place(_free_slot(lanes, i), 0.0))
+    m, load = model_in(traits, lanes, i), run.gravity + run.prestress
+    lay(m)
+    y = State(level_at(m, run.theta, load), run.theta, 0.0, 0.0)
+    d = sinking(m, y)
+    start_on_bed(m, y)
+    put(lanes.now, i, y)
+    put(lanes.contact, i, touch(m, d, push(m, d)))
+    put(lanes.rates, i, State(math.nan, math.nan, math.nan, math.nan))
+    put(lanes.demands, i, Demands(1.0, 0.0, 0.0, 0.0, load, 0.0, 0.0, 0.0, math.nan))
+    set_deadline(lanes, i, run)
+
+
+@inlined
+def _edge_pressure(m, d, j):
+    """Return the pressure [m/s²] at node ``j``, 0 if it is not pressed."""
+    return max(0.0, min(pressure(m, d, j), m.strength)) if deflection(m, d, j) > 0.0 else 0.0
+
+
+@inlined
+def _include_demands(lanes, i, m, d, bed, t):
+    """Bring the demands on the bed up to the Sinking ``d`` at ``t`` [s], under this Push."""
+    demands = lanes.demands
+    demands.contact_least[i] = min(demands.contact_least[i], bed.touched)
+    left, right = _edge_pressure(m, d, 0), _edge_pressure(m, d, int(m.strips))
+    most = max(left, right)
+    if most > demands.pressure[i]:
+        demands.pressure[i], demands.pressure_time[i] = most, t
+        demands.pressure_side[i] = 1.0 if right > left else (-1.0 if left > right else 0.0)
+    if bed.force > demands.force[i]:
+        demands.force[i], demands.force_time[i] = bed.force, t
+
+
+@inlined
+def _clearances(m, y, d):
+    n = int(m.strips)
+    left, right = d.level + d.slope * m.bed[POSITIONS, 0], d.level + d.slope * m.bed[POSITIONS, n]
+    return Clearances(
+        m.bed[SET, 0] - left, m.bed[SET, n] - right,
+        -(d.level_rate + d.slope_rate * m.bed[POSITIONS, 0]), -(d.level_rate + d.slope_rate * m.bed[POSITIONS, n]),
+    )  # fmt: skip
+
+
+@kernel
+def take_in(lanes, i, m, part, t):
+    """Keep extremes and plastic set of a Part that ends at ``t`` [s], and put its end into the lane."""
+    before, y, end, tally, demands = part.start.contact, part.start.y, part.end, lanes.tally, lanes.demands
+    d, d_end = sinking(m, y), sinking(m, end)
+    if part.length > 0.0 and settle(m, d, d_end, part.length):
+        demands.yielding[i] += 1.0 - demands.yields[i]
+        demands.yields[i] = 1.0
+        if not demands.yield_time[i] >= 0.0:
+            demands.yield_time[i] = t
+    demands.yields[i] = 0.0 if y.theta * end.theta < 0.0 else demands.yields[i]
+    bed = push(m, d_end)
+    after = Touch(before.left, before.right, before.clear)
+    if bed.touched < 1.0 or before.clear + (1.0 - before.left) + (1.0 - before.right) > 0.0:
+        after = touch(m, d_end, bed)
+        tally.uplifts[i] += max(before.left - after.left, 0.0) + max(before.right - after.right, 0.0)
+        note_flight(lanes, i, after.clear != 0.0, t)
+        if before.clear != 0.0:
+            include_height(lanes, i, _clearances(m, y, d), _clearances(m, end, d_end), part.length)
+    _include_demands(lanes, i, m, d_end, bed, t)
+    put(lanes.now, i, end)
+    put(lanes.contact, i, after)
+    lanes.bed.time[i] = t
+    return bed
+
+
+@system.take_in_part.of(FootingTraits)
+def take_in_part(traits, lanes, i, m, part, after):
+    """Keep extremes and plastic set of a Part."""
+    take_in(lanes, i, m, part, lanes.bed.time[i] + part.length)
+
+
+@system.lanes_in_pass.of(FootingTraits)
+def lanes_in_pass(traits, count):
+    """Return the number of lanes that hold a run: vectors are made of strips."""
+    return count
+
+
+@system.one_pass.of(FootingTraits)
+def one_pass(traits, lanes, count, substep, settings):
+    """Take the first ``count`` lanes a sub-step further, each by vector instructions over its strips.
+
+    A run in any company comes to the same bits. One that falls, or has no numbers any more, is left to the driver.
+    """
+    for i in range(count):
+        m, now = pier_in(traits, lanes, i)
+        h, ground = lanes.clock.step[i], ground_at(lanes, i, substep * lanes.clock.step[i])
+        k = get(lanes.rates, i, State)
+        if not abs(k.omega) < math.inf:
+            k = rates(m, now.y, now.contact, ground)
+        end = rk4(m, None, Instant(now.y, k, now.contact, None, ground), h)
+        if not abs(end.theta) < ON_ITS_SIDE:
+            lanes.step_status.kind[i] = EVENTFUL
+            continue
+        part = Part(now, end, h)
+        include_peak(lanes, i, part, substep * h, 0.0)
+        t = lanes.clock.sample[i] * lanes.clock.dt[i] + (substep + 1.0) * h
+        bed = take_in(lanes, i, m, part, t)
+        v_rate, omega = equations.accelerations(m, end, bed, later(ground, h))
+        put(lanes.rates, i, State(end.v_rate, end.omega, v_rate, omega))
+        lanes.step_status.kind[i] = CALM
+
+
+@system.finish.of(FootingTraits)
+def finish(traits, lanes, i, t, result):
+    """Write the residuals, and what the bed has borne, of the run in lane ``i``."""
+    m, _ = pier_in(traits, lanes, i)
+    demands, load = lanes.demands, lanes.ending.load[i]
+    result.base_left, result.base_right = m.bed[SET, 0], m.bed[SET, int(m.strips)]
+    result.dissipated_left = plastic_work(m)
+    result.bed_tilt = result.lean = result.settled = 0.0
+    if result.dissipated_left > 0.0:
+        result.bed_tilt, result.lean = tilt(m), lean(m, load)
+        at_rest = sinking(m, State(level_at(m, result.lean, load), result.lean, 0.0, 0.0))
+        result.settled = at_rest.level - load / m.stiffness
+    result.contact_least, result.bed_pressure, result.t_pressure = (
+        demands.contact_least[i], demands.pressure[i], demands.pressure_time[i],
+    )  # fmt: skip
+    result.pressure_side = demands.pressure_side[i]
+    result.bed_force, result.t_force = demands.force[i], demands.force_time[i]
+    result.yielding_rocks, result.t_yield = demands.yielding[i], demands.yield_time[i]
+
+
+def system_of(m):
+    """Return the System of the pier ``m`` (Footing)."""
+    return System(FootingTraits(m.finite, m.shifting), Line, LANE, State._fields + Touch._fields)
+
+
+def line_of(m, prestress, theta, *timing):
+    """Return the Line of a run of the pier ``m`` (Footing); ``timing`` is what Line has from ``dt`` on."""
+    return Line(*m[: len(NUMBERS)], *timing, prestress, theta)

@@ -1,0 +1,103 @@
+"""A pier on a footing, its state and its bed (THEORY.md, A footing)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rockbatch.core.kernel import inlined
+from rockbatch.core.table import LANES, get
+from rockbatch.core.types import Pull
+
+MOST_STRIPS = 160
+"""Greatest number of strips of a bed."""
+
+CHUNK = 16
+"""Nodes that vector instructions take at a time: a bed is padded with nodes that nothing touches."""
+
+NODES = (MOST_STRIPS // CHUNK + 1) * CHUNK
+
+# Rows of a bed, with a column for each node between strips
+POSITIONS = 0  # to the right of the middle [m]
+WEIGHTS = 1  # shares of the area that pressures at the nodes stand for
+ARMS = 2  # and of its static moment [m]
+AREA = 3  # shares of the area of the strips to the right of the nodes
+ORDER = 4  # numbers of the nodes, 0, 1, …
+SET = 5  # plastic set of the ground under each node [m]
+
+BEDS = (6, NODES)
+"""Shape of a bed."""
+
+BED_OF_LANES = np.dtype(("f8", (LANES, *BEDS)))
+
+
+class Footing(NamedTuple):
+    """A pier on a footing, per unit mass.
+
+    Lanes hold the numbers; what follows them is told apart by its type, hence when kernels are compiled.
+    """
+
+    half_width: float  # b = B/2 [m]
+    height: float  # h [m]
+    inertia: float  # I0/M [m²]
+    gravity: float  # g [m/s²]
+    stiffness: float  # K/M = ω_v², of the whole bed [1/s²]
+    strength: float  # Q/M [m/s²]; infinite if the bed is elastic
+    damping: float  # C/M = 2ζ ω_v [1/s]
+    strips: float  # number of them
+    gap: float  # 0 of a bed; above 0 of two separate strips, the share of the width that they have: for tests
+    guided: float  # 1: flight goes on, as always on a bed
+    rest: float  # velocity that counts as none [m/s]
+    finite: bool | None  # True: finite kinematics; None: first-order
+    shifting: (
+        bool | None
+    )  # True: the lever follows the pressed part, as on two springs, for tests; None: one for all contacts
+    bed: np.ndarray  # shape BEDS
+    pull: Pull | None = None  # of dampers and tendons; None: there are none
+
+
+class FootingTraits(NamedTuple):
+    """Traits that kernels are compiled for: the types of these fields of Footing; their values do not matter."""
+
+    finite: bool | None
+    shifting: bool | None
+    pull: Pull | None = None
+
+
+NUMBERS = tuple((name, float) for name in Footing._fields[: Footing._fields.index("finite")])
+"""Fields of Footing that lanes hold."""
+
+Numbers = NamedTuple("Numbers", NUMBERS)  # type: ignore[misc]
+
+
+class State(NamedTuple):
+    """State that the equations integrate; also its rates."""
+
+    v: float  # vertical displacement of the centre of mass from an unstressed bed, up [m]
+    theta: float  # rotation, positive to the right [rad]
+    v_rate: float  # [m/s]
+    omega: float  # [rad/s]
+
+
+class Touch(NamedTuple):
+    """Contact of the foot at the end of a step; the rates do not depend on it."""
+
+    left: float  # 1 if the left edge is pressed
+    right: float
+    clear: float  # 1 if the foot is in the air
+
+
+class Place(NamedTuple):
+    """Where a lane's bed is among those of all lanes, and up to when its state is known."""
+
+    slot: float
+    time: float  # [s]
+
+
+@inlined
+def model_in(traits, lanes, i):
+    """Return the Footing of lane ``i``, of the types that ``traits`` have."""
+    m, bed = get(lanes.model, i, Numbers), lanes.beds[int(lanes.bed.slot[i])]
+    return Footing(
+        m.half_width, m.height, m.inertia, m.gravity, m.stiffness, m.strength, m.damping, m.strips, m.gap, m.guided, m.rest,
+        traits.finite, traits.shifting, bed, traits.pull,
+    )  # fmt: skip

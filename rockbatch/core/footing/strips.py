@@ -1,0 +1,259 @@
+"""The bed under the foot: its push, what it stores, and its plastic set (THEORY.md, A footing).
+
+The ground sinks under the foot by d(x) = level + slope x. Nodes lie between the strips, and the plastic set is linear between
+them, so that the elastic deflection e = d − set is linear in a strip, and what is pressed of it is known in closed form.
+The set is the greatest of linear functions, hence convex, and e concave: what is pressed is one interval, of which two strips at
+most are pressed in part.
+"""
+
+from typing import NamedTuple
+
+from rockbatch.core.footing.model import AREA, ARMS, CHUNK, ORDER, POSITIONS, SET, WEIGHTS
+from rockbatch.core.kernel import inlined, kernel, summing
+from rockbatch.core.roots import summit_within
+from rockbatch.core.trigonometry import sine_and_cosine
+
+SMALLEST = 1e-300
+"""Added to a divisor that is 0 where the foot does not touch."""
+
+UNTOUCHED = 1e200
+"""Set of nodes that pad a bed [m]."""
+
+
+class Sinking(NamedTuple):
+    """How far the ground under the foot is pressed down, and how fast: linear in x."""
+
+    level: float  # under the middle [m]
+    slope: float  # [1]
+    level_rate: float  # [m/s]
+    slope_rate: float  # [1/s]
+
+
+class Push(NamedTuple):
+    """Push of the bed on the foot, per unit mass of the pier."""
+
+    force: float  # Σ P, up [m/s²]
+    moment: float  # Σ P x [m²/s²]
+    touched: float  # share of the area that is pressed
+
+
+class Sums(NamedTuple):
+    """Sums over the nodes that are pressed."""
+
+    force: float
+    moment: float
+    touched: float
+    nodes: float  # how many
+    numbers: float  # Σ of their numbers
+
+
+@inlined
+def sinking(m, y):
+    """Return the Sinking of the ground in state ``y``."""
+    if m.finite is None:
+        return Sinking(-y.v, y.theta, -y.v_rate, y.omega)
+    s, c = sine_and_cosine(y.theta)
+    drop = m.height * s * s / (1.0 + c)  # h (1 − cos θ), without the loss of digits
+    return Sinking(-y.v - drop, s, -y.v_rate - m.height * s * y.omega, c * y.omega)
+
+
+@inlined
+def _within(pressure, strength):
+    return max(0.0, min(pressure, strength))
+
+
+@inlined
+def deflection(m, d, j):
+    """Return the elastic deflection e at node ``j`` [m]."""
+    return d.level + d.slope * m.bed[POSITIONS, j] - m.bed[SET, j]
+
+
+@inlined
+def pressure(m, d, j):
+    """Return the pressure at node ``j``, spring and dashpot, as if it were pressed, times the area over the mass [m/s²]."""
+    rate = d.level_rate + d.slope_rate * m.bed[POSITIONS, j]
+    return m.stiffness * deflection(m, d, j) + m.damping * rate
+
+
+@summing
+def _sums(m, d):
+    """Return the Sums over pressed nodes: the push itself, but for strips that are pressed in part."""
+    force, moment, touched, nodes, total = 0.0, 0.0, 0.0, 0.0, 0.0
+    level, slope, stiffness, strength = d.level, d.slope, m.stiffness, m.strength
+    rate, slope_rate = m.damping * d.level_rate, m.damping * d.slope_rate
+    bed = m.bed
+    for j in range(_padded(m.strips)):
+        x = bed[POSITIONS, j]
+        e = level + slope * x - bed[SET, j]
+        by = max(0.0, min(stiffness * e + (rate + slope_rate * x), strength))
+        pressed = 1.0 if e > 0.0 else 0.0
+        by = by if e > 0.0 else 0.0
+        force += bed[WEIGHTS, j] * by
+        moment += bed[ARMS, j] * by
+        touched += bed[WEIGHTS, j] * pressed
+        nodes += pressed
+        total += bed[ORDER, j] * pressed
+    return Sums(force, moment, touched, nodes, total)
+
+
+@inlined
+def _padded(strips):
+    """Return the number of nodes of a bed, with those that pad it."""
+    return (int(strips) // CHUNK + 1) * CHUNK
+
+
+@inlined
+def _in_part(m, d, j):
+    """Return by how much the Push of strip ``j``, of which a part is pressed, exceeds what its nodes say in the Sums.
+
+    The pressure is linear in that part, between 0 and the strength, dashpots included.
+    """
+    left, right, e_left, e_right = (
+        m.bed[POSITIONS, j],
+        m.bed[POSITIONS, j + 1],
+        deflection(m, d, j),
+        deflection(m, d, j + 1),
+    )
+    weight = m.bed[AREA, j]
+    if (e_left > 0.0) == (e_right > 0.0) or weight == 0.0:
+        return Push(0.0, 0.0, 0.0)
+    by_left, by_right, way = pressure(m, d, j), pressure(m, d, j + 1), right - left
+    if e_left > 0.0:
+        share = e_left / (e_left - e_right)
+        inner, outer, x, towards, third = by_left, by_left + share * (by_right - by_left), left, share * way, way
+    else:
+        share = e_right / (e_right - e_left)
+        inner, outer, x, towards, third = by_right, by_right + share * (by_left - by_right), right, -share * way, -way
+    inner, outer = _within(inner, m.strength), _within(outer, m.strength)
+    force = share * 0.5 * (inner + outer)
+    moment = share * (0.5 * (inner + outer) * x + (inner + 2.0 * outer) * towards * (1.0 / 6.0))
+    lumped = 0.5 * inner
+    return Push(
+        weight * (force - lumped), weight * (moment - lumped * (x + third * (1.0 / 3.0))), weight * (share - 0.5)
+    )
+
+
+@inlined
+def push(m, d):
+    """Return the Push of the bed under the Sinking ``d``."""
+    sums, strips = _sums(m, d), int(m.strips)
+    force, moment, touched = sums.force, sums.moment, sums.touched
+    if sums.nodes > 0.0 and sums.nodes < strips + 1.0:
+        middle, half = sums.numbers / sums.nodes, 0.5 * (sums.nodes - 1.0)
+        for side in (-1.0, 1.0):
+            end = int(middle + side * half + 0.5)
+            j = end - 1 if side < 0.0 else end
+            if j >= 0 and j < strips:
+                more = _in_part(m, d, j)
+                force, moment, touched = force + more.force, moment + more.moment, touched + more.touched
+    return Push(force, moment, touched)
+
+
+@kernel
+def pressed_middle(m, d):
+    """Return the mean position of the nodes that are pressed, 0 if none is [m]."""
+    total, area = 0.0, 0.0
+    for j in range(int(m.strips) + 1):
+        if deflection(m, d, j) > 0.0:
+            total, area = total + m.bed[WEIGHTS, j] * m.bed[POSITIONS, j], area + m.bed[WEIGHTS, j]
+    return total / area if area > 0.0 else 0.0
+
+
+@kernel
+def stored(m, d):
+    """Return the elastic energy of the bed [J/kg]: beyond the strength, with the work of the set that takes it there."""
+    energy, most = 0.0, m.strength / m.stiffness
+    for j in range(int(m.strips)):
+        left, right = deflection(m, d, j), deflection(m, d, j + 1)
+        deep = max(max(left, right), 0.0)
+        share = deep / (deep - min(min(left, right), 0.0) + SMALLEST)
+        a, b = max(left, 0.0), max(right, 0.0)
+        simpson = _energy_at(a, most) + 4.0 * _energy_at(0.5 * (a + b), most) + _energy_at(b, most)
+        energy += m.bed[AREA, j] * share * simpson * (1.0 / 6.0)
+    return m.stiffness * energy
+
+
+@inlined
+def _energy_at(e, most):
+    return 0.5 * e * e if e <= most else most * (e - 0.5 * most)
+
+
+@summing
+def _beyond(m, d, d_end, h):
+    """Return a number above 0 if the ground under some node may have yielded in a step of ``h`` [s]: by Bézier points."""
+    total, most, third = 0.0, m.strength / m.stiffness, h * (1.0 / 3.0)
+    first, first_slope = d.level + third * d.level_rate, d.slope + third * d.slope_rate
+    last, last_slope = d_end.level - third * d_end.level_rate, d_end.slope - third * d_end.slope_rate
+    bed, level, slope, level_end, slope_end = m.bed, d.level, d.slope, d_end.level, d_end.slope
+    for j in range(_padded(m.strips)):
+        x = bed[POSITIONS, j]
+        deepest = max(
+            max(level + slope * x, level_end + slope_end * x), max(first + first_slope * x, last + last_slope * x)
+        )
+        total += max(deepest - (bed[SET, j] + most), 0.0)
+    return total
+
+
+@inlined
+def _deepest(m, d, h):
+    """Return a bound on the depth under the foot [m], of a Sinking and its rate for ``h`` [s] from it."""
+    along = d.slope + h * d.slope_rate
+    return max(
+        d.level + abs(d.slope) * m.bed[POSITIONS, int(m.strips)],
+        d.level + h * d.level_rate + abs(along) * m.bed[POSITIONS, int(m.strips)],
+    )
+
+
+@kernel
+def settle(m, d, d_end, h):
+    """Bring the plastic set up to a step of ``h`` [s] between two Sinkings: a running maximum. Return whether any has grown."""
+    most, yields, third = m.strength / m.stiffness, False, h * (1.0 / 3.0)
+    if max(_deepest(m, d, third), _deepest(m, d_end, -third)) <= most:
+        return False
+    if not _beyond(m, d, d_end, h) > 0.0:
+        return False
+    for j in range(int(m.strips) + 1):
+        x = m.bed[POSITIONS, j]
+        deepest = summit_within(
+            d.level + d.slope * x, d.level_rate + d.slope_rate * x,
+            d_end.level + d_end.slope * x, d_end.level_rate + d_end.slope_rate * x, h,
+        )  # fmt: skip
+        if deepest - most > m.bed[SET, j]:
+            m.bed[SET, j] = deepest - most
+            yields = True
+    return yields
+
+
+@kernel
+def lay(m):
+    """Lay an unyielded bed of equal strips, or two narrow ones at the edges."""
+    n, b = int(m.strips), m.half_width
+    for j in range(m.bed.shape[1]):
+        m.bed[POSITIONS, j] = b * (2.0 * min(j, n) / n - 1.0)
+        m.bed[AREA, j] = 1.0 / n if j < n else 0.0
+        m.bed[WEIGHTS, j] = m.bed[ARMS, j] = 0.0
+        m.bed[ORDER, j], m.bed[SET, j] = float(j), 0.0 if j <= n else UNTOUCHED
+    if m.gap > 0.0:  # of three strips the one in the middle is a gap
+        m.bed[POSITIONS, 0], m.bed[POSITIONS, 1] = -b * (1.0 + m.gap), -b * (1.0 - m.gap)
+        m.bed[POSITIONS, 2], m.bed[POSITIONS, 3] = b * (1.0 - m.gap), b * (1.0 + m.gap)
+        m.bed[AREA, 0], m.bed[AREA, 1], m.bed[AREA, 2] = 0.5, 0.0, 0.5
+    for j in range(n):
+        half, third, left, right = (
+            0.5 * m.bed[AREA, j],
+            m.bed[AREA, j] * (1.0 / 6.0),
+            m.bed[POSITIONS, j],
+            m.bed[POSITIONS, j + 1],
+        )
+        m.bed[WEIGHTS, j] += half
+        m.bed[WEIGHTS, j + 1] += half
+        m.bed[ARMS, j] += third * (2.0 * left + right)
+        m.bed[ARMS, j + 1] += third * (left + 2.0 * right)
+
+
+@kernel
+def plastic_work(m):
+    """Return the plastic work of the bed [J/kg], from its set."""
+    work = 0.0
+    for j in range(int(m.strips) + 1):
+        work += m.bed[WEIGHTS, j] * m.bed[SET, j]
+    return m.strength * work if work > 0.0 else 0.0

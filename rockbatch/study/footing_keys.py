@@ -1,0 +1,134 @@
+"""Keys of a footing in a [[case]], as engineers have them: a bed, a toe of some depth, or soil."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
+
+from rockbatch.common.errors import Contradiction, InputError, MissingKey, Problem
+from rockbatch.pier import FootingBase, Pier
+from rockbatch.pier.bases import POISSON, STRIPS
+from rockbatch.pier.restraints import DeckSpring, Restraint
+from rockbatch.pier.soil import Formula
+from rockbatch.toml.kinds import Whole, boolean, choice, positive, within
+from rockbatch.toml.section import Key
+
+ON_FOOTING = {"base": ("footing",)}
+_SOIL = ("shear_modulus_MPa", "poisson", "embedment_m", "formula", "radiation", "density_t_m3")
+_FIELDS = ("zeta", "kinematics", "friction", "flight_limit_mm", "strips", "length_m", "safety_factor", "beta")
+
+FOOTING_KEYS = {
+    "width_m": Key(positive, "9.0",
+        "Width of the foot in the plane of rocking; default: that of the pier. α of the case is then atan(width_m/2h); devices "
+        "stay at the pivots of `[pier]`.", many=True, only=ON_FOOTING),
+    "length_m": Key(positive, "12.0", "Length of the foot across the plane of rocking.", many=True, only=ON_FOOTING),
+    "stiffness_MN_m3": Key(positive, "60.0", "Stiffness of the bed; or give soil, or `young_GPa` with `depth_m`.", many=True,
+        only=ON_FOOTING),
+    "young_GPa": Key(positive, "30.0", "Young's modulus of toes of concrete or steel, whose bed has the stiffness E/depth.",
+        many=True, only=ON_FOOTING),
+    "depth_m": Key(positive, "0.5", "Depth of that material.", many=True, only=ON_FOOTING),
+    "bearing_MPa": Key(positive, "1.2", "Strength of the bed, uniform; or give `safety_factor`. With neither it is elastic.",
+        many=True, only=ON_FOOTING),
+    "safety_factor": Key(positive, "3.0", "FS: bearing capacity over the weight of pier and deck, above 1.", many=True,
+        only=ON_FOOTING),
+    "shear_modulus_MPa": Key(positive, "60.0", "Shear modulus G of the soil, at the strain that is expected.", many=True,
+        only=ON_FOOTING),
+    "poisson": Key(within(POISSON), "0.45", "Poisson's ratio ν of the soil.", many=True, only=ON_FOOTING),
+    "embedment_m": Key(positive, "2.0", "Depth of the foot's underside below the surface, with walls in contact.", many=True,
+        only=ON_FOOTING),
+    "formula": Key(choice(*get_args(Formula)), '"gazetas"',
+        "Formula of the soil's stiffnesses; the bed has its rocking stiffness, from which its vertical one follows.", many=True,
+        only=ON_FOOTING),
+    "radiation": Key(boolean, "true",
+        "Whether dashpots of radiated waves join `zeta`. Strip by strip they overstate the damping of rocking 8 to 100 times.",
+        many=True, only=ON_FOOTING),
+    "density_t_m3": Key(positive, "1.9", "Density of the soil, for `radiation`.", many=True, only=ON_FOOTING),
+    "strips": Key(Whole(), "40", f"Strips of the bed, an even number; default: {STRIPS}.", many=True, only=ON_FOOTING),
+}  # fmt: skip
+"""Keys of a footing; in a list each value is a case."""
+
+
+def on_foot(pier: Pier, width_m: float) -> Pier:
+    """Return ``pier`` on a foot of another width: with its height and inertia, and α of that foot."""
+    half, height = 0.5 * width_m, pier.height
+    size = math.hypot(half, height)
+    mu = size**2 / pier.inertia
+    p = math.sqrt(mu / (1.0 + mu) * pier.gravity / size)
+    return replace(pier, alpha=math.atan2(half, height), p=p, mu=mu, confirm=("p", "mass_t", "top_m"))
+
+
+def at_pivots(devices: tuple[Restraint, ...], pier: Pier) -> tuple[Restraint, ...]:
+    """Return ``devices`` with those at both pivots of ``pier`` at their places: a wider foot leaves them there."""
+    ways: dict[float | str | None, tuple[float, ...]] = {None: (-1.0, 1.0), "left": (-1.0,), "right": (1.0,)}
+    placed: list[Restraint] = []
+    for device in devices:
+        if isinstance(device, DeckSpring) or device.at not in ways:
+            placed.append(device)
+        else:
+            placed += [replace(device, at=side * pier.half_width) for side in ways[device.at]]
+    return tuple(placed)
+
+
+def footing_of(
+    values: Mapping[str, Any], pier: Pier, devices: tuple[Restraint, ...]
+) -> tuple[FootingBase, list[Problem]]:
+    """Return the base of a case on a footing, and what is impossible about it; then a possible one lets the rest be checked.
+
+    ``pier`` is that on the foot.
+    """
+    fields = {name: values[name] for name in _FIELDS if name in values} | {"restraints": devices}
+    ways = [
+        way
+        for way, keys in {
+            "beta": ("beta",), "stiffness_MN_m3": ("stiffness_MN_m3",), "young_GPa with depth_m": ("young_GPa", "depth_m"),
+            "shear_modulus_MPa with poisson": ("shear_modulus_MPa", "poisson"),
+        }.items()
+        if any(key in values for key in keys)
+    ]  # fmt: skip
+    fallback = FootingBase(4.0 * pier.least_beta, restraints=devices, confirm=("beta",))
+    if len(ways) != 1:
+        many = f"{' and '.join(ways)} are given, which fix the same; keep one" if ways else (
+            "the stiffness of the bed is missing; write shear_modulus_MPa and poisson of the soil, or stiffness_MN_m3"
+        )  # fmt: skip
+        return fallback, [Problem("base", None, many, kind=Contradiction if ways else MissingKey)]
+    if wrong := _lacking(values):
+        return fallback, wrong
+    try:
+        return _made(values, pier, fields), []
+    except InputError as error:
+        return fallback, list(error.problems)
+
+
+def _lacking(values: Mapping[str, Any]) -> list[Problem]:
+    """Return which keys miss another one."""
+    pairs = (
+        ("young_GPa", "depth_m"), ("depth_m", "young_GPa"), ("shear_modulus_MPa", "poisson"), ("poisson", "shear_modulus_MPa"),
+        ("bearing_MPa", "length_m"), ("stiffness_MN_m3", "length_m"), ("young_GPa", "length_m"),
+        ("shear_modulus_MPa", "length_m"),
+        ("embedment_m", "shear_modulus_MPa"), ("formula", "shear_modulus_MPa"), ("radiation", "shear_modulus_MPa"),
+        ("density_t_m3", "radiation"), ("radiation", "density_t_m3"),
+    )  # fmt: skip
+    wrong = [
+        Problem(key, values[key], f"{other} is missing beside it", kind=MissingKey)
+        for key, other in pairs
+        if key in values and other not in values
+    ]
+    if "bearing_MPa" in values and "safety_factor" in values:
+        text = "safety_factor is given, which fixes the same; keep one"
+        wrong.append(Problem("bearing_MPa", values["bearing_MPa"], text, kind=Contradiction))
+    return wrong
+
+
+def _made(values: Mapping[str, Any], pier: Pier, fields: dict[str, Any]) -> FootingBase:
+    """Return the base by the way in which its stiffness is given."""
+    if "beta" in values:
+        return FootingBase(**fields)
+    fields |= {"bearing_MPa": values.get("bearing_MPa")}
+    if "shear_modulus_MPa" not in values:
+        stiffness = values.get("stiffness_MN_m3") or 1000.0 * values["young_GPa"] / values["depth_m"]
+        return FootingBase.from_stiffness(pier, stiffness, **fields)
+    density = values["density_t_m3"] if values.get("radiation") else None
+    soil = {name: values[name] for name in ("embedment_m", "formula") if name in values}
+    return FootingBase.from_soil(
+        pier, values["shear_modulus_MPa"], values["poisson"], density_t_m3=density, **soil, **fields
+    )
