@@ -115,11 +115,9 @@ def _wrapped(text: str, most: int) -> str:
 
 def aligned(lines: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> list[str]:
     """Return lines of cells as text in columns, those at ``left`` flush left, the others flush right."""
-    columns = []
-    for i, column in enumerate(zip(*lines, strict=True)):
-        width, pad = max(map(len, column)), str.ljust if i in left else str.rjust
-        columns.append([pad(cell, width) for cell in column])
-    return ["  ".join(line) for line in zip(*columns, strict=True)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    pads = [str.ljust if i in left else str.rjust for i in range(len(widths))]
+    return ["  ".join(pad(cell, w) for pad, cell, w in zip(pads, line, widths, strict=True)) for line in lines]
 
 
 def in_width(
