@@ -193,7 +193,7 @@ def test_for_a_study_in_place_of_results_the_message_names_the_folder(study, cap
         assert main([command, str(study)]) == 2
         told = capsys.readouterr().err
         assert (
-            f"{study}: a file, not a folder of results; write the folder, such as {Path('reports', study.stem)}" in told
+            f"{study}: a file, not a folder of results; give the folder, such as {Path('reports', study.stem)}" in told
         )
 
 
@@ -419,7 +419,7 @@ def test_a_run_ends_with_its_report_whatever_becomes_of_stdout_and_stderr(tmp_pa
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        (errno.ENOSPC, "the output cannot be printed (No space left on device); all else is still done\n"),
+        (errno.ENOSPC, "the output cannot be printed (No space left on device); the command goes on\n"),
         (errno.EPIPE, ""),
     ],
 )

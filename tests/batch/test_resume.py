@@ -329,7 +329,7 @@ def test_a_changed_table_is_reported_kept_and_replaced_only_on_request(study, tm
             f"{out / 'peaks.csv'}: not as `rockbatch run` wrote it, with {RUNS} rows: it was edited, or is damaged"
             in told
         )
-        assert "keep it as a copy elsewhere if it was edited, and run the study again with --fresh" in told
+        assert "move it away if you edited it, and run the study again with --fresh" in told
         assert (out / "peaks.csv").read_text(encoding="utf-8") == changed
         assert (out / "report.html").read_bytes() == report
     assert (

@@ -77,7 +77,7 @@ def test_of_too_many_foundations_the_best_are_drawn(tmp_path):
 def test_intensity_measures_are_shown_by_case_with_the_best_of_each(asked):
     shown = page_of(asked, intensity)
     order = rb.open_results(asked).intensity_order
-    assert "they rank above all others" in shown.text
+    assert "they share the highest rank" in shown.text
     assert "In every row: runs 6" in shown.text
     rows = [row for row in shown.tables[""] if row[0] != "case"]
     ranks, lines = rows[:4], rows[4:]
@@ -103,8 +103,8 @@ def test_the_target_is_drawn_with_every_record_and_the_mean_over_it(asked):
     assert f"is between {min(over):.2f} of the target" in page.text
     assert f"{max(over):.2f} at most" in page.text
     assert min(over) > 0.0
-    assert "asked for" not in page.text  # which is only compared
-    assert "nothing is scaled to the target" in page.text
+    assert ": below the" not in page.text  # which is only compared
+    assert "The records are not scaled to the target" in page.text
     assert "no conformity is claimed" in page.text
 
 
@@ -129,7 +129,7 @@ def test_stations_without_a_pair_are_named_if_pairs_are_requested(asked, tmp_pat
     (tmp_path / "peaks.csv").write_bytes((asked / "peaks.csv").read_bytes())
     text = page_of(tmp_path, target).text
     assert "6 stations without two components" in text
-    assert "the square root of the sum of its components' squares" in text
+    assert "the square root of the sum of their components' squares" in text
     assert "without two components" not in page_of(asked, target).text
 
 

@@ -469,7 +469,7 @@ def test_without_histories_it_says_how_to_get_them(tmp_path):
     assert keep_histories(*carried_out(tmp_path, STUDY.replace('histories = "all"', 'histories = "none"'))) is None
     results = rb.open_results(tmp_path)
     assert len(results.responses) == 0
-    with pytest.raises(rb.InputError, match="no histories; write \\[output\\] histories"):
+    with pytest.raises(rb.InputError, match="no histories; add \\[output\\] histories"):
         results.history("weak", "rigid")
 
 
