@@ -43,7 +43,7 @@ class Command:
     arguments: Arguments
     writes: str = ""
 
-    def add_to(self, subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]", name: str, epilog: str) -> None:
+    def add_to(self, subparsers: "argparse._SubParsersAction[Any]", name: str, epilog: str) -> None:
         """Add the parser of this command to ``subparsers``."""
         writes = f"writes:\n{self.writes}\n\n" if self.writes else ""
         text = f"example:\n  {self.example}\n\n{writes}{epilog}"

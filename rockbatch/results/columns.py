@@ -87,7 +87,7 @@ def row(run: StudyRun) -> dict[str, object]:
 
 def unusable_rows(motions: MotionSet) -> list[dict[str, object]]:
     """Return a row of peaks.csv, with the reason, for each file that could not be used."""
-    status = {"status": "failed", "failure": Failure.UNUSABLE.value}
+    status: dict[str, object] = {"status": "failed", "failure": Failure.UNUSABLE.value}
     return [status | {"record": file.name, "reason": f"{file.source}: {file.reason}"} for file in motions.unusable]
 
 
