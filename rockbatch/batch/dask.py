@@ -320,4 +320,4 @@ def simulate(
         raise InputError(
             f"a worker runs another rockbatch or another Numba ({program()}, not {expected}): install the same everywhere"
         )
-    return outcomes_of([StudyRun(records[place], *rest) for place, *rest in members], numerics, observers)
+    return outcomes_of([StudyRun(records[member[0]], *member[1:]) for member in members], numerics, observers)

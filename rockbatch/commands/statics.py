@@ -1,8 +1,9 @@
 """``rockbatch statics``: print static strength and rocking periods of each pier of a study."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,7 @@ MOST_CASES = 12
 
 Sheets = Sequence[tuple[Case, Statics]]
 Array = npt.NDArray[np.float64]
-Line = dict[str, object]
+Line = Mapping[Any, object]
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -98,6 +99,6 @@ def rotations(sheet: Statics) -> str:
 
 def _write(path: Path, study: Study, columns: Sequence[str], rows: Sequence[tuple[Case, Sequence[Line]]]) -> None:
     """Write a CSV whose rows begin with case and varied values."""
-    lines = [{"case": case.name} | case.columns | line for case, of_case in rows for line in of_case]
+    lines = [{"case": case.name, **case.columns, **line} for case, of_case in rows for line in of_case]
     write_output(path, csv_text(["case", *study.varied, *columns], lines))
     say(str(path))

@@ -100,9 +100,9 @@ def _limits(finished: Finished, runs: "pd.DataFrame") -> list[dots.Limit]:
             words += f" ({STATISTICS[verdict.statistic].words})"
         cases_of.setdefault(dots.Limit(words, verdict.limit / most.value(cases[0])), set()).add(verdict.case)
     limits = []
-    for limit, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta):
-        words = limit.words if of_limit == names else f"{limit.words} ({', '.join(sorted(of_limit))})"
-        limits.append(limit._replace(words=words))
+    for drawn, of_limit in sorted(cases_of.items(), key=lambda item: item[0].theta):
+        words = drawn.words if of_limit == names else f"{drawn.words} ({', '.join(sorted(of_limit))})"
+        limits.append(drawn._replace(words=words))
     return limits
 
 

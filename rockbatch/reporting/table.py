@@ -103,7 +103,12 @@ def _common(heads: Sequence[Head], values: Sequence[object], complete: bool) -> 
 
 
 def listed(
-    heads: Sequence[Head], items: Iterable[Item], *, sortable: bool = False, prose: bool = False, name: str
+    heads: Sequence[Head],
+    items: Iterable[Item],
+    *,
+    sortable: bool = False,
+    prose: bool = False,
+    name: str | None = None,
 ) -> Markup:
     """Return a :func:`table` with a row for each item, its cells given by ``head.value``."""
     rows = ([head.value_in(item) for head in heads] for item in items)
